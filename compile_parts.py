@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 try:
-    from jointfmu_fmu_src.native.compiled.ahead import compile_ahead
-    from jointfmu_fmu_src.native.compiled.kept import SHIPPED
+    from jointfmu_fmu_src.native.compiled.compile_ahead import compile_ahead
+    from jointfmu_fmu_src.native.compiled.compiled_models import SHIPPED_FOLDER
 except ImportError as error:
     sys.exit(f"compile_parts.py: {error}; install what building needs with: pip install -e '.[build]'")
 
@@ -14,7 +14,9 @@ except ImportError as error:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help="FMUs (default: all)")
-    parser.add_argument("--out", type=Path, default=SHIPPED, metavar="DIR", help="default: in the package")
+    parser.add_argument(
+        "--out", type=Path, default=SHIPPED_FOLDER, metavar="DIR", help="default: in the package"
+    )
     arguments = parser.parse_args()
     try:
         files = compile_ahead(arguments.names, arguments.out)

@@ -95,7 +95,7 @@ def levelling(assembly: box.Assembly, plot: Path | None) -> None:
     joint = load_default("bolted_joint").values
     states = [(float(p), 0.0) for p in PRELOADS]
     found, even = (
-        box.frequencies(assembly, joint, states, count=1, uniform_pressure=e) for e in (False, True)
+        box.frequencies(assembly, joint, states, mode_count=1, uniform_pressure=e) for e in (False, True)
     )
     for preload, f, g in zip(PRELOADS, found[:, 0], even[:, 0], strict=True):
         print(f"{preload / 1e3:5.0f} kN: f1 {f:8.2f} Hz, with uniform pressure {g:8.2f} Hz")

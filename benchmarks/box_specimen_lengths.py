@@ -82,7 +82,7 @@ def frequencies(
     assembly: Assembly, joint: BoltedJoint, states: Sequence[tuple[float, float]], **options: Any
 ) -> Array:
     """As those of assembly_modes, with the joint's own shear."""
-    return modes.compute_frequencies(assembly, joint, float(joint.shear_ratio()), states, **options)
+    return modes.compute_frequencies(assembly, joint, float(joint.shear_stiffness_ratio()), states, **options)
 
 
 def identify(
@@ -103,7 +103,7 @@ def identify(
 
     def error(ratio: Array) -> Array:
         box = specimen(start, (ratio * first).tolist())
-        found = frequencies(box, joint, [(preload, 0.0)], refinement=refinement, count=measured.size)
+        found = frequencies(box, joint, [(preload, 0.0)], refinement=refinement, mode_count=measured.size)
         return np.asarray(found[0] / measured - 1.0)
 
     fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=trials)

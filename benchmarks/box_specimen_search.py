@@ -82,15 +82,15 @@ class Box:
 
     def pressure(self, joint: BoltedJoint, force: float) -> Array:
         """(q) [Pa] by the joint's decay around bolts of a force [N]."""
-        apart = self.interface.position[:, None, :] - self.bolts
+        apart = self.interface.quadrature_position[:, None, :] - self.bolts
         each = joint.pattern.pressure_decay(np.hypot(*np.moveaxis(apart, -1, 0)))
-        return np.asarray(np.sum(force * each / (self.interface.area @ each), axis=1))
+        return np.asarray(np.sum(force * each / (self.interface.quadrature_area @ each), axis=1))
 
     def springs(self, joint: BoltedJoint, force: float) -> tuple[Array, Array]:
         """Normal and tangential stiffness per area (q) [N/m3]."""
         pressure = np.maximum(self.pressure(joint, force), 1e4)
         normal = np.maximum(stiffness_curve(joint, pressure)[0], 1e3)
-        return normal, float(replace(joint, critical_area="continuity").shear_ratio()) * normal
+        return normal, float(replace(joint, critical_area="continuity").shear_stiffness_ratio()) * normal
 
     def modes(self, joint: BoltedJoint, force: float) -> NaturalModes:
         """Six modes of two such halves."""
@@ -101,11 +101,11 @@ class Box:
         normal, tangential = self.springs(joint, force)
         rows = [displacement_matrix(self.body, self.interface, axis) for axis in range(3)]
         values = []
-        for below, above in found.shape:
+        for below, above in found.mode_shapes:
             u, gap = above.ravel(), (below - above).ravel()
             opening = [row @ gap for row in rows]
             squares = tangential * (opening[0] ** 2 + opening[1] ** 2) + normal * opening[2] ** 2
-            energy = 2.0 * u @ (self.body.stiffness @ u) + self.interface.area @ squares
+            energy = 2.0 * u @ (self.body.stiffness @ u) + self.interface.quadrature_area @ squares
             values.append(energy / (2.0 * u @ (self.body.mass @ u)))
         return np.array(values)
 

@@ -36,7 +36,7 @@ def joints(structure, gap=None):
     """{law: the reduced beam on its sliders}, of plane faces or with a gap [m] at places x, y."""
     preload, found = data()["beam"]["preload"], {}
     for name, law in laws().items():
-        curve, shear = tabulate_approach(law), float(law.shear_ratio())
+        curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
         part = reduced(structure, curve, preload, shear, gap)
         found[name] = Joint(part, foundation(curve, shear, FRICTION))
     return found
@@ -44,7 +44,7 @@ def joints(structure, gap=None):
 
 def rubbing(joint, friction):
     """The same joint with another coefficient of friction [1]."""
-    return replace(joint, sliders=replace(joint.sliders, friction=friction))
+    return replace(joint, sliders=replace(joint.sliders, friction_coefficient=friction))
 
 
 def curves(joint):
@@ -64,7 +64,7 @@ def by_masing(joint, turns=TURNS):
 
 def linear(structure, found):
     """Frequencies of small motions."""
-    count = structure.interface.area.size
+    count = structure.interface.quadrature_area.size
     heading("Linear frequencies [Hz]", "interface", "f1", "f2", "f3")
     row("solid bar (Timoshenko)", f"{solid_bar(structure.beam):.1f}", "", "")
     glued = spectrum(structure, np.full((count, 3), GLUED))[0]
@@ -110,7 +110,7 @@ def meshes():
     for near, far, layers in ((4e-3, 6e-3, 2), (2.6e-3, 3.6e-3, 2), (2.6e-3, 3.6e-3, 3), (2.6e-3, 3.6e-3, 4)):
         structure = Structure.of(beam(), Fineness(near=near, far=far, layers=layers))
         normal = structure.tightened(tabulate_approach(law), preload).stiffness
-        springs = np.outer(normal, [law.shear_ratio(), law.shear_ratio(), 1.0])
+        springs = np.outer(normal, [law.shear_stiffness_ratio(), law.shear_stiffness_ratio(), 1.0])
         found = spectrum(structure, springs, 1)[0][0]
         row(f"{1e3 * near:g}", f"{1e3 * far:g}", layers, normal.size, f"{found:.2f}")
 
@@ -135,8 +135,11 @@ def main():
     """Print everything; `--images` draws the picture."""
     structure = Structure.of(beam(), Fineness())
     mass = sum(body.mass.sum() for body in structure.bodies) * 2.0 / 3.0
-    nodes = sum(body.size for body in structure.bodies) // 3
-    print(f"{mass:.3f} kg, {nodes} nodes and {structure.interface.area.size} patches in half the width")
+    nodes = sum(body.unknown_count for body in structure.bodies) // 3
+    print(
+        f"{mass:.3f} kg, {nodes} nodes and {structure.interface.quadrature_area.size} patches in half "
+        "the width"
+    )
     found = joints(structure)
     glued = linear(structure, found)
     ours, theirs = found["roughness"], rubbing(found["published"], data()["published"]["friction"])

@@ -21,7 +21,7 @@ import numpy as np
 from jointfmu_tools import cli
 from jointfmu_tools.export.placing import AXIS_ORDER
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.parameters import load_default
 

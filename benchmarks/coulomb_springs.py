@@ -43,7 +43,7 @@ class Springs:
         return np.diff(self.curve.derivatives(self.edges, 1)[1])
 
     @cached_property
-    def height(self) -> Array:
+    def heights(self) -> Array:
         """(n) [m] where the springs touch: p is right wherever a range is full."""
         load, slope = self.curve.derivatives(self.edges, 1)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
@@ -54,13 +54,13 @@ class Springs:
         """Forces (count, 2, n) [Pa] of springs that have not moved."""
         return np.zeros((count, 2, self.edges.size - 1))
 
-    def moved(self, force: Array, before: Array, after: Array, shift: Array) -> SliderUpdate:
+    def advance(self, force: Array, before: Array, after: Array, shift: Array) -> SliderUpdate:
         """After a short straight path from approaches (P) to others [m], by shifts (P, 2) [m].
 
         A spring sticks, or its force returns along itself to friction times what presses it; heat is force
         times slip. First order in the path where its direction or the approach changes.
         """
-        limit = self.friction * self.stiffness * np.maximum(after[:, None] - self.height, 0.0)
+        limit = self.friction * self.stiffness * np.maximum(after[:, None] - self.heights, 0.0)
         slope = self.ratio * np.where(limit > 0.0, self.stiffness, 0.0)
         trial = force + slope[:, None] * shift[:, :, None]
         size = np.hypot(trial[:, 0], trial[:, 1])

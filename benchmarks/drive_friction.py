@@ -31,7 +31,7 @@ def left_out():
     """Yields (drive, quantity, printed, Scaled from the others [N.m or 1])."""
     for name, drive in DRIVES.items():
         law = scale_friction(
-            drive.size, drive.ratio, [other for other in DRIVES.values() if other is not drive]
+            drive.drive_size, drive.ratio, tuple(other for other in DRIVES.values() if other is not drive)
         )
         yield name, "starting torque", drive.starting_torque, law.starting_torque
         if drive.running_torque is not None:

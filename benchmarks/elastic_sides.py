@@ -26,19 +26,18 @@ from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.fem.reduction.states import CellJoint, CellLoads
 from jointfmu_tools.fem.whole_joint import JointFiniteElements, LinearJoint
 from jointfmu_tools.host import Instance, open_instance, unpack_fmu
-from jointfmu_tools.joints.bolted_joint.new import NEW, computed
+from jointfmu_tools.joints.bolted_joint.new import NEW, plate_finite_elements
 from lap_beam_reduction import patches as one_each
 from numpy.typing import NDArray
 from patch_reduction import gross_slip, poles_inside
 from whole_joint import EXAMPLE
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
-from jointfmu.mechanics.footprint.patches import reduce_points
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import reduce_points
 from jointfmu.parameters import ParameterFile
 
 Array = NDArray[np.float64]
@@ -85,32 +84,35 @@ class Joint:
         elements : the contact has a point for each element in place of nine
         """
         seen: dict[str, object] = {}
-        real = computed.compute_joint
+        real = plate_finite_elements.compute_joint
 
         def watched(
-            file: ParameterFile, plates: computed.BoltedPlates, to: str, shape: PressureDistribution | None
-        ) -> computed.ComputedJoint:
+            file: ParameterFile,
+            plates: plate_finite_elements.BoltedPlates,
+            to: str,
+            shape: PressureDistribution | None,
+        ) -> plate_finite_elements.ComputedJoint:
             joint = JointFiniteElements.from_assembly(plates.make_assembly(file), to, refinement)
             if elements:
                 joint = replace(joint, interface=one_each(joint.interface))
-            springs = computed._interface_stiffness(file, plates.preload, joint, shape)
+            springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, shape)
             linear = joint.linearize(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
             if refinement != 1.0:
                 return real(file, plates, to, shape)
             with (  # the command's own finite elements are these
-                patch.object(JointFiniteElements, "of", lambda *_: joint),
-                patch.object(JointFiniteElements, "linear", lambda *_: linear),
+                patch.object(JointFiniteElements, "from_assembly", lambda *_: joint),
+                patch.object(JointFiniteElements, "linearize", lambda *_: linear),
             ):
                 return real(file, plates, to, shape)
 
-        computed.compute_joint = watched
+        plate_finite_elements.compute_joint = watched
         try:
             given = dict.fromkeys(option.name for option in NEW.options) | dict(example)
             given["attached"] = attached
             made = NEW.make_joint(given)
         finally:
-            computed.compute_joint = real
+            plate_finite_elements.compute_joint = real
         facts: dict[str, tuple[float, str, str]] = dict(made.facts)
         return cls(file=made.file, members=facts["member_stiffness"][0], **seen)  # type: ignore[arg-type]
 
@@ -123,7 +125,7 @@ class Joint:
         """Forces and moments (6) at which all slips, or the clamping force is lost."""
         values, spring = self.file.values, self.spring
         clamping = values.n_bolts * self.preload
-        radius = float(np.sqrt(spring.shape.share @ np.sum(spring.shape.position**2, axis=1)))
+        radius = float(np.sqrt(spring.points.area_share @ np.sum(spring.points.position**2, axis=1)))
         mu = values.mu
         return clamping * np.array([mu, mu, 1.0, radius, radius, mu * radius])
 
@@ -134,7 +136,7 @@ def along(
     """Forces and moments, or other outputs, on the way through motions (6) from rest."""
     memory, rows = spring.initial_history(), []
     for six in motions:
-        out, memory = spring.advance(preload, 0.0, RelativeDisplacement(six), (0.0,) * 6, memory)
+        out, memory = spring.advance(JointInputs(preload, 0.0, six), memory)
         rows.append(np.array([float(out[name]) for name in names]))
     return rows
 
@@ -150,7 +152,10 @@ def on_cells(joint: Joint, count: int) -> CellJoint:
     fine = reduce_points(pressure_distribution(joint.rigid.values.pattern), count)
     spring = BoltedJointSpring.of(joint.rigid.values).on_nodes(fine)
     at = joint.linear.joint.interface
-    bolts = joint.linear.joint.bolts - at.area @ at.position / at.area.sum()
+    bolts = (
+        joint.linear.joint.bolt_positions
+        - at.quadrature_area @ at.quadrature_position / at.quadrature_area.sum()
+    )
     return CellJoint.from_cells(
         CellLoads.from_joint(joint.linear.joint, spring, joint.normal), bolts, joint.preload
     )
@@ -175,7 +180,7 @@ def pole_deviations(spring: BoltedJointSpring, preload: float, count: int) -> Ar
     """(2) deviation of the force in gross slip about poles from that of all nodes as tightened, over the
     friction [1]: of 95 %, largest."""
     values, shape, found = spring.joint, pressure_distribution(spring.joint.pattern), []
-    friction = values.mu * values.A_0 * shape.share * preload_pressure(values, shape, preload, 0.0)
+    friction = values.mu * values.A_0 * shape.area_share * preload_pressure(values, shape, preload, 0.0)
     poles = poles_inside(shape, count)
     for (x, y), force in zip(poles, gross_slip(shape.as_patches(), friction, poles), strict=True):
         motions = [turn * np.array([y, -x, 0.0, 0.0, 0.0, 1.0]) for turn in TURNS]
@@ -194,13 +199,13 @@ def times(joint: Joint, folder: Path) -> None:
     jobs = {"elastic": joint.file, "rigid": joint.rigid}
     made = {}
     for name, file in jobs.items():
-        files = generate.sources("BoltedJoint", file)
-        library = compiler.libraries(
-            "BoltedJoint", files, compiler.exported(list(files), "3"), ["x86_64-linux"]
+        files = generate.generate_sources("BoltedJoint", file)
+        library = compiler.compile_libraries(
+            "BoltedJoint", files, compiler.select_units(list(files), "3"), ["x86_64-linux"]
         )
         (folder / f"{name}.so").write_bytes(library["x86_64-linux"])
         model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
-        made[name] = folder / f"{name}.so", generate.token(files), len(model.outputs)
+        made[name] = folder / f"{name}.so", generate.read_token(files), len(model.outputs)
         native_fmus.RANGES[name] = ranges
     for _ in range(native_fmus.ROUNDS):
         for name, rest in made.items():

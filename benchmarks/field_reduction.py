@@ -35,12 +35,12 @@ UNEVEN = 0.1
 def field(across: int, closed: float) -> ContactField:
     """The default frame with its pressure, uneven, open below `closed`."""
     joint = load_default("bolted_joint").values
-    bolts.CELLS_ACROSS = across
+    bolts.CELLS_ACROSS_FLANGE = across
     shape = bolt_pattern(joint).pressure_distribution()
     x = shape.position[:, 0]
     p = np.maximum(shape.preload_shape * (1.0 + UNEVEN * x / np.ptp(x)) - closed, 0.0)
-    p *= PRELOAD * joint.n_bolts / joint.A_0 / (shape.share @ p)
-    return ContactField(shape.share * joint.A_0, shape.position, p)
+    p *= PRELOAD * joint.n_bolts / joint.A_0 / (shape.area_share @ p)
+    return ContactField(shape.area_share * joint.A_0, shape.position, p)
 
 
 def main() -> None:
@@ -64,7 +64,7 @@ def main() -> None:
             part = float(np.mean(one.pressure == 0.0))
             times = f"{took:.1f} | {whole:.1f}"
             print(
-                f"| {found.node_count} | {part:.0%} | {found.point_count} | {found.deviation:.1e} | "
+                f"| {found.node_count} | {part:.0%} | {found.point_count} | {found.largest_deviation:.1e} | "
                 f"{times} |",
                 flush=True,
             )

@@ -62,7 +62,7 @@ def meshes(assembly: Assembly) -> None:
         start, cpu = time.perf_counter(), time.process_time()
         joint = BoltedContact.from_assembly(one)
         solution = joint.solve(law(one), PRELOAD)
-        steps = solution.contact.steps
+        steps = solution.contact.newton_steps
         seconds, cpu = time.perf_counter() - start, time.process_time() - cpu
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
         unknowns = sum(body.unknown_count for body in joint.bodies)
@@ -71,14 +71,14 @@ def meshes(assembly: Assembly) -> None:
         start = time.process_time()
         steps = solution.solve_load_case(
             PRELOAD, DEFAULT_MOMENT_RATIO * one.max_moment(PRELOAD)
-        ).contact.steps
+        ).contact.newton_steps
         print(f"with a moment, from there: {time.process_time() - start:.1f} s, {steps} steps", flush=True)
     rows, _ = convergence.run_mesh_study(
-        assembly, law(assembly), PRELOAD, 0.0, convergence.refinements(MESHES)
+        assembly, law(assembly), PRELOAD, 0.0, convergence.refinement_series(MESHES)
     )
     for row in rows:
-        values = "  ".join(f"{name} {row.values[name]:.6g}" for name in convergence.RESULT_UNITS)
-        print(f"refinement {row.refinement:.2f}, {row.unknowns} unknowns: {values}")
+        values = "  ".join(f"{name} {row.result_values[name]:.6g}" for name in convergence.RESULT_UNITS)
+        print(f"refinement {row.refinement:.2f}, {row.unknown_count} unknowns: {values}")
     for change in convergence.relative_changes(rows):
         print(
             "change [%]:", "  ".join(f"{name} {100 * change[name]:.3f}" for name in convergence.RESULT_UNITS)
@@ -161,7 +161,9 @@ def solvers(assembly: Assembly) -> None:
     basis = Basis(body.mesh, ElementVector(ElementHexS2()), intorder=4)
     theirs = timed("the same by scikit-fem's loop", lambda: form.assemble(basis))
     print(f"largest difference {abs(ours - theirs).max() / abs(theirs).max():.1e}")
-    springs = displacement_matrix(body, joint.interface).T @ sp.diags_array(joint.interface.area * 3e11)
+    springs = displacement_matrix(body, joint.interface).T @ sp.diags_array(
+        joint.interface.quadrature_area * 3e11
+    )
     matrix = (
         ours + springs @ displacement_matrix(body, joint.interface) + 1e5 * sp.eye_array(body.unknown_count)
     ).tocsc()

@@ -106,7 +106,7 @@ CASES = {
 def errors(case, seed, folder):
     """{name: (relative error, the same in standard deviations)} of one seed."""
     outcome, true = case(np.random.default_rng(seed), Path(folder) / "measured.csv")
-    found, deviations = outcome.solution.values, outcome.solution.deviations
+    found, deviations = outcome.solution.values, outcome.solution.relative_deviations
     logs = {name: float(np.log(found[name] / true[name])) for name in found}
     return {name: (error, error / deviations[name]) for name, error in logs.items()}
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from patch_reduction import pole_deviations
 from scipy.optimize import brentq
 
-from jointfmu.joints.bolted_joint import spring as spring_
+from jointfmu.joints.bolted_joint import joint as joint_
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics import sliders as sliders_
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.parameters import load_default
@@ -55,18 +55,20 @@ class Theorem:
         """Tightened."""
         shape = pressure_distribution(spring.joint.pattern)
         return cls(
-            spring, shape.share, spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
+            spring,
+            shape.area_share,
+            spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment)),
         )
 
     def force(self, along: float) -> float:
         """Per area [Pa], at a displacement [m] from rest."""
-        law = self.spring.foundation()
+        law = self.spring.friction.foundation()
         return float(self.share @ law.virgin_traction(self.approach, along))
 
     @property
     def gross(self) -> float:
         """Displacement [m] from which on all of it slips."""
-        law = self.spring.foundation()
+        law = self.spring.friction.foundation()
         return float(
             law.friction_coefficient
             * (np.max(self.approach) - self.spring.curve.displacement[0])
@@ -80,7 +82,7 @@ class Theorem:
 
     def area(self, size: float) -> float:
         """Loss of a loop of an amplitude [m], per area [J/m2]."""
-        return float(self.share @ self.spring.foundation().cycle_energies(self.approach, size)[0])
+        return float(self.share @ self.spring.friction.foundation().cycle_energies(self.approach, size)[0])
 
 
 def deviations(
@@ -93,14 +95,14 @@ def deviations(
     theorem, patches = Theorem.of(spring, preload, moment), spring.patches
     approach = spring.curve.inverse(preload_pressure(spring.joint, patches, preload, moment))
     before = spring.curve.inverse(preload_pressure(spring.joint, patches, first * preload, first * moment))
-    law = spring.foundation(before)
+    law = spring.friction.foundation(before)
 
     def along(*ways: float) -> tuple[float, float]:
         force, loss = law.virgin_forces(approach.size), 0.0
         for way in ways:
             moved = law.advance(force, approach, approach, np.tile([way, 0.0], (approach.size, 1)))
-            force, loss = moved.force, float(patches.share @ moved.loss)
-        return float(patches.share @ moved.traction[:, 0]), loss
+            force, loss = moved.force, float(patches.area_share @ moved.dissipated_energy)
+        return float(patches.area_share @ moved.traction[:, 0]), loss
 
     ways, limit = np.linspace(0.0, theorem.gross, ALONG + 1)[1:], theorem.force(theorem.gross)
     worst = max(abs(along(u)[0] - theorem.force(u)) for u in ways.tolist()) / limit
@@ -126,7 +128,11 @@ def print_counts() -> None:
         found = [deviations(spring, preload, moment) for preload in PRELOADS for moment in MOMENTS]
         cells = [f"{x:.1%}" for x in np.max([a for _, a in found], axis=0)]
         poles = "{:.1%}, {:.1%}".format(*pole_deviations(shape, spring.patches))
-        row = [str(counts[0]), str(spring.foundation().slider_count), f"{max(f for f, _ in found):.2%}"]
+        row = [
+            str(counts[0]),
+            str(spring.friction.foundation().slider_count),
+            f"{max(f for f, _ in found):.2%}",
+        ]
         print("| " + " | ".join([*row, *cells, poles]) + " |", flush=True)
     use(*COUNTS[0])
     print()
@@ -134,8 +140,8 @@ def print_counts() -> None:
 
 def use(patches: int, below: int, above: int) -> None:
     """Joints from now on have so many patches and heights."""
-    spring_.MAX_PATCHES, sliders_.HEIGHTS_BELOW, sliders_.HEIGHTS_ABOVE = patches, below, above
-    spring_.friction_patches_of.cache_clear()
+    joint_.MAX_PATCHES, sliders_.HEIGHTS_BELOW, sliders_.HEIGHTS_ABOVE = patches, below, above
+    joint_.friction_patches_of.cache_clear()
 
 
 def main() -> None:
@@ -149,7 +155,10 @@ def main() -> None:
             areas = np.max([a for _, a in found], axis=0)
             cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
             print("| " + " | ".join([name, f"{first:g}", *cells]) + " |", flush=True)
-    print(f"{spring.patches.share.size} patches, {spring.foundation().slider_count} sliders each\n")
+    print(
+        f"{spring.patches.area_share.size} patches, {spring.friction.foundation().slider_count} "
+        "sliders each\n"
+    )
     print_counts()
     print_swings()
 
@@ -157,14 +166,14 @@ def main() -> None:
 def print_swings() -> None:
     """Shear of the default joint at a shift that stays, while the normal force swings: over the first one."""
     spring = BoltedJointSpring.of(load_default("bolted_joint").values)
-    share, whole = spring.patches.share, spring.foundation()
+    share, whole = spring.patches.area_share, spring.friction.foundation()
     start = spring.curve.inverse(preload_pressure(spring.joint, spring.patches, SWUNG, 0.0))
 
     def load(apart: float) -> float:
         return float(share @ spring.curve.derivatives(start - apart, 0)[0])
 
     apart = brentq(lambda x: load(x) - (1.0 - SWING) * load(0.0), 0.0, float(np.ptp(start)) + 1e-6)
-    low, sliders = start - apart, spring.foundation(start)
+    low, sliders = start - apart, spring.friction.foundation(start)
     print("| shear over friction | by the theorem | " + " | ".join(f"{n} cycles" for n in CYCLES) + " |")
     print("|---" * (2 + len(CYCLES)) + "|")
     for part in (0.5, 0.7, 0.9):
@@ -177,7 +186,9 @@ def print_swings() -> None:
         for cycle in range(1, CYCLES[-1] + 1):
             for before, after in ((start, low), (low, start)):
                 lowest = np.minimum(lowest, before)
-                moved = spring.foundation(start, lowest).advance(moved.force, before, after, 0.0 * along)
+                moved = spring.friction.foundation(start, lowest).advance(
+                    moved.force, before, after, 0.0 * along
+                )
             if cycle in CYCLES:
                 found.append(share @ moved.traction[:, 0] / first)
         print(f"| {part:g} | {exact:.4f} | " + " | ".join(f"{x:.4f}" for x in found) + " |", flush=True)

@@ -151,7 +151,7 @@ def walk(
         loss = 0.0
         for a, b in pairwise(np.linspace(start, end, steps + 1)):
             moved = sliders.advance(now, a[0], b[0], b[1:] - a[1:])
-            now, loss = moved.force, loss + float(moved.loss)
+            now, loss = moved.force, loss + float(moved.dissipated_energy)
         tractions.append(moved.traction)
         losses.append(loss)
     return np.array(tractions), np.array(losses), now

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("core", "fmu_src", "tools")
 CODE = {".py", ".c", ".h", ".js"}
 JOINTS = sorted(
-    path.name for path in (ROOT / "core/jointfmu/joints").iterdir() if (path / "spring.py").exists()
+    path.name for path in (ROOT / "core/jointfmu/joints").iterdir() if (path / "__init__.py").exists()
 )
 
 

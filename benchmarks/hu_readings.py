@@ -11,7 +11,7 @@ import numpy as np
 from jointfmu_tools.published.reference import read_points
 from scipy.optimize import brentq
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.harmonic_drive.law import drive_stiffness, pair_stiffness
 from jointfmu.parameters import load_default
 
@@ -103,7 +103,7 @@ def over_area():
     print("r_m [um]   K_N [N/m] of the pair at the mean pressure of 5 N.m")
     for r_m in (250e-6, 10e-6, 2e-6, 1e-6, 0.95e-6, 0.9e-6):
         law = replace(drive.law, surface=replace(drive.surface, r_m=r_m))
-        print(f"{r_m * 1e6:8.2f} {at_pressure(law, MEAN_OVER_PEAK * PEAK)['K_N']:11.3g}")
+        print(f"{r_m * 1e6:8.2f} {evaluate_at_pressure(law, MEAN_OVER_PEAK * PEAK)['K_N']:11.3g}")
 
 
 def growth(exponent):

@@ -7,7 +7,7 @@ from band_of_waves import periodic
 from boundary_element import bonded, press, refined, slope
 from jointfmu_tools.fractal import areal_roughness
 
-from jointfmu.contact.interface import at_pressure, solve_largest_spot, stiffness_curve
+from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot, stiffness_curve
 from jointfmu.contact.laws import yu2022
 from jointfmu.contact.surface import contact_modulus
 from jointfmu.parameters import load_default
@@ -116,13 +116,15 @@ def law_state(case, side):
     """The law on the same nominal area: k [N/m3], area and plastic share of the real area [1]."""
     law = case.on(side)
     u = solve_largest_spot(law, case.pressures)
-    s, state = law.spots(), at_pressure(law, case.pressures)
+    s, state = law.spots(), evaluate_at_pressure(law, case.pressures)
     if "elastic_fraction" in state:
         elastic = state["elastic_fraction"]
-    elif "elastic_area" in s.terms:
+    elif "elastic_area" in s.regime_terms:
         elastic = s.total("elastic_area", u) / s.total("area", u)
     else:  # Zhao: the second term of the area is that of the elastic spots
-        elastic = replace(s, terms={"area": s.terms["area"][1:]}).total("area", u) / s.total("area", u)
+        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).total("area", u) / s.total(
+            "area", u
+        )
     return {
         "k": stiffness_curve(law, case.pressures)[0],
         "area": state["A_r"] / law.A_0,

@@ -77,7 +77,9 @@ class Joint:
             residual = (moved - given).ravel() + weighted @ extra.ravel()
             if np.abs(residual).max() <= TOLERANCE * max(np.abs(moved).max(), 1e-15):
                 q = (load - 2.0 * np.sum(beam.shape * beam.area[:, None] * extra)) / self.square
-                return State(load, float(q), moved, sliders.force, float(2.0 * beam.area @ sliders.loss))
+                return State(
+                    load, float(q), moved, sliders.force, float(2.0 * beam.area @ sliders.dissipated_energy)
+                )
             size, short = np.linalg.norm(residual), np.abs(step).max() < SHORT * np.abs(moved).max()
             if size < last or short:
                 base, step, last = moved, -self._step(weighted, tangent, residual), size

@@ -69,7 +69,7 @@ class Structure:
         slides = 3 * _ends(self.bodies[1])[0]
         held = (np.union1d(first, pins(self.bodies[0])), np.union1d(second, slides))
         model = ContactModel(self.bodies, self.interface, law, gap, fixed_unknowns=held)
-        area = self.interface.area.sum()
+        area = self.interface.quadrature_area.sum()
         return model.solve(loads, 0.5 * preload * len(heads) / area)
 
     def stiffness(self, springs):
@@ -77,7 +77,7 @@ class Structure:
         total = sp.block_diag([body.stiffness for body in self.bodies], format="csr") + self.bolts
         for axis in AXES:
             opening = self.relative(axis)
-            total = total + opening.T @ sp.diags(self.interface.area * springs[:, axis]) @ opening
+            total = total + opening.T @ sp.diags(self.interface.quadrature_area * springs[:, axis]) @ opening
         return total.tocsr()
 
 
@@ -98,15 +98,15 @@ def patches(interface):
     """One point for each element of a contact: mean displacement, area and centroid."""
     count, points = interface.basis.dx.shape
     rows = np.repeat(np.arange(count), points)
-    share = sp.csr_matrix((interface.area, (rows, np.arange(rows.size))), shape=(count, rows.size))
+    share = sp.csr_matrix((interface.quadrature_area, (rows, np.arange(rows.size))), shape=(count, rows.size))
     area = np.asarray(share.sum(axis=1)).ravel()
     mean = sp.diags(1.0 / area) @ share
     return Interface(
         interface.basis,
         interface.nodes,
-        (mean @ interface.interpolation).tocsr(),
+        (mean @ interface.interpolation_matrix).tocsr(),
         area,
-        mean @ interface.position,
+        mean @ interface.quadrature_position,
     )
 
 
@@ -148,7 +148,7 @@ def spectrum(structure, springs, count=3):
     inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
     start = np.random.default_rng(1).standard_normal(free.size)
     squares, shapes = eigsh(stiffness, k=RIGID + count, M=mass, sigma=shift, OPinv=inverse, v0=start)
-    whole = np.zeros((sum(b.size for b in structure.bodies), count))
+    whole = np.zeros((sum(b.unknown_count for b in structure.bodies), count))
     order = np.argsort(squares)[RIGID:]
     whole[free] = shapes[:, order] / np.sqrt(2.0)
     return np.sqrt(np.maximum(squares[order], 0.0)) / (2.0 * np.pi), whole
@@ -157,8 +157,10 @@ def spectrum(structure, springs, count=3):
 def _free(structure):
     """Unknowns of both bodies that the plane of symmetry leaves free."""
     first, second = structure.symmetric
-    size = structure.bodies[0].size
-    return np.setdiff1d(np.arange(size + structure.bodies[1].size), np.concatenate([first, second + size]))
+    size = structure.bodies[0].unknown_count
+    return np.setdiff1d(
+        np.arange(size + structure.bodies[1].unknown_count), np.concatenate([first, second + size])
+    )
 
 
 def reduced(structure, law, preload, shear, gap=None):
@@ -175,7 +177,16 @@ def reduced(structure, law, preload, shear, gap=None):
     compliance = _compliance(structure, springs)
     at = structure.interface
     tip = float(shape[_tip(structure)])
-    return Reduced(frequencies, tip, solution.approach, springs, at.area, at.position, motion, compliance)
+    return Reduced(
+        frequencies,
+        tip,
+        solution.approach,
+        springs,
+        at.quadrature_area,
+        at.quadrature_position,
+        motion,
+        compliance,
+    )
 
 
 def _tip(structure):

@@ -43,4 +43,4 @@ def _disc(body, facets, at):
         np.concatenate([zero, zero + 1, zero + 2]),
         np.concatenate([3 * nodes, 3 * nodes + 2, 3 * nodes + 2]),
     )
-    return sp.csr_matrix((np.concatenate([share, turn, share]), index), shape=(3, body.size))
+    return sp.csr_matrix((np.concatenate([share, turn, share]), index), shape=(3, body.unknown_count))

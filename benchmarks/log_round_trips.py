@@ -147,8 +147,8 @@ def trips(make, options, seeds):
         for label in fit.solution.values:
             errors, held = found.setdefault(label, ([], []))
             errors.append(fit.parameters.values_by_name[label] / TRUE[label] - 1.0)
-            if label in fit.intervals:
-                low, high = fit.intervals[label]
+            if label in fit.confidence_intervals:
+                low, high = fit.confidence_intervals[label]
                 held.append(low <= TRUE[label] <= high)
     return found, fit
 

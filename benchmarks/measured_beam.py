@@ -58,7 +58,7 @@ def predicted(one, preload, friction, Ra, modulus, height):
     known, entries = measured("measured_beam"), data()
     one = replace(one, E=modulus)
     law = joint_law({"E": modulus, "nu": one.nu, "A_0": entries["A_0"], "Rq": 1.25 * Ra}, H=entries["H"])
-    curve, shear = tabulate_approach(law), float(law.shear_ratio())
+    curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
     part = reduced(Structure.of(one, MESH), curve, preload, shear, crown(height, one.lap))
     joint = Joint(part, foundation(curve, shear, friction))
     states = joint.backbone(AMPLITUDES)

@@ -6,9 +6,9 @@ from importlib.resources import files
 
 import numpy as np
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws.roughness import RoughnessLaw
-from jointfmu.contact.surface import Elastic
+from jointfmu.contact.surface import ElasticConstants
 
 HARDNESS, SLOPE, FRICTION = 2e9, 0.15, 0.15
 """[Pa, 1, 1] of the joints: no stiffness of small motions depends on them."""
@@ -26,7 +26,7 @@ def measured(name="measured_joints"):
 
 def joint_law(joint, **changes):
     """The law for an entry of models/reference with the roughness `Rq` of each of its two sides."""
-    body = Elastic(E=joint["E"], nu=joint["nu"])
+    body = ElasticConstants(E=joint["E"], nu=joint["nu"])
     law = RoughnessLaw(
         h=np.sqrt(2.0) * joint["Rq"],
         gamma=GAMMA,
@@ -45,4 +45,4 @@ def joint_law(joint, **changes):
 
 def level(law, p):
     """Stiffness per area [N/m3] of a law at pressures [Pa]."""
-    return at_pressure(law, p)["K_N"] / law.A_0
+    return evaluate_at_pressure(law, p)["K_N"] / law.A_0

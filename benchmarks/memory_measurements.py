@@ -52,7 +52,7 @@ def decay(law, inertia, amplitude, periods=60, steps=500, kept=25):
     """Time and motion of a body let go at an amplitude that first loading has reached, by velocity Verlet."""
     grid = np.linspace(0.0, 1.1 * amplitude, 4001)
     friction = law.friction(grid)
-    elastic = law.elastic.force(grid) if law.elastic else 0.0 * grid
+    elastic = law.elastic_spring.force(grid) if law.elastic_spring else 0.0 * grid
     stiffness = (friction[1] + elastic[1]) / grid[1]
     h = 2.0 * np.pi * np.sqrt(inertia / stiffness) / steps
     turn, held = amplitude, friction[-1] if amplitude > grid[-1] else np.interp(amplitude, grid, friction)
@@ -62,7 +62,7 @@ def decay(law, inertia, amplitude, periods=60, steps=500, kept=25):
 
     def rate(x, v):
         pull = memory(x) + np.copysign(np.interp(abs(x), grid, elastic), x)
-        return -(pull + law.viscous * v) / inertia
+        return -(pull + law.viscous_damping * v) / inertia
 
     x, v, a, motion = amplitude, 0.0, rate(amplitude, 0.0), [amplitude]
     for k in range(1, periods * steps + 1):

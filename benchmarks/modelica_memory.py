@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
 from validity_tables import heading, row
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.drive import kinematic_error
 from jointfmu.joints.harmonic_drive.friction import LIMIT_SHARES, friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted_torque, wind_up
@@ -47,7 +47,7 @@ class Drive:
         self.brakes, self.turns = LIMIT_SHARES.size if friction else 0, turns
         joint = self.law.joint
         self.most = LAYER * max(friction_limits(joint, 0.0, joint.rated_torque)) * LIMIT_SHARES[: self.brakes]
-        self.held, self.place = np.zeros(self.law.hysteresis.limit.size), 0.0
+        self.held, self.place = np.zeros(self.law.hysteresis.friction_limit.size), 0.0
 
     def seen(self, x):
         """Wind-up [rad], slope of the error, its rate [rad/s]."""
@@ -57,13 +57,19 @@ class Drive:
     def hysteresis(self, phi):
         """Torques of its sliders [N.m] from the last turn on."""
         found = self.law.hysteresis
-        return np.clip(self.held + found.stiffness * (phi - self.place), -found.limit, found.limit)
+        return np.clip(
+            self.held + found.stiffness * (phi - self.place), -found.friction_limit, found.friction_limit
+        )
 
     def rates(self, t, x):
         joint, found = self.law.joint, self.law.hysteresis
         phi, slope, rise = self.seen(x)
         states = x[4 + self.brakes :]
-        held = self.hysteresis(phi) if self.turns else np.clip(states, -found.limit, found.limit)
+        held = (
+            self.hysteresis(phi)
+            if self.turns
+            else np.clip(states, -found.friction_limit, found.friction_limit)
+        )
         load = math.copysign(float(self.law.curve.derivatives(np.array(abs(phi)), 0)[0]), phi)
         tau = transmitted_torque(joint, x[:4], Spring(phi, load, 0.0, held.sum(), 0.0, slope))
         positive, negative = friction_limits(joint, x[1], tau)
@@ -77,7 +83,7 @@ class Drive:
         own = [x[1], torque / MOTOR, x[3], -(tau + WEIGHT * math.sin(x[2])) / LINK]
         if self.turns:
             return np.concatenate([own, rate])
-        slipped = abs(rise) * (states - held) / (LAYER * found.limit)
+        slipped = abs(rise) * (states - held) / (LAYER * found.friction_limit)
         return np.concatenate([own, rate, found.stiffness * (rise - slipped)])
 
     def run(self, tolerance):
@@ -116,11 +122,11 @@ class Bolted:
     def __init__(self, kept):
         spring = BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
         found = combine_nodes(spring, 9e3, 0.0)
-        rows, self.kept, self.tight = found.table.rows, kept, found.force
+        rows, self.kept, self.tight = found.force_table.rows, kept, found.preload_contact_force
         self.load = BPoly.from_derivatives(rows[:, 0], rows[:, 1:4])
         self.curve = [self.load, self.load.derivative(), self.load.derivative(2)]
         self.shear, self.mu, self.heights = found.shear_ratio, spring.joint.mu, found.pair_boundaries
-        self.K, self.Q = found.sliders.T
+        self.K, self.Q = found.slider_properties.T
         stiff = float(self.curve[1](0.0))
         self.reach = np.array([self.mu / self.shear, self.mu / self.shear, 1.0]) * self.tight / stiff
         self.rate = np.sqrt(stiff * np.array([self.shear, self.shear, 1.0]) / MASS)
@@ -167,10 +173,8 @@ class Bolted:
         else:
             q = x[6:].reshape(2, -1)
             K, Q, K_rate, Q_rate = self.sliders(-s[2], -v[2])
-            stuck, size = (
-                K * v[:2, None] + np.where(K_rate < 0.0, q * K_rate / np.maximum(K, 1.0), 0.0),
-                np.hypot(*q),
-            )
+            stuck = K * v[:2, None] + np.where(K_rate < 0.0, q * K_rate / np.maximum(K, 1.0), 0.0)
+            size = np.hypot(*q)
             along = np.sum(q * stuck, axis=0) / np.maximum(size, 1e-60)
             layer = np.clip((size - Q) / (LAYER * Q + 1e-9), 0.0, 1.0)
             more = stuck - layer * np.maximum(along - Q_rate, 0.0) * q / np.maximum(size, 1e-60)

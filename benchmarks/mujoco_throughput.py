@@ -19,7 +19,7 @@ import mujoco
 import numpy as np
 from jointfmu_tools.interface import drive
 from jointfmu_tools.robots import elastic, plugged
-from jointfmu_tools.robots.transmission import transmission
+from jointfmu_tools.robots.transmission import make_transmission
 from mujoco import rollout
 
 ROBOT = Path(__file__).parents[1] / "models/robots/six_axis.xml"
@@ -39,15 +39,15 @@ def models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
         spec.delete(actuator)
     stated = {} if hysteresis is None else {"hysteresis": hysteresis}
     files = {f"joint{i}": drive(size, **stated).file for i, size in enumerate(SIZES, 1)}
-    axes = elastic.axes(spec, {joint: transmission(file) for joint, file in files.items()})
-    for library in plugged.plugins(files, folder).values():
+    axes = elastic.make_axes(spec, {joint: make_transmission(file) for joint, file in files.items()})
+    for library in plugged.compile_plugins(files, folder).values():
         mujoco.mj_loadPluginLibrary(str(library))
-    rough, smooth = spec.copy(), elastic.with_drives(spec, axes)
+    rough, smooth = spec.copy(), elastic.add_drives(spec, axes)
     for axis in axes:
-        rough.joint(axis.joint).frictionloss = axis.drive.dry * abs(axis.drive.ratio)
+        rough.joint(axis.joint).frictionloss = axis.drive.dry_friction * abs(axis.drive.ratio)
     for actuator in [*smooth.actuators]:
         smooth.delete(actuator)
-    plain = elastic.with_drives(spec, axes).compile()
+    plain = elastic.add_drives(spec, axes).compile()
     implicit = copy(plain)
     implicit.opt.disableflags = 0
     return {
@@ -56,7 +56,7 @@ def models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
         "plain": plain,
         "plain, implicit": implicit,
         "plain, no friction": smooth.compile(),
-        "plugin": mujoco.MjModel.from_xml_string(plugged.text(spec, axes, files)),
+        "plugin": mujoco.MjModel.from_xml_string(plugged.format_plugin_robot(spec, axes, files)),
     }
 
 

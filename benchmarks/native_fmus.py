@@ -29,7 +29,7 @@ from jointfmu_fmu_src.native import data
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_fmu_src.native.compiled.binary import fill_library
-from jointfmu_fmu_src.native.compiled.kept import compiled_model
+from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
 from jointfmu_tools.host import Instance
 
 from jointfmu.joints import MODELS
@@ -113,7 +113,11 @@ def trajectories(name: str) -> dict[str, np.ndarray]:
 def pass_through(name: str) -> dict[str, str]:
     """C sources of an FMU that passes its inputs on."""
     inputs, outputs = PASS_THROUGH[name]
-    paths = [p for p in generate.runtime() if p.parent.name != "fmi" or p.stem in (*NATIVE, "fmi_common")]
+    paths = [
+        p
+        for p in generate.list_runtime_files()
+        if p.parent.name != "fmi" or p.stem in (*NATIVE, "fmi_common")
+    ]
     files = {p.name: p.read_text(encoding="utf-8") for p in paths}
     rows = [
         "time",
@@ -122,11 +126,11 @@ def pass_through(name: str) -> dict[str, str]:
     ]
     any_number = '"1", "", "(-inf, inf)"'
     texts = [f'{{"{v}", {any_number}, -INFINITY, INFINITY, 1, 1, 0, 0}}' for v in (*rows, "gain")]
-    own = data.block(name, f"{{{name}}}", [*(0.0 for _ in rows), 1.0])
+    own = data.make_data_block(name, f"{{{name}}}", [*(0.0 for _ in rows), 1.0])
     return files | {
         "joint.c": (HOSTS / "passthrough" / "joint.c").read_text(encoding="utf-8"),
-        "data.h": own.header(),
-        "data.c": own.source(),
+        "data.h": own.make_header(),
+        "data.c": own.make_source(),
         "model.h": f"enum {{ N_INPUTS = {inputs}, N_OUTPUTS = {outputs}, N_PARAMETERS = 1 }};\n",
         "variables.c": '#include "variables.h"\n\n#include <math.h>\n\n'
         f"const Variable variables[N_VALUES] = {{{', '.join(texts)}}};\n"
@@ -146,9 +150,9 @@ def as_built(name: str) -> Linked:
     own, changes = OTHERS.get(name, (name, {}))
     file = load_default(MODELS[own].joint).with_values(changes, "user", "benchmark")
     model = MODELS[own].with_parameters(file.joint, file.values)
-    given = data.split(model, file)
-    part, before = compiled_model(model, file, given), data.placeholder(model, given)
-    after = data.data_of(model, file, given, part.sources)
+    given = data.split_parameters(model, file)
+    part, before = get_compiled_model(model, file, given), data.make_placeholder(model, given)
+    after = data.make_fmu_data(model, file, given, part.sources)
     made = {f: fill_library(part.libraries[f[-1]][PLATFORM], before, after, own) for f in NATIVE}
     return Linked(made, after.token)
 
@@ -156,9 +160,9 @@ def as_built(name: str) -> Linked:
 def as_compiled(name: str) -> Linked:
     """Of an FMU that passes its inputs on."""
     files = pass_through(name)
-    units = {flavour: compiler.exported(list(files), flavour[-1]) for flavour in NATIVE}
-    made = {f: compiler.libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
-    return Linked(made, generate.token(files))
+    units = {flavour: compiler.select_units(list(files), flavour[-1]) for flavour in NATIVE}
+    made = {f: compiler.compile_libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
+    return Linked(made, generate.read_token(files))
 
 
 def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:

@@ -12,16 +12,16 @@ from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from jointfmu.joints.bolted_joint.contact import patch_displacement
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.kinematics import tangential_displacement
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
-from jointfmu.mechanics.footprint.friction import reduce_patches
-from jointfmu.mechanics.footprint.patches import reduce_points
+from jointfmu.mechanics.footprint.distribution import FrictionPatches, NodalField, PressureDistribution
+from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import FrictionPatches, NodalField, PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import reduce_points
 from jointfmu.mechanics.jenkins import SliderUpdate
-from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, resultant, torsion_directions
+from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, sum_slider_forces, torsion_directions
 from jointfmu.parameters import load_default
 
 Array = NDArray[np.float64]
@@ -142,8 +142,8 @@ def sums(
     x, y = x / reach[0], y / reach[1]
     factors = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y])
     values = [np.concatenate([p * factors[:3], k * factors]) for p, k in (now, curve.derivatives(start))]
-    sizes = [np.abs(each) @ shape.share for each in values]
-    return values[0] @ shape.share, np.maximum(*sizes)
+    sizes = [np.abs(each) @ shape.area_share for each in values]
+    return values[0] @ shape.area_share, np.maximum(*sizes)
 
 
 def field() -> PressureDistribution:
@@ -230,15 +230,16 @@ def friction(
     The joint's sliders, or fine ones, stand on a shape under the preload; `largest` [m] is the largest
     approach, over which the ways and the tilt are.
     """
-    ratio = float(spring.joint.shear_ratio())
+    ratio = float(spring.joint.shear_stiffness_ratio())
     patches = shape if isinstance(shape, FrictionPatches) else shape.as_patches()
-    gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1) + shape.share @ patches.radius**2)
+    gyration = np.sqrt(
+        shape.area_share @ np.sum(shape.position**2, axis=1) + shape.area_share @ patches.radius**2
+    )
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * shape.position[:, 0] / gyration
-    along = patch_displacement(
-        patches, np.array([0.0, np.sqrt(1.0 - motion.turn**2), motion.turn / gyration])
-    )
-    sliders = spring.on_nodes(shape).foundation(start)
+    q = np.array([0.0, np.sqrt(1.0 - motion.turn**2), 0.0, 0.0, 0.0, motion.turn / gyration])
+    along = tangential_displacement(patches, q)
+    sliders = spring.on_nodes(shape).friction.foundation(start)
     if fine:
         sliders = at_levels(spring.curve, ratio, spring.joint.mu, FINE)
     gross = spring.joint.mu / ratio * largest * along
@@ -247,20 +248,24 @@ def friction(
         return sliders.advance(force, approach, approach, way * gross)
 
     rest, losses = sliders.virgin_forces(approach.size), []
-    forces = [shape.share @ np.sum(resultant(moved(rest, way).force) * along, axis=1) for way in WAYS]
+    forces = [
+        shape.area_share @ np.sum(sum_slider_forces(moved(rest, way).force) * along, axis=1) for way in WAYS
+    ]
     for size in AMPLITUDES:
         back = moved(moved(rest, size).force, -2.0 * size)
-        losses.append(shape.share @ (back.loss + moved(back.force, 2.0 * size).loss))
+        losses.append(
+            shape.area_share @ (back.dissipated_energy + moved(back.force, 2.0 * size).dissipated_energy)
+        )
     return np.array(forces), np.array(losses)
 
 
 def poles_inside(shape: PressureDistribution, count: int) -> Array:
     """Places (count, 2) [m] at random nodes of a contact, and beside them."""
     rng = np.random.default_rng(1)
-    poles = shape.position[rng.choice(shape.share.size, count, p=shape.share)]
-    return poles + 0.5 * np.sqrt(np.prod(np.ptp(shape.position, axis=0)) / shape.share.size) * rng.uniform(
-        -1.0, 1.0, poles.shape
-    )
+    poles = shape.position[rng.choice(shape.area_share.size, count, p=shape.area_share)]
+    return poles + 0.5 * np.sqrt(
+        np.prod(np.ptp(shape.position, axis=0)) / shape.area_share.size
+    ) * rng.uniform(-1.0, 1.0, poles.shape)
 
 
 def gross_slip(points: FrictionPatches, friction: Array, poles: Array) -> Array:
@@ -277,7 +282,7 @@ def pole_deviations(shape: PressureDistribution, patches: FrictionPatches) -> Ar
     95 %, largest."""
     poles = poles_inside(shape, POLES)
     both = (
-        gross_slip(points, points.share * points.preload_shape, poles)
+        gross_slip(points, points.area_share * points.preload_shape, poles)
         for points in (shape.as_patches(), patches)
     )
     off = np.linalg.norm(np.subtract(*both), axis=1)
@@ -317,7 +322,7 @@ def print_normal(spring: BoltedJointSpring) -> None:
                 )
                 for states in ranges(opening_moment(shape)).values()
             ]
-            row = [name, str(shape.share.size), str(points.share.size), f"{took:.1f}", *cells]
+            row = [name, str(shape.area_share.size), str(points.area_share.size), f"{took:.1f}", *cells]
             print("| " + " | ".join(row) + " |", flush=True)
 
 

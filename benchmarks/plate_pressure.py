@@ -19,10 +19,10 @@ from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from jointfmu_tools.fields.joint_parameters import pressure_shape
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint import plate
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile, load_parameter_file
 from jointfmu.quantity import flatten_parameters
 
@@ -73,10 +73,8 @@ def computed(file: ParameterFile, options: str) -> PressureDistribution:
     bolts = BoltList(
         x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=thread.hexagon
     )
-    contact, preload = (
-        BoltedContact.from_assembly(Assembly(file.name, *sides, bolts)),
-        file.start_value("preload"),
-    )
+    contact = BoltedContact.from_assembly(Assembly(file.name, *sides, bolts))
+    preload = file.start_value("preload")
     field = contact.solve(tabulate_approach(file.values), preload).field
     return pressure_shape(replace(file.values, A_0=float(field.area.sum())), field, preload)
 
@@ -85,7 +83,7 @@ def shown(file: ParameterFile, shape: PressureDistribution, fine: PressureDistri
     """Two lines: the shares inside the circles, and the joint's stiffness."""
     bolts = file.values.pattern.bolts
     apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
-    force, rest = fine.share * fine.preload_shape, (0.0, 0.0, 0.0)
+    force, rest = fine.area_share * fine.preload_shape, (0.0, 0.0, 0.0)
     shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
     shares += f"  radius of gyration {1e3 * np.sqrt(force @ apart**2):.4g} mm"
     spring = BoltedJointSpring.of_nodes(file.values, shape)
@@ -100,9 +98,9 @@ def main() -> None:
         print(name)
         with tempfile.TemporaryDirectory() as folder:
             file = made(options, Path(folder))
-        cones = file.values.pattern.shape()
+        cones = file.values.pattern.pressure_distribution()
         plate.MIN_CELLS_PER_RADIUS = FINE
-        fine = file.values.pattern.shape()
+        fine = file.values.pattern.pressure_distribution()
         plate.MIN_CELLS_PER_RADIUS = usual
         elastic = computed(file, options)
         for what, shape, finer in (("cones", cones, fine), ("computed", elastic, elastic)):

@@ -10,7 +10,7 @@ import numpy as np
 from jointfmu_tools.laws import LAWS, build_law_parameters
 from scipy.optimize import brentq
 
-from jointfmu.contact.interface import at_pressure, solve_largest_spot
+from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot
 
 POINTS, OBVIOUS, REPEATS = 1_000_000, 300, 5
 
@@ -46,7 +46,7 @@ def main():
         few = pressures[:OBVIOUS]
         np.testing.assert_allclose(solve_largest_spot(law, few), by_brentq(law, few), atol=1e-9)
         fast = POINTS / best(lambda law=law: solve_largest_spot(law, pressures))
-        full = POINTS / best(lambda law=law: at_pressure(law, pressures), 2)
+        full = POINTS / best(lambda law=law: evaluate_at_pressure(law, pressures), 2)
         slow = OBVIOUS / best(lambda law=law, few=few: by_brentq(law, few), 2)
         print(f"{name:10} {fast:14.3g} {full:16.3g} {slow:12.3g} {fast / slow:8.0f}")
 

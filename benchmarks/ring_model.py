@@ -92,10 +92,8 @@ def fields():
 
 def row(name, peak, centre, nodes):
     """One line of the table of fields."""
-    load, near = (
-        nodes.share * nodes.pressure,
-        np.abs(nodes.position[..., 0]) > DRIVE.radius * np.cos(35 * DEG),
-    )
+    load = nodes.share * nodes.pressure
+    near = np.abs(nodes.position[..., 0]) > DRIVE.radius * np.cos(35 * DEG)
     closed = np.sum(nodes.share[nodes.pressure > 0.0])
     print(f"{name} {peak / 1e6:8.3f} {centre / DEG:11.1f} {np.sum(load) * DRIVE.A_0 / 1e3:8.3f}", end="")
     print(f" {np.sum(load) / peak:10.3f}", end="")

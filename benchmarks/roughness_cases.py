@@ -13,9 +13,9 @@ import numpy as np
 from boundary_element import press, slope
 from measured_joints import FRICTION, GAMMA, joint_law, level, measured
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws.roughness import RoughnessLaw
-from jointfmu.contact.surface import Elastic, contact_modulus
+from jointfmu.contact.surface import ElasticConstants, contact_modulus
 
 DEVELOPMENT = (*range(8), *range(100, 106), *range(200, 212))
 """Seeds that the constants of the law were chosen with; the proof uses none of them."""
@@ -35,7 +35,7 @@ MEASURED = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
 
 def without_units(H, roll_off, h, gradient, hardness=NO_HARDNESS):
     """The law on the unit square of boundary_element.py, whose contact modulus is 1."""
-    body = Elastic(E=2.0, nu=0.0)
+    body = ElasticConstants(E=2.0, nu=0.0)
     return RoughnessLaw(
         h=h,
         gamma=GAMMA,
@@ -96,7 +96,7 @@ def plastic(H, roll_off, hardness, load, seeds, points=64):
         gradient = slope(z)
         p = load * hardness * gradient * np.array([0.9, 1.0, 1.1])
         low, one, high = press(z, p, hardness * gradient, iterations=100)
-        state = at_pressure(without_units(H, roll_off, z.std(), gradient, hardness * gradient), p[1])
+        state = evaluate_at_pressure(without_units(H, roll_off, z.std(), gradient, hardness * gradient), p[1])
         loading = (p[2] - p[0]) / (low.separation - high.separation)
         rows.append((state["K_loading"] / loading, state["K_N"] / one.stiffness, state["A_r"] / one.area))
     return np.array(rows).T
@@ -116,7 +116,7 @@ def brake_reuss(**changes):
     """{name: law over published} for the contact law of the Brake-Reuss beam; changes of the law."""
     data = measured("brake_reuss")
     law = joint_law(data | {"Rq": data["h"] / np.sqrt(2.0)}, H=data["H"], **changes)
-    state = at_pressure(law, data["pressure"])
+    state = evaluate_at_pressure(law, data["pressure"])
     names = {"normal": "K_N", "loading": "K_loading", "tangential": "K_T"}
     return {name: float(state[q] / law.A_0 / data[name]) for name, q in names.items()}
 

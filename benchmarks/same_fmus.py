@@ -33,7 +33,7 @@ def runs(fmu, experiments):
         answers = _run_worker("fmpy", [plan.task for plan in plans if plan.task])
         found = {}
         for plan in plans:
-            answer = next(answers) if plan.task else {"error": plan.refusal}
+            answer = next(answers) if plan.task else {"error": plan.refusal_reason}
             rows = [line for line in answer.get("rows", []) if line is not None]
             courses = dict(zip(plan.task.get("outputs", []), np.array(rows).T, strict=False))
             found[plan.experiment.name, plan.interface] = answer.get("error") or courses
@@ -59,7 +59,7 @@ def main(old, new):
     worst = 0.0
     for path in sorted(old.glob("*/*.fmu")):
         other = new / path.relative_to(old)
-        experiments = RelatedFiles(path).experiments()
+        experiments = RelatedFiles(path).read_experiments()
         before = runs(path, experiments)
         after = runs(other, experiments) if other.exists() else {}
         share, what = max(differences(before, after), default=(0.0, ""))

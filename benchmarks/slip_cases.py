@@ -105,10 +105,8 @@ def sphere_misses(points, nu, radius=0.4, curvature=0.1):
     """
     x = (np.arange(points) + 0.5) / points - 0.5
     z = -0.5 * curvature * (x[:, None] ** 2 + x**2)
-    contact, stations = (
-        Contact.at(lone(points, nu), z, curvature * radius**2),
-        np.polynomial.legendre.leggauss(40),
-    )
+    contact = Contact.at(lone(points, nu), z, curvature * radius**2)
+    stations = np.polynomial.legendre.leggauss(40)
     load, slope = 4.0 * curvature * radius**3 / 3.0, 2.0 * contact.space.ratio * radius
     shifts = theory.sphere_shift(load, slope, np.array(FORCES))
     states = backbone(contact, shifts, 0)

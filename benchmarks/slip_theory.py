@@ -54,5 +54,5 @@ def sliders(curve, ratio, amplitudes):
         there = foundation.advance(foundation.virgin_forces(), delta, delta, [u, 0.0])
         back = foundation.advance(there.force, delta, delta, [-2.0 * u, 0.0])
         again = foundation.advance(back.force, delta, delta, [2.0 * u, 0.0])
-        areas.append(float(back.loss + again.loss))
+        areas.append(float(back.dissipated_energy + again.dissipated_energy))
     return np.array(areas)

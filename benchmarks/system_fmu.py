@@ -21,9 +21,9 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssv
 from jointfmu_tools.host import unpack_fmu
 from jointfmu_tools.systems import ssp
-from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system
-from jointfmu_tools.systems.system import system
+from jointfmu_tools.systems.system import load_system
 
 WATCHED = {
     "robot_joint": ("link.phi", "link.w", "drive.tau2", "drive.E_loss"),
@@ -79,7 +79,7 @@ def run_archive(path, name, one, step, expected, outputs):
 
 def whole(name: str, out: Path) -> Path:
     """The system's FMU."""
-    return build_system(assembly(system(name)), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
+    return build_system(assemble_system(load_system(name)), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
 
 
 def worst(out: Path) -> None:
@@ -122,7 +122,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
         for name, outputs in WATCHED.items():
-            one = system(name)
+            one = load_system(name)
             ssp.build_systems(out, [one])
             tolerance, interval = EXCHANGE[name]
             with unpack_fmu(whole(name, out)) as (unzipped, _):

@@ -21,10 +21,10 @@ from jointfmu_tools.interface import drive, load
 from jointfmu_tools.proof.manifest import RelatedFiles
 from jointfmu_tools.proof.run import prove
 from jointfmu_tools.robots import axes_system, elastic
-from jointfmu_tools.robots.transmission import transmission
-from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.robots.transmission import make_transmission
+from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system
-from jointfmu_tools.systems.system import read_system, system
+from jointfmu_tools.systems.system import load_system, read_system
 from scipy.interpolate import CubicSpline
 
 from jointfmu.parameters import format_parameter_file
@@ -40,7 +40,7 @@ LONG = (0.03, 1.0, 40.0)
 
 def built(path: Path, out: Path) -> str:
     """The FMU of a system's file, unpacked."""
-    (file,) = build_system(assembly(read_system(path)), out, ("2",), (fmpy.platform_tuple,))
+    (file,) = build_system(assemble_system(read_system(path)), out, ("2",), (fmpy.platform_tuple,))
     return fmpy.extract(str(file))
 
 
@@ -59,14 +59,16 @@ def energy(folder: Path) -> None:
     model = spec.compile()
     joints = {f"joint{i}": drive(size) for i, size in enumerate(SIZES, 1)}
     files = {name: joint.file for name, joint in joints.items()}
-    axes = elastic.axes(spec, {name: transmission(file) for name, file in files.items()})
+    axes = elastic.make_axes(spec, {name: make_transmission(file) for name, file in files.items()})
     pose = elastic.joint_positions(model, {"joint2": "0.7", "joint3": "0.8"})
     for file in files.values():
         (folder / f"{file.name.replace('-', '_')}.toml").write_text(
             format_parameter_file(file), encoding="utf-8"
         )
     path = folder / "swing.toml"
-    path.write_text(axes_system.text("six_axis", model, axes, files, pose, 3.0, model.nbody - 1))
+    path.write_text(
+        axes_system.format_axes_system("six_axis", model, axes, files, pose, 3.0, model.nbody - 1)
+    )
     unzipped = built(path, folder)
     described = fmpy.read_model_description(unzipped)
     starts = {v.name: v.start for v in described.modelVariables}
@@ -95,7 +97,9 @@ def energy(folder: Path) -> None:
 
 def random(folder: Path) -> None:
     """Print the largest rise of energy, and whether all is finite, without and with hysteresis."""
-    (file,) = build_system(assembly(system("robot_joint")), folder, ("2",), (fmpy.platform_tuple,))
+    (file,) = build_system(
+        assemble_system(load_system("robot_joint")), folder, ("2",), (fmpy.platform_tuple,)
+    )
     unzipped = fmpy.extract(str(file))
     described = fmpy.read_model_description(unzipped)
     refs = {v.name: v.valueReference for v in described.modelVariables}
@@ -144,10 +148,10 @@ def long(folder: Path) -> None:
     """Print what builds take, up to where they are proved, and the misses."""
     for stop in LONG:
         begin = time.perf_counter()
-        column = replace(system("bolted_column"), stop_time=stop)
-        (file,) = build_system(assembly(column), folder, ("2",), (fmpy.platform_tuple,))
+        column = replace(load_system("bolted_column"), stop_time=stop)
+        (file,) = build_system(assemble_system(column), folder, ("2",), (fmpy.platform_tuple,))
         taken = time.perf_counter() - begin
-        rows = [e.references.time for e in RelatedFiles(file).experiments() if e.references]
+        rows = [e.references.time for e in RelatedFiles(file).read_experiments() if e.references]
         found = prove(file)
         print(
             f"bolted_column over {stop:g} s: built in {taken:.0f} s, proved up to {rows[0][-1]:g} s, "

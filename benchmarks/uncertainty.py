@@ -59,7 +59,7 @@ def main():
         fast = process_time() - start
         outcome = propagate.evaluate_samples(task, points[:OBVIOUS], task.loads, "")
         parameters = [
-            build_parameter_set(KINDS[joint].parameters, propagate.one_sample(task, points, i)[0])
+            build_parameter_set(KINDS[joint].parameters, propagate.select_sample(task, points, i)[0])
             for i in range(OBVIOUS)
         ]
         start = process_time()

@@ -9,7 +9,7 @@ from measured_joints import measured
 from validity_pictures import GAMMA
 from validity_tables import heading, row
 
-from jointfmu.contact.interface import at_pressure, solve_largest_spot, stiffness_curve
+from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot, stiffness_curve
 from jointfmu.contact.roughness import combined_height, predicted_stiffness
 from jointfmu.parameters import load_default
 
@@ -36,8 +36,8 @@ def sizes():
             row(name, f"{p / 1e6:.3g}", f"{level:.2g}", *(f"{h:.2g}" for h in heights))
     zhao = compare.cases()["zhao2018"].law
     s, u = zhao.spots(), solve_largest_spot(zhao, 1e6)
-    term = replace(s.terms["normal"][0], upper=np.log(10.0))
-    share = float(replace(s, terms={"normal": (term,)}).total("normal", u) / s.total("normal", u))
+    term = replace(s.regime_terms["normal"][0], upper=np.log(10.0))
+    share = float(replace(s, regime_terms={"normal": (term,)}).total("normal", u) / s.total("normal", u))
     print(f"\nzhao2018 at 1 MPa: {share:.0%} of k in spots of one to ten critical areas")
 
 
@@ -71,7 +71,7 @@ def levels():
     heading(f"K over p/(0.45 h), h = {1e6 * h:.3g} um", "law", *names, "K_T/K_N", "measured rows within 2")
     laws = {f"{a} {s}": replace(file.values, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
     for name, law in {**laws, "roughness": load_default("bolted_joint", "roughness").values}.items():
-        state = at_pressure(law, JUDGED)
+        state = evaluate_at_pressure(law, JUDGED)
         k = state["K_N"] / law.A_0
         row(
             name,
@@ -113,7 +113,7 @@ def joints():
     zhao, hu, yu = (case.law for case in compare.cases().values())
     choices = {f"zhao2018 {a} {s}": replace(zhao, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
     for name, law in {**choices, "hu2023": hu, "yu2022": yu}.items():
-        state = at_pressure(law, MEASURED)
+        state = evaluate_at_pressure(law, MEASURED)
         ratio = f"{state['K_T'][-1] / state['K_N'][-1]:.3f}" if "K_T" in state else "-"
         eta = [f"{state[q][1]:.2g}" if q in state else "-" for q in ("eta_n", "eta_t")]
         k = state["K_N"] / law.A_0

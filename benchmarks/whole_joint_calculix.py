@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from whole_joint_forms import PRESS, Lap
 from whole_joint_nodes import Elements, along_motion
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
     yield "*SURFACE INTERACTION, NAME=LAW\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
     yield (
         f"{normal * 1e-9:.12g}\n*FRICTION\n{mu:.12g}, "
-        f"{normal * spring.foundation().stiffness_ratio * 1e-9:.12g}"
+        f"{normal * spring.friction.foundation().stiffness_ratio * 1e-9:.12g}"
     )
     yield "*CONTACT PAIR, INTERACTION=LAW, TYPE=SURFACE TO SURFACE\nFACE2, FACE1\n*NSET, NSET=MOVED"
     yield from (f"{starts[1] + i // 3 + 1}," for i in joint.attachment_unknowns[1] if i % 3 == 0)
@@ -82,9 +82,9 @@ def compared(refinement: float, top: float) -> tuple[Array, dict[str, Array]]:
     """Motions [m], and forces [N] by CalculiX, by friction at every element and of the reduced joint."""
     lap = Lap.of(refinement)
     shear, spring, linear = lap.linear(REACH)
-    normal, friction = shear / spring.foundation().stiffness_ratio, lap.values.mu * PRESS
+    normal, friction = shear / spring.friction.foundation().stiffness_ratio, lap.values.mu * PRESS
     bodies = replace(lap.bodies, interface=patches(lap.bodies.interface))
-    at = bodies.interface.area
+    at = bodies.interface.quadrature_area
     elements = Elements.of(bodies, np.full(at.size, PRESS / at.sum()), spring, friction, np.eye(6)[0])
     motion = np.eye(6)[0] * elements.motion[0]
     down = np.linspace(1.0, -1.0, STEPS + 1)[1:]

@@ -17,10 +17,10 @@ from jointfmu_tools.joints.bolted_joint.new import NEW
 from lap_beam_reduction import patches
 from numpy.typing import NDArray
 
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
-from jointfmu.mechanics.footprint.shape import NodalField
+from jointfmu.mechanics.footprint.distribution import NodalField
 
 Array = NDArray[np.float64]
 
@@ -162,11 +162,19 @@ class Lap:
             held.append(np.union1d(ends, 3 * np.flatnonzero(z > z.max() - 1e-9) + 2))
         joint = replace(joint, attachment_unknowns=(held[0], held[1]))
         at = patches(joint.interface)
-        one = np.ones(at.area.size)
-        x, y = (at.position - at.area @ at.position / at.area.sum()).T
-        lists = {"share": at.area / at.area.sum(), "x": x, "y": y, "equal": one, "tilt": y / y.max()}
+        one = np.ones(at.quadrature_area.size)
+        x, y = (
+            at.quadrature_position - at.quadrature_area @ at.quadrature_position / at.quadrature_area.sum()
+        ).T
+        lists = {
+            "share": at.quadrature_area / at.quadrature_area.sum(),
+            "x": x,
+            "y": y,
+            "equal": one,
+            "tilt": y / y.max(),
+        }
         field = NodalField(**{name: tuple(each.tolist()) for name, each in lists.items()})
-        area = float(at.area.sum())
+        area = float(at.quadrature_area.sum())
         values = replace(values, pattern=field, A_0=area, n_bolts=1.0, row_bolts=1.0, bolt_stiffness=0.0)
         return cls(assembly, joint, values)
 
@@ -175,14 +183,14 @@ class Lap:
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
         shear = 0.5 * beta**2 * plate.E * plate.thickness
         spring = BoltedJointSpring.of(self.values)
-        normal = shear / spring.foundation().stiffness_ratio
+        normal = shear / spring.friction.foundation().stiffness_ratio
         spring = replace(spring, curve=linear_curve(normal, PRESS / self.values.A_0 / normal))
-        springs = np.tile([shear, shear, normal], (self.bodies.interface.area.size, 1))
+        springs = np.tile([shear, shear, normal], (self.bodies.interface.quadrature_area.size, 1))
         return shear, spring, self.bodies.linearize(springs, 0.0)
 
     def reduced(self, spring: BoltedJointSpring, linear: LinearJoint, normal: float) -> BoltedJointSpring:
         """The joint on the modes of its bodies."""
-        stiffness = np.full(self.bodies.interface.area.size, normal)
+        stiffness = np.full(self.bodies.interface.quadrature_area.size, normal)
         bodies = reduce_bodies(linear, spring, stiffness, PRESS)
         whole = BoltedJointSpring.of(replace(self.values, sides="elastic", bodies=bodies))
         return replace(whole, curve=spring.curve)
@@ -191,7 +199,7 @@ class Lap:
         """[m/N] along x by the modes of the reduced joint, by finite elements and by shear lag."""
         shear, spring, linear = self.linear(reach)
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
-        whole = self.reduced(spring, linear, shear / spring.foundation().stiffness_ratio)
+        whole = self.reduced(spring, linear, shear / spring.friction.foundation().stiffness_ratio)
         out = whole.evaluate(PRESS, 0.0, (0.0,) * 3, (0.0,) * 3)
         per = plate.E * plate.thickness * plate.width
         form = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per

@@ -24,14 +24,14 @@ from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.reduction import elastic_bodies as reduction
 from jointfmu_tools.fem.reduction.states import approach_at_stiffness
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
-from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
+from jointfmu_tools.joints.bolted_joint.new.plate_finite_elements import set_elastic_bodies
 from lap_beam_loops import Joint as Loops
 from lap_beam_reduction import AT_ONCE, Reduced
 from numpy.typing import NDArray
 from scipy import sparse as sp
 
-from jointfmu.joints.bolted_joint import bodies, memory, spring
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint import friction, joint, law
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 
 Array = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ class Elements:
         pressure : (P) [Pa] at the points of its interface
         spring   : whose curve, friction and bolts it has
         """
-        values, ratio = spring.joint, float(spring.joint.shear_ratio())
+        values, ratio = spring.joint, float(spring.joint.shear_stiffness_ratio())
         approach, at = spring.curve.inverse(pressure), whole.interface
         springs = np.outer(spring.curve.derivatives(approach, 1)[1], [ratio, ratio, 1.0])
         linear = whole.linearize(springs, values.bolt_stiffness)
@@ -122,9 +122,9 @@ class Elements:
             0.0,
             approach,
             springs,
-            at.area,
-            at.position,
-            np.stack([rows @ (linear.displacement @ motion) for rows in apart], axis=1),
+            at.quadrature_area,
+            at.quadrature_position,
+            np.stack([rows @ (linear.unit_motion_displacement @ motion) for rows in apart], axis=1),
             compliance(matrix.tocsr(), apart, whole.attachment_unknowns, whole.bodies[0].unknown_count),
         )
         loops = Loops(beam, Springs.of(spring.curve, ratio, values.mu))
@@ -172,18 +172,18 @@ def along_motion(
 @contextmanager
 def finer(modes: int, count: int):
     """The reduction with so many modes and patches."""
-    modules = bodies, memory, reduction, spring
-    kept = [(module, "MODES", module.MODES) for module in modules]
-    kept.append((spring, "PATCHES", spring.MAX_PATCHES))
+    modules = law, friction, reduction, joint
+    kept = [(module, "MAX_MODES", module.MAX_MODES) for module in modules]
+    kept.append((joint, "MAX_PATCHES", joint.MAX_PATCHES))
     try:
         for module, name, _ in kept:
-            setattr(module, name, count if name == "PATCHES" else modes)
-        spring.friction_patches_of.cache_clear()
+            setattr(module, name, count if name == "MAX_PATCHES" else modes)
+        joint.friction_patches_of.cache_clear()
         yield
     finally:
         for module, name, value in kept:
             setattr(module, name, value)
-        spring.friction_patches_of.cache_clear()
+        joint.friction_patches_of.cache_clear()
 
 
 def way(amplitude: float) -> Array:
@@ -227,7 +227,7 @@ def compared(name: str, why: bool, refinement: float) -> None:
             else:
                 base = BoltedJointSpring.of(joint.rigid.values)
                 made = reduction.reduce_bodies(joint.linear, base, joint.normal, joint.preload)
-                one = BoltedJointSpring.of(with_bodies(joint.rigid, made, attached).values)
+                one = BoltedJointSpring.of(set_elastic_bodies(joint.rigid, made, attached).values)
             found = {
                 key: along_motion(one, joint.preload, elements.motion, list(loads))
                 for key, loads in ways.items()

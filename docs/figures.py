@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from jointfmu_fmu_src.python.build import runtime_sources
+from jointfmu_fmu_src.python.build import collect_runtime_sources
 from jointfmu_tools import cli, plots
 from jointfmu_tools.job.checks import run_default_ramp
 from jointfmu_tools.joints.harmonic_drive import job
@@ -26,7 +26,7 @@ from jointfmu_tools.published import validation
 from jointfmu_tools.report.figure import draw_panels
 from jointfmu_tools.report.systems import RESONANCE_SIZE, resonance_panels
 from jointfmu_tools.systems import ringing, ssp
-from jointfmu_tools.systems.system import system
+from jointfmu_tools.systems.system import load_system
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -92,8 +92,8 @@ def resonance(path: Path) -> None:
     ).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)
-        one = ringing.vibrating_joint(system("robot_joint"))
-        points = ringing.ring(one, Path(folder) / "fmi2")
+        one = ringing.find_vibrating_joint(load_system("robot_joint"))
+        points = ringing.simulate_vibrations(one, Path(folder) / "fmi2")
         with plots.open_figure(path, RESONANCE_SIZE) as canvas:
             draw_panels(canvas, resonance_panels(points, one, Path(folder) / "fmi2"))
 
@@ -142,7 +142,7 @@ def _layers(package: str) -> list[list[str]]:
 
 def _inside() -> set[str]:
     """Names of the modules and packages of which something runs inside a Python FMU."""
-    files = [Path(name) for kind in KINDS.values() for name in runtime_sources(kind)]
+    files = [Path(name) for kind in KINDS.values() for name in collect_runtime_sources(kind)]
     return {name for file in files for name in (*file.parent.parts, file.stem)}
 
 

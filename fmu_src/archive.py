@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from jointfmu.files.writing import existing_folder
+from jointfmu.files.writing import ensure_folder
 
 
 @contextmanager
-def workshop(target: Path) -> Iterator[Path]:
+def staging_folder(target: Path) -> Iterator[Path]:
     """Temporary folder next to `target`; on success the file made in it replaces `target` atomically.
 
     The file must have the name of `target`. If `target` is a symbolic link, its destination is replaced.
@@ -21,7 +21,7 @@ def workshop(target: Path) -> Iterator[Path]:
     destination = Path(os.path.realpath(target))
     try:
         with (
-            existing_folder(destination.parent),
+            ensure_folder(destination.parent),
             tempfile.TemporaryDirectory(dir=destination.parent, prefix=".build-") as folder,
         ):
             yield Path(folder)
@@ -32,10 +32,10 @@ def workshop(target: Path) -> Iterator[Path]:
         ) from None
 
 
-def pack(members: Mapping[str, bytes], file: Path) -> None:
+def write_archive(contents: Mapping[str, bytes], file: Path) -> None:
     """Write a zip archive of {path: content}, with sorted members, a fixed date and a fixed system."""
     with zipfile.ZipFile(file, "w") as archive:
-        for name, content in sorted(members.items()):
+        for name, content in sorted(contents.items()):
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
             info.create_system = 3
             info.external_attr = 0o644 << 16

@@ -10,14 +10,14 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.progress import map_jobs
 
-from .naming import checked_name
+from .naming import check_name
 from .native.build import build as build_native
 from .python.build import build as build_python
 from .xml_parts import VARIABILITIES
 
 FLAVOURS: dict[str, Callable[..., Path]] = {
-    "fmi2": partial(build_native, version="2"),
-    "fmi3": partial(build_native, version="3"),
+    "fmi2": partial(build_native, fmi_version="2"),
+    "fmi3": partial(build_native, fmi_version="3"),
     "python": build_python,
 }
 
@@ -26,7 +26,7 @@ def build(
     names: Sequence[str],
     flavours: Sequence[str],
     parameters: ParameterFile | None,
-    out: Path,
+    output_folder: Path,
     variability: str = VARIABILITIES[0],
     alias: str | None = None,
     pool: Executor | None = None,
@@ -54,14 +54,14 @@ def build(
     if alias is not None and len(set(names)) != 1:
         raise ValueError(f"name {alias!r} is for one FMU, expected one of {', '.join(names)}")
     if alias is not None:
-        checked_name(alias)
+        check_name(alias)
     for name in names:
         if parameters:
             MODELS[name].with_parameters(parameters.joint, parameters.values)
     titles = [alias or name for name in names]
-    check_outputs((out / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE, force)
+    check_outputs((output_folder / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE, force)
     options = {"variability": variability, "alias": alias or ""}
-    build_one = partial(_build_flavours, flavours, parameters, out, options)
+    build_one = partial(_build_flavours, flavours, parameters, output_folder, options)
     paths_by_name = map_jobs(pool, build_one, "build", names)
     return [path for paths in zip(*paths_by_name, strict=True) for path in paths]
 
@@ -69,10 +69,10 @@ def build(
 def _build_flavours(
     flavours: Sequence[str],
     parameters: ParameterFile | None,
-    out: Path,
+    output_folder: Path,
     options: Mapping[str, str],
     name: str,
 ) -> list[Path]:
     """Build one FMU in several flavours, which share the compiled model; return the paths of the files."""
     file = parameters or load_default(MODELS[name].joint)
-    return [FLAVOURS[flavour](name, file, out / flavour, **options) for flavour in flavours]
+    return [FLAVOURS[flavour](name, file, output_folder / flavour, **options) for flavour in flavours]

@@ -6,33 +6,33 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 
 from . import joints, partners
-from .joint_parts import Parts
+from .joint_parts import FmuParts
 
 
-def parts_of(model: Model) -> Parts:
+def find_fmu_parts(model: Model) -> FmuParts:
     """Builder data of a model: C code, flanges, charts of the page.
 
     Raises ValueError if the joint of the model has no builder data.
     """
     if model.joint not in KINDS:
-        return partners.PARTS
-    if model.joint not in joints.PARTS:
-        known = ", ".join(joints.PARTS)
+        return partners.FMU_PARTS
+    if model.joint not in joints.FMU_PARTS:
+        known = ", ".join(joints.FMU_PARTS)
         raise ValueError(f"joint {model.joint!r} has no parts of its FMU; they are known of {known}")
-    return joints.PARTS[model.joint]
+    return joints.FMU_PARTS[model.joint]
 
 
-def own_folder(model: Model) -> Path:
+def find_source_folder(model: Model) -> Path:
     """Folder with the C sources, page and icons of a model."""
-    return parts_of(model).folder
+    return find_fmu_parts(model).folder
 
 
-def asset(model: Model, name: str) -> Path:
+def find_asset(model: Model, name: str) -> Path:
     """Path of a required file (page or icon) in the folder of a model.
 
     Raises ValueError if the file is missing.
     """
-    folder = own_folder(model)
+    folder = find_source_folder(model)
     if not (folder / name).is_file():
         raise ValueError(f"{model.name}: {folder / name} is missing; expected it beside the other parts")
     return folder / name

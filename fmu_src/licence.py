@@ -10,11 +10,11 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
-_OTHERS = Path(__file__).with_name("licenses")
+_THIRD_PARTY_FOLDER = Path(__file__).with_name("licenses")
 """Folder of the third-party licence texts, unchanged; the wheel lists them as licence files too."""
 
 
-def licence() -> str:
+def read_licence() -> str:
     """Licence text of the installed package jointfmu.
 
     Raises ValueError if the file is missing.
@@ -26,30 +26,35 @@ def licence() -> str:
         raise ValueError("LICENSE: missing in the installed package jointfmu; install it again") from None
 
 
-def licences() -> dict[str, bytes]:
+def licence_files() -> dict[str, bytes]:
     """{path in the folder documentation: content} of an FMU's licence texts; raises as `read_licence`."""
-    return {"licenses/license.txt": licence().encode()} | dict(_others())
+    return {"licenses/license.txt": read_licence().encode()} | dict(_third_party_licences())
 
 
-_WASI = ("LICENSE", "LICENSE-MIT", "libc-top-half/musl/COPYRIGHT", "libc-bottom-half/cloudlibc/LICENSE")
+_WASI_LICENCES = (
+    "LICENSE",
+    "LICENSE-MIT",
+    "libc-top-half/musl/COPYRIGHT",
+    "libc-bottom-half/cloudlibc/LICENSE",
+)
 """Licence files of wasi-libc, the C library that is linked into WebAssembly modules."""
 
 
-def webassembly_licences() -> str:
+def read_webassembly_licences() -> str:
     """Licence texts of a WebAssembly module: of the package and of wasi-libc.
 
     Raises ImportError if ziglang is missing, ValueError as `read_licence`.
     """
     folder = Path(str(import_module("ziglang").__file__)).parent / "lib" / "libc" / "wasi"
-    texts = (f"wasi-libc, {name}\n\n{(folder / name).read_text(encoding='utf-8')}" for name in _WASI)
-    return "\n\n".join([f"jointfmu\n\n{licence()}", *texts])
+    texts = (f"wasi-libc, {name}\n\n{(folder / name).read_text(encoding='utf-8')}" for name in _WASI_LICENCES)
+    return "\n\n".join([f"jointfmu\n\n{read_licence()}", *texts])
 
 
-def _others() -> Iterator[tuple[str, bytes]]:
-    for path in sorted(_OTHERS.glob("*.txt")):
+def _third_party_licences() -> Iterator[tuple[str, bytes]]:
+    for path in sorted(_THIRD_PARTY_FOLDER.glob("*.txt")):
         yield f"licenses/{path.name}", path.read_bytes()
 
 
-def copyright_line() -> str:
+def find_copyright_line() -> str:
     """Copyright line of the licence text."""
-    return next(line for line in licence().splitlines() if line.startswith("Copyright"))
+    return next(line for line in read_licence().splitlines() if line.startswith("Copyright"))

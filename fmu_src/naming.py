@@ -3,16 +3,17 @@
 import re
 from keyword import iskeyword
 
-LONGEST = 63
+MAX_NAME_LENGTH = 63
 """Largest length of a name [1]: C compilers need not distinguish more characters."""
 NAME_RULE = (
-    f"at most {LONGEST} letters, digits and _, no digit first, no word of C, Python or Modelica, no device "
+    f"at most {MAX_NAME_LENGTH} letters, digits and _, no digit first, no word of C, Python or "
+    "Modelica, no device "
     "of Windows (con, nul, com1)"
 )
 """Rule for valid names, as error messages print it."""
 
 
-def checked_name(name: str) -> str:
+def check_name(name: str) -> str:
     """Return the name if it is a valid identifier.
 
     Raises ValueError if it is not, see `is_identifier`.
@@ -25,24 +26,33 @@ def checked_name(name: str) -> str:
 
 def is_identifier(name: str) -> bool:
     """Whether a name is valid in C, Python, Modelica and Windows, and not too long."""
-    return bool(re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name)) and len(name) <= LONGEST and not reserved(name)
+    return (
+        bool(re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name))
+        and len(name) <= MAX_NAME_LENGTH
+        and not is_reserved(name)
+    )
 
 
-def reserved(name: str) -> bool:
+def is_reserved(identifier: str) -> bool:
     """Whether a name is a keyword of C, Python or Modelica, or a device name of Windows."""
-    return iskeyword(name) or name in _C or name in _MODELICA or name.lower() in _DEVICES
+    return (
+        iskeyword(identifier)
+        or identifier in _C_KEYWORDS
+        or identifier in _MODELICA_KEYWORDS
+        or identifier.lower() in _WINDOWS_DEVICES
+    )
 
 
-_WORDS = """auto break case char const continue default do double else enum extern float for goto if
+_C_KEYWORD_TEXT = """auto break case char const continue default do double else enum extern float for goto if
 inline int long register restrict return short signed sizeof static struct switch typedef union unsigned void
 volatile while"""
-_C = frozenset(_WORDS.split())
-_MODELICA_WORDS = """algorithm and annotation block break class connect connector constant constrainedby der
-discrete each else elseif elsewhen encapsulated end enumeration equation expandable extends external false
-final flow for function if import impure in initial inner input loop model not operator or outer
-output package parameter partial protected public pure record redeclare replaceable return stream
-then time true type when while within"""
-_MODELICA = frozenset(_MODELICA_WORDS.split())
-_DEVICES = frozenset(
+_C_KEYWORDS = frozenset(_C_KEYWORD_TEXT.split())
+_MODELICA_KEYWORD_TEXT = """algorithm and annotation block break class connect connector constant
+constrainedby der discrete each else elseif elsewhen encapsulated end enumeration equation expandable extends
+external false final flow for function if import impure in initial inner input loop model not operator or
+outer output package parameter partial protected public pure record redeclare replaceable return stream then
+time true type when while within"""
+_MODELICA_KEYWORDS = frozenset(_MODELICA_KEYWORD_TEXT.split())
+_WINDOWS_DEVICES = frozenset(
     ["con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(10))]
 )

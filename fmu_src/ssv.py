@@ -6,15 +6,15 @@ from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.quantity.units import UNITS
 
-from .xml_parts import serialized
+from .xml_parts import serialize_xml
 
-NUMBER = {"1.0": "Real", "2.0": "Float64"}
+REAL_ELEMENT = {"1.0": "Real", "2.0": "Float64"}
 """{version of SSP: element name of a real number}."""
-SSP = "http://ssp-standard.org/SSP1/SystemStructure"
+SSP_NAMESPACE = "http://ssp-standard.org/SSP1/SystemStructure"
 """Common prefix of the XML namespaces of SSP 1.0 and 2.0."""
 
 
-class Value(NamedTuple):
+class ParameterValue(NamedTuple):
     """Value of a parameter with its unit and source."""
 
     value: Any
@@ -22,11 +22,14 @@ class Value(NamedTuple):
     source: str = ""
 
 
-def parameter_set(
-    name: str, entries: Mapping[str, Value], version: str = "1.0", metadata: Mapping[str, str] | None = None
+def format_parameter_set(
+    name: str,
+    entries: Mapping[str, ParameterValue],
+    version: str = "1.0",
+    metadata: Mapping[str, str] | None = None,
 ) -> bytes:
     """Content of an SSV file of one SSP version; `metadata` gives further attributes of the root element."""
-    spaces = {"xmlns:ssv": f"{SSP}ParameterValues", "xmlns:ssc": f"{SSP}Common"}
+    spaces = {"xmlns:ssv": f"{SSP_NAMESPACE}ParameterValues", "xmlns:ssc": f"{SSP_NAMESPACE}Common"}
     root = Element("ssv:ParameterSet", {**spaces, "version": version, "name": name, **(metadata or {})})
     parameters = SubElement(root, "ssv:Parameters")
     for variable, (value, unit, source) in entries.items():
@@ -36,15 +39,15 @@ def parameter_set(
         if isinstance(value, bool):
             SubElement(node, "ssv:Boolean", value=str(value).lower())
         else:
-            SubElement(node, f"ssv:{NUMBER[version]}", value=repr(float(value)), unit=unit)
+            SubElement(node, f"ssv:{REAL_ELEMENT[version]}", value=repr(float(value)), unit=unit)
     add_units(root, "ssv", {entry.unit for entry in entries.values() if entry.unit})
-    return serialized(root)
+    return serialize_xml(root)
 
 
-def add_units(root: Element, prefix: str, names: set[str]) -> None:
+def add_units(root: Element, prefix: str, unit_names: set[str]) -> None:
     """Define units in an SSP file by their exponents of the SI base units."""
-    if names:
+    if unit_names:
         units = SubElement(root, f"{prefix}:Units")
-        for name in sorted(names):
+        for name in sorted(unit_names):
             unit = SubElement(units, "ssc:Unit", name=name)
-            SubElement(unit, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[name].base.items()})
+            SubElement(unit, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[name].base_exponents.items()})

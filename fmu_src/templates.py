@@ -12,36 +12,36 @@ from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.laws.roughness import FEW_SPOTS_FACTOR
 from jointfmu.parameters import ParameterFile
 
-FRAME = Path(__file__).with_name("native")
+PAGE_FOLDER = Path(__file__).with_name("native")
 """Folder of the page templates that the pages of joints extend."""
 
 
-def template(path: Path, *shared: Path) -> jinja2.Template:
+def load_template(path: Path, *template_folders: Path) -> jinja2.Template:
     """Load a Jinja template; HTML templates escape their values, and an undefined name is an error.
 
     All templates can call `number` (format a value) and `policy` (Content-Security-Policy of a page).
 
     template_folders : folders of further templates that this one extends or imports
     """
-    return _environment((path.parent, *shared), path.suffix == ".html").get_template(path.name)
+    return _make_environment((path.parent, *template_folders), path.suffix == ".html").get_template(path.name)
 
 
 @cache
-def _environment(folders: tuple[Path, ...], escapes: bool) -> jinja2.Environment:
+def _make_environment(folders: tuple[Path, ...], escape_html: bool) -> jinja2.Environment:
     """Jinja environment of template folders; cached, because it keeps compiled templates."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(folders),
-        autoescape=escapes,
+        autoescape=escape_html,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.globals["number"] = _number
-    environment.globals["policy"] = _policy
+    environment.globals["number"] = _format_number
+    environment.globals["policy"] = _security_policy
     return environment
 
 
-def _policy(script: str = "", webassembly: bool = False, images: str = "data:") -> Markup:
+def _security_policy(script: str = "", webassembly: bool = False, images: str = "data:") -> Markup:
     """HTML meta element with the Content-Security-Policy of a page: no network, only the page's own script.
 
     script      : full text of the script element; empty: no script is allowed
@@ -57,13 +57,13 @@ def _policy(script: str = "", webassembly: bool = False, images: str = "data:") 
     return Markup('<meta http-equiv="Content-Security-Policy" content="{}">').format(Markup(content))
 
 
-def _number(value: float | str) -> str:
+def _format_number(value: float | str) -> str:
     """Format a value for a page: six significant digits, booleans in lower case, text unchanged."""
     if isinstance(value, bool | str):
         return str(value).lower() if isinstance(value, bool) else value
     return f"{value:.6g}"
 
 
-def law_terms(parameters: ParameterFile) -> dict[str, object]:
-    """Template variables of the contact law: its name, whether it is `roughness`, its least spot count."""
+def law_variables(parameters: ParameterFile) -> dict[str, object]:
+    """Template variables of the contact law: its name, whether it is `roughness`, and FEW_SPOTS_FACTOR."""
     return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS_FACTOR}

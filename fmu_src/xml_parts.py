@@ -31,7 +31,7 @@ class ListedVariable(NamedTuple):
     rate_of: int | None = None
 
     @property
-    def boolean(self) -> bool:
+    def is_boolean(self) -> bool:
         """Whether the variable is a Boolean; all other variables are real numbers."""
         return isinstance(self.start, bool)
 
@@ -42,7 +42,7 @@ def list_variables(model: Model, parameters: ParameterFile) -> list[ListedVariab
     variables: list[ListedVariable] = []
     for causality, group in (("input", model.inputs), ("output", model.outputs)):
         for i, v in enumerate(group):
-            attributes = _unit_attributes(v.unit, v.nominal) | _bounds(v.interval)
+            attributes = _unit_attributes(v.unit, v.nominal) | _bound_attributes(v.interval)
             state = causality == "output" and i < model.state_count
             rate = causality == "output" and model.is_rate(i)
             rate_of = len(variables) + 1 - model.state_count // 2 if rate else None
@@ -56,42 +56,42 @@ def list_variables(model: Model, parameters: ParameterFile) -> list[ListedVariab
             doc += " (calibration parameter: fitted to published points)"
         attributes = {}
         if "unit" in meta:
-            attributes = _unit_attributes(meta["unit"], value) | _bounds(meta["interval"])
+            attributes = _unit_attributes(meta["unit"], value) | _bound_attributes(meta["interval"])
             if value:
                 attributes["nominal"] = repr(abs(value))
         variables.append(ListedVariable(name, "parameter", doc, value, attributes))
     return variables
 
 
-def text(value: float | bool) -> str:
+def format_start_value(value: float | bool) -> str:
     """Format a start value for XML; numbers are exact to the last bit."""
     return str(value).lower() if isinstance(value, bool) else repr(float(value))
 
 
 def stop_time(model: Model) -> float:
     """Stop time [s] of the default experiment, which is the load ramp."""
-    return round(model.ramp.end / model.ramp.step) * model.ramp.interval
+    return round(model.ramp.end_value / model.ramp.value_step) * model.ramp.step_duration
 
 
-def units(variables: Sequence[ListedVariable]) -> list[str]:
+def list_units(variables: Sequence[ListedVariable]) -> list[str]:
     """Sorted names of the units of some variables."""
     return sorted({v.attributes["unit"] for v in variables if "unit" in v.attributes})
 
 
-def unit_definitions(variables: Sequence[ListedVariable]) -> Element:
+def make_unit_definitions(variables: Sequence[ListedVariable]) -> Element:
     """XML element UnitDefinitions of some variables, the same in FMI 2.0 and 3.0."""
     definitions = Element("UnitDefinitions")
-    for name in units(variables):
+    for name in list_units(variables):
         unit = SubElement(definitions, "Unit", name=name)
-        SubElement(unit, "BaseUnit", {k: str(n) for k, n in UNITS[name].base.items()})
-        for shown, factor in UNITS[name].display.items():
+        SubElement(unit, "BaseUnit", {k: str(n) for k, n in UNITS[name].base_exponents.items()})
+        for shown, factor in UNITS[name].display_factors.items():
             SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
         if name == "K":
             SubElement(unit, "DisplayUnit", name=CELSIUS, factor="1.0", offset=repr(-KELVIN_AT_ZERO))
     return definitions
 
 
-def model_structure(model: Model, variability: str, version: str = "2") -> Element:
+def make_model_structure(model: Model, variability: str, version: str = "2") -> Element:
     """XML element ModelStructure: outputs, derivatives and initial unknowns with their dependencies.
 
     In FMI 2.0 the index of a variable equals its value reference.
@@ -124,23 +124,23 @@ def model_structure(model: Model, variability: str, version: str = "2") -> Eleme
     return root
 
 
-def serialized(root: Element) -> bytes:
+def serialize_xml(root: Element) -> bytes:
     """Bytes of an indented XML file; equal content gives equal bytes."""
     indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
 
 
-def comment(lines: Sequence[str]) -> str:
+def format_xml_comment(lines: Sequence[str]) -> str:
     """Format lines as an XML comment; double hyphens, which XML forbids there, are separated."""
     return "<!--\n" + "".join(f"  {re.sub('-(?=-)', '- ', line)}\n" for line in lines) + "-->\n"
 
 
-def _unit_attributes(unit: str, typical: float) -> dict[str, str]:
+def _unit_attributes(unit: str, typical_value: float) -> dict[str, str]:
     """Attributes unit and displayUnit; the display unit suits a typical value [SI]."""
-    return {"unit": unit, "displayUnit": CELSIUS if unit == "K" else display_unit(unit, typical)}
+    return {"unit": unit, "displayUnit": CELSIUS if unit == "K" else display_unit(unit, typical_value)}
 
 
-def _bounds(interval: Interval) -> dict[str, str]:
+def _bound_attributes(interval: Interval) -> dict[str, str]:
     """Attributes min and max of an interval, for its finite ends."""
     bounds = zip(("min", "max"), interval.closed_bounds(), strict=True)
     return {name: repr(bound) for name, bound in bounds if math.isfinite(bound)}

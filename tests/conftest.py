@@ -21,8 +21,12 @@ import pytest
 from filelock import FileLock
 from fmpy import platform_tuple
 from hypothesis import settings
-from jointfmu_fmu_src.native.compiled.cache import COMPILER, compiler_cache, parts_folder
-from jointfmu_fmu_src.native.compiled.compiler import TARGETS, libraries
+from jointfmu_fmu_src.native.compiled.cache import (
+    COMPILER_CACHE_VARIABLE,
+    compiled_model_folder,
+    compiler_cache,
+)
+from jointfmu_fmu_src.native.compiled.compiler import TARGETS, compile_libraries
 from jointfmu_tools.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=60, derandomize=True)
@@ -36,13 +40,14 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
-os.environ.setdefault(COMPILER, str(compiler_cache()))  # tests without kept parts compile with a warm cache
+# tests without kept parts compile with a warm cache
+os.environ.setdefault(COMPILER_CACHE_VARIABLE, str(compiler_cache()))
 
 HERE = Path(__file__).parent
 RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
 """Options of zig as FMUs are linked here. Others let it compile its part of the C runtime first, 4 s with
 optimization, 20 s without."""
-SLOW_FIXTURES = frozenset({"fmus", "native", "elastic_joint", "tutorial", "site"})
+SLOW_FIXTURES = frozenset({"fmus", "native", "system_files", "elastic_joint", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
 
 
@@ -222,30 +227,34 @@ def here_alone(versions: str = "23") -> Iterator[None]:
 
     versions : of FMI that are compiled
     """
-    from jointfmu_fmu_src.native.compiled import kept
+    from jointfmu_fmu_src.native.compiled import compiled_models
     from jointfmu_tools.systems.fmu import build as system
 
-    places, read = kept._places, kept.unpack_model
+    places, read = compiled_models._candidate_paths, compiled_models.unpack_model
 
     def places_here(name: str) -> tuple[Path, ...]:
         *others, last = places(name)
-        return *others, last, parts_folder() / f"here{versions}" / last.relative_to(parts_folder())
+        return (
+            *others,
+            last,
+            compiled_model_folder() / f"here{versions}" / last.relative_to(compiled_model_folder()),
+        )
 
     def libraries_here(*files: Any, **options: Any) -> dict[str, bytes]:
-        return libraries(*files[:3], [platform_tuple], **options)
+        return compile_libraries(*files[:3], [platform_tuple], **options)
 
-    def read_here(content: bytes) -> kept.CompiledModel:
+    def read_here(content: bytes) -> compiled_models.CompiledModel:
         part = read(content)
-        return kept.CompiledModel(
+        return compiled_models.CompiledModel(
             part.sources, {v: {platform_tuple: built[platform_tuple]} for v, built in part.libraries.items()}
         )
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kept, "VERSIONS", (*versions,))
-        patch.setattr(kept, "_places", places_here)
-        patch.setattr(kept, "unpack_model", read_here)
-        patch.setattr(kept, "libraries", libraries_here)
-        patch.setattr(system, "libraries", libraries_here)
+        patch.setattr(compiled_models, "FMI_VERSIONS", (*versions,))
+        patch.setattr(compiled_models, "_candidate_paths", places_here)
+        patch.setattr(compiled_models, "unpack_model", read_here)
+        patch.setattr(compiled_models, "compile_libraries", libraries_here)
+        patch.setattr(system, "compile_libraries", libraries_here)
         yield
 
 
@@ -271,12 +280,15 @@ def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Bodies of equal plates, of elements twice as large but with `fine_elements`, and patches of equal
-    contacts are found once for all processes that share the tests."""
+    """Bodies of equal plates, of elements twice as large but with `fine_elements`, patches of equal contacts
+    and experiments of equal FMUs are computed once for all processes that share the tests."""
+    from jointfmu_fmu_src.proof import members
     from jointfmu_tools.fields import joint_parameters
-    from jointfmu_tools.joints.bolted_joint.new import computed
+    from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
-    from jointfmu.joints.bolted_joint import spring
+    from jointfmu.joints.bolted_joint import joint
+    from jointfmu.joints.model import Model
+    from jointfmu.parameters import ParameterFile, format_parameter_file
 
     def once(what: str, real: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(real)
@@ -293,8 +305,8 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
         return found
 
-    solve = computed.compute_joint
-    kept = once("whole", solve)
+    solve = plate_finite_elements.compute_joint
+    solve_once = once("whole", solve)
 
     def whole(*asked: Any) -> Any:
         try:
@@ -310,12 +322,24 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
                 "from_assembly",
                 partial(JointFiniteElements.from_assembly, refinement=REFINEMENT["bodies"]),
             )
-            return kept(*asked)
+            return solve_once(*asked)
+
+    def experiments_of(model: Model, parameters: ParameterFile) -> Any:
+        text = f"{model.name}\n{format_parameter_file(parameters)}"  # what the product keeps them by
+
+        def make(out: Path) -> None:
+            out.mkdir()
+            (out / "found").write_bytes(pickle.dumps(tuple(compute_experiments(model, parameters))))
+
+        name = f"experiments-{sha256(text.encode()).hexdigest()[:16]}"
+        return pickle.loads((made_once(tmp_path_factory, name, make) / "found").read_bytes())
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(computed, "compute_joint", whole)
-        for module in (spring, joint_parameters):
+        patch.setattr(plate_finite_elements, "compute_joint", whole)
+        for module in (joint, joint_parameters):
             patch.setattr(module, "reduce_patches", once("patches", module.reduce_patches))
+        compute_experiments = members.compute_experiments
+        patch.setattr(members, "compute_experiments", experiments_of)
         yield
 
 
@@ -333,6 +357,19 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from jointfmu_fmu_src.building import build
 
     return made_once(tmp_path_factory, "native", lambda out: build([], ["fmi2", "fmi3"], None, out))
+
+
+@pytest.fixture(scope="session")
+def system_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with what `jointfmu build --systems` makes, and the drive with torque in."""
+    from jointfmu_fmu_src.building import build
+    from jointfmu_tools import cli
+
+    def make(out: Path) -> None:
+        build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
+
+    return made_once(tmp_path_factory, "systems", make)
 
 
 @pytest.fixture(scope="session")

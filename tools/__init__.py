@@ -1,4 +1,4 @@
-"""What surrounds a joint: drawings, surfaces, fits, fields, finite elements, exports, systems, pages."""
+"""Tools for joints: drawings, surfaces, fits, fields, finite elements, exports, systems, pages."""
 
 from .joints import PARTS
 

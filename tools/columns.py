@@ -31,12 +31,12 @@ ColumnHead: TypeAlias = tuple[str, str | None]
 
 CONTROL_CHARACTERS = re.compile(rb"[\x00-\x08\x0e-\x1f]")
 """Control characters: a file that has them is no text."""
-_HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
-_HEADING_WITH_UNIT = re.compile(r"\S.* \[[^\[\]]+\]")
+_HEADING_PATTERN = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
+_WRITTEN_HEADING_PATTERN = re.compile(r"\S.* \[[^\[\]]+\]")
 """Heading of one column as `format_table` writes it: `name [unit]`."""
 MAX_HEADING_BYTES = 65536
 """Bytes at the start of a file that are searched for its heading."""
-_ALTERNATIVE_HEADING = re.compile(
+_ALTERNATIVE_HEADING_PATTERN = re.compile(
     r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$"
 )
 """Alternative headings of a column: `name (unit)` and `name / unit`."""
@@ -46,31 +46,31 @@ _ALTERNATIVE_HEADING = re.compile(
 class Columns:
     """Columns (n) of a file, in SI units.
 
-    columns : {name: values (n)}
-    lines   : line number of each row in the file
-    units   : {name: unit in the heading of the file}
+    columns      : {name: values (n)}
+    line_numbers : line number of each row in the file
+    units        : {name: unit in the heading of the file}
     """
 
     path: Path
     columns: Mapping[str, Array]
-    lines: Sequence[int] = ()
+    line_numbers: Sequence[int] = ()
     units: Mapping[str, str] = field(default_factory=dict)
 
-    def require_column(self, name: str, spec: Mapping[str, UnitSizes]) -> Array:
+    def require_column(self, name: str, allowed_units: Mapping[str, UnitSizes]) -> Array:
         """Return a column. Raises ValueError if the file does not have the column."""
         if name not in self.columns:
             raise ValueError(
-                f"{self.path}: has no column {name!r}; expected {format_heading({name: spec[name]})}"
+                f"{self.path}: has no column {name!r}; expected {format_heading({name: allowed_units[name]})}"
             )
         return self.columns[name]
 
-    def check_positive(self, names: Iterable[str], spec: Mapping[str, UnitSizes]) -> "Columns":
+    def check_positive(self, names: Iterable[str], allowed_units: Mapping[str, UnitSizes]) -> "Columns":
         """Return self; raise ValueError with the line if a number of the named columns is not positive."""
         for name in names:
             if np.any(wrong := self.columns[name] <= 0.0):
                 first = int(np.argmax(wrong))
-                value = f"{name} = {self.columns[name][first]:g} {next(iter(spec[name]))}"
-                raise ValueError(f"{self.path}: line {self.lines[first]}: {value} is outside (0, inf)")
+                value = f"{name} = {self.columns[name][first]:g} {next(iter(allowed_units[name]))}"
+                raise ValueError(f"{self.path}: line {self.line_numbers[first]}: {value} is outside (0, inf)")
         return self
 
 
@@ -79,31 +79,31 @@ def is_table(path: Path) -> bool:
     with path.open("rb") as file:
         lines = file.read(MAX_HEADING_BYTES).decode("utf-8", "replace").splitlines()
     head = next((line for line in lines if not line.startswith("#")), "")
-    return all(_HEADING_WITH_UNIT.fullmatch(cell) for cell in next(csv.reader([head]), [""]))
+    return all(_WRITTEN_HEADING_PATTERN.fullmatch(cell) for cell in next(csv.reader([head]), [""]))
 
 
-TABLE = FileKind("table", (".csv",), is_table)
-FIELD = FileKind("field", (".csv", ".vtu"), lambda path: is_table(path) or MESH.is_own(path))
+TABLE_FILE_KIND = FileKind("table", (".csv",), is_table)
+FIELD_FILE_KIND = FileKind("field", (".csv", ".vtu"), lambda path: is_table(path) or MESH.is_own(path))
 
 
-def format_heading(spec: Mapping[str, UnitSizes]) -> str:
+def format_heading(allowed_units: Mapping[str, UnitSizes]) -> str:
     """Format the expected columns with their allowed units, for error messages."""
-    return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in spec.items())
+    return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in allowed_units.items())
 
 
 def read_columns(
     path: str | Path,
-    spec: Mapping[str, UnitSizes],
+    allowed_units: Mapping[str, UnitSizes],
     min_rows: int,
     aliases: Mapping[str, Sequence[str]] | None = None,
     stated_headings: Mapping[str, ColumnHead] | None = None,
 ) -> Columns:
-    """Read from a file those columns of `spec` that the file has.
+    """Read from a file the columns of `allowed_units` that the file has.
 
-    spec            : {name: {allowed unit: its size in SI}}
+    allowed_units   : {name: {allowed unit: its size in SI}}
     min_rows        : rows that the file must have at least
-    aliases         : {name in `spec`: other names in lower case}; the unit decides between several names
-    stated_headings : {name in `spec`: (heading in this file, unit)}; unit None: the unit of the heading
+    aliases         : {column: other names in lower case}; the unit decides between several names
+    stated_headings : {column: (heading in this file, unit)}; unit None: the unit of the heading
 
     Raises ValueError, one line with file, line and column: no file, no text, no heading, a column that has
     no unit or a wrong unit or stands twice, a row of another length, a value that is no finite number, or
@@ -112,11 +112,11 @@ def read_columns(
     path = Path(path)
     lines = read_numbered_lines(path)
     if not lines:
-        raise ValueError(f"{path}: is empty; expected columns {format_heading(spec)}")
+        raise ValueError(f"{path}: is empty; expected columns {format_heading(allowed_units)}")
     mark = find_separator(lines[0][1])
     head = split_cells(lines[0][1], mark)
     head = _apply_stated_headings(path, head, stated_headings or {})
-    places = _find_columns(path, head, spec, aliases or {})
+    places = _find_columns(path, head, allowed_units, aliases or {})
     if len(lines) - 1 < min_rows:
         raise ValueError(f"{path}: has {len(lines) - 1} points, at least {min_rows} are needed")
     numbers = [number for number, _ in lines[1:]]
@@ -143,8 +143,8 @@ def read_names(path: str | Path) -> list[str]:
 
 def parse_heading(cell: str) -> ColumnHead:
     """Parse the heading of one column into name and unit: `angle [deg]`, `Angle (deg)` or `angle / deg`."""
-    if match := _HEADING.match(cell):
-        if match["unit"] is None and (other := _ALTERNATIVE_HEADING.match(cell)):
+    if match := _HEADING_PATTERN.match(cell):
+        if match["unit"] is None and (other := _ALTERNATIVE_HEADING_PATTERN.match(cell)):
             return other["name"], other["one"] or other["two"]
         return match["name"], match["unit"]
     return cell.strip(), None
@@ -170,14 +170,14 @@ def read_text_lines(path: Path) -> list[str]:
         raise ValueError(f"{path}: is no text file; expected CSV (UTF-8)") from None
 
 
-def decode_text(raw: bytes) -> str:
+def decode_text(file_bytes: bytes) -> str:
     """Decode UTF-8, else Latin-1. Raises UnicodeDecodeError if Latin-1 text has control characters."""
     try:
-        return raw.decode("utf-8-sig")
+        return file_bytes.decode("utf-8-sig")
     except UnicodeDecodeError:
-        if CONTROL_CHARACTERS.search(raw):
+        if CONTROL_CHARACTERS.search(file_bytes):
             raise
-        return raw.decode("latin-1")
+        return file_bytes.decode("latin-1")
 
 
 def find_separator(line: str) -> str | None:
@@ -190,10 +190,10 @@ def split_cells(line: str, delimiter: str | None) -> list[str]:
     return next(csv.reader([line], delimiter=delimiter or ","))
 
 
-def check_cell_count(path: Path, line: int, row: Sequence[str], count: int) -> None:
+def check_cell_count(path: Path, line_number: int, cells: Sequence[str], count: int) -> None:
     """Raise ValueError with the line number if a row does not have `count` cells."""
-    if len(row) != count:
-        raise ValueError(f"{path}: line {line} has {len(row)} columns, expected {count}")
+    if len(cells) != count:
+        raise ValueError(f"{path}: line {line_number} has {len(cells)} columns, expected {count}")
 
 
 def parse_number(cell: str) -> float | None:
@@ -225,9 +225,12 @@ def _apply_stated_headings(
 
 
 def _find_columns(
-    path: Path, cells: Sequence[str], spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
+    path: Path,
+    cells: Sequence[str],
+    allowed_units: Mapping[str, UnitSizes],
+    aliases: Mapping[str, Sequence[str]],
 ) -> dict[str, tuple[int, float, str]]:
-    """Find the columns of `spec` in a heading: {name: (index, size of its unit in SI, unit)}.
+    """Find the columns of `allowed_units` in a heading: {name: (index, size of its unit in SI, unit)}.
 
     Raises ValueError for a column that stands twice, has no unit or a wrong unit, or if there is no column.
     """
@@ -235,18 +238,19 @@ def _find_columns(
     named = {parse_heading(cell)[0].lower() for cell in cells}
     aliases = {name: words for name, words in aliases.items() if name not in named}
     for place, cell in enumerate(cells):
-        name, unit = _identify_column(cell, spec, aliases)
-        if name not in spec:
+        name, unit = _identify_column(cell, allowed_units, aliases)
+        if name not in allowed_units:
             continue
-        allowed = ", ".join(spec[name])
+        allowed = ", ".join(allowed_units[name])
         if name in places:
             raise ValueError(f"{path}: column {name!r} is given twice, allowed is once")
         if unit is None:
             raise ValueError(
-                f"{path}: column {name!r} has no unit, expected e.g. {name} [{next(iter(spec[name]))}]"
+                f"{path}: column {name!r} has no unit, expected e.g. {name} "
+                f"[{next(iter(allowed_units[name]))}]"
             )
         try:
-            places[name] = place, unit_size_in(unit, spec[name]), unit
+            places[name] = place, unit_size_in(unit, allowed_units[name]), unit
         except ValueError:
             raise ValueError(
                 f"{path}: column {name!r} has unit {unit!r}, allowed are {allowed} and others that "
@@ -254,48 +258,55 @@ def _find_columns(
             ) from None
     if not places:
         shown = ", ".join(cell.strip() for cell in cells)[:80]
-        raise ValueError(f"{path}: the first line is {shown!r}; expected columns {format_heading(spec)}")
+        raise ValueError(
+            f"{path}: the first line is {shown!r}; expected columns {format_heading(allowed_units)}"
+        )
     return places
 
 
 def _identify_column(
-    cell: str, spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
+    cell: str, allowed_units: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> ColumnHead:
-    """Identify the column of `spec` and the unit that a heading means.
+    """Identify the column and the unit that a heading means.
 
     The unit may be the end of the name: `joint_speed_rad_per_s`.
     """
     name, unit = parse_heading(cell)
-    found = name.lower() if name.lower() in spec else _resolve_alias(name.lower(), unit, spec, aliases)
-    if found in spec or unit is not None:
+    found = (
+        name.lower()
+        if name.lower() in allowed_units
+        else _resolve_alias(name.lower(), unit, allowed_units, aliases)
+    )
+    if found in allowed_units or unit is not None:
         return found, unit
     for mark in re.finditer("_", name):
         word, end = name[: mark.start()].lower(), name[mark.end() :].replace("_per_", "/")
-        meant = word if word in spec else _resolve_alias(word, end, spec, aliases)
+        meant = word if word in allowed_units else _resolve_alias(word, end, allowed_units, aliases)
         with suppress(ValueError, KeyError):
-            unit_size_in(end, spec[meant])
+            unit_size_in(end, allowed_units[meant])
             return meant, end
     return found, unit
 
 
 def _resolve_alias(
-    word: str, unit: str | None, spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
+    word: str, unit: str | None, allowed_units: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> str:
-    """Return the column of `spec` that has `word` as an alias and allows the unit; else `word` itself."""
+    """Return the column that has `word` as an alias and allows the unit; else `word` itself."""
     for name, words in aliases.items():
-        if word in words and name in spec and unit is not None:
+        if word in words and name in allowed_units and unit is not None:
             with suppress(ValueError):
-                unit_size_in(unit, spec[name])
+                unit_size_in(unit, allowed_units[name])
                 return name
     return word
 
 
-def _parse_column(path: Path, name: str, numbers: Sequence[int], texts: Sequence[str]) -> Array:
-    values = np.array([np.nan if (value := parse_number(cell)) is None else value for cell in texts])
+def _parse_column(path: Path, name: str, line_numbers: Sequence[int], cells: Sequence[str]) -> Array:
+    values = np.array([np.nan if (value := parse_number(cell)) is None else value for cell in cells])
     if np.any(wrong := ~np.isfinite(values)):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{path}: line {numbers[first]}: {name} = {texts[first].strip()!r} is no finite number with a "
+            f"{path}: line {line_numbers[first]}: {name} = {cells[first].strip()!r} is no finite "
+            "number with a "
             "decimal point"
         )
     return values

@@ -37,7 +37,7 @@ class Instance:
     variables   : {name: variable of the model description}
     fmu         : instance of fmpy, for calls that this class does not wrap
     messages    : all log messages
-    lines       : list to which warnings and errors are appended as they come, one line each
+    log_lines   : list to which warnings and errors are appended as they come, one line each
 
     Raises the exceptions of fmpy and ctypes if the library cannot be loaded, and if a call fails.
     """
@@ -48,16 +48,16 @@ class Instance:
         description: "ModelDescription",
         name: str,
         model_exchange: bool,
-        lines: list[str] | None = None,
+        log_lines: list[str] | None = None,
     ) -> None:
         from fmpy import fmi2, fmi3
 
         self.description = description
         self.variables = {v.name: v for v in description.modelVariables}
         self.version = int(description.fmiVersion[0])
-        self.exchange = model_exchange
+        self.is_model_exchange = model_exchange
         self.messages: list[Message] = []
-        self._lines = [] if lines is None else lines
+        self._log_lines = [] if log_lines is None else log_lines
         kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
         interface = description.modelExchange if model_exchange else description.coSimulation
         with (
@@ -93,15 +93,15 @@ class Instance:
         shown = text.decode("utf-8", "replace")
         self.messages.append(Message(status, shown, (category or b"").decode("utf-8", "replace")))
         if status:
-            self._lines.append(" ".join(shown.split()))
+            self._log_lines.append(" ".join(shown.split()))
 
-    def enter_initialization(self, start: float = 0.0, stop: float | None = None) -> None:
+    def enter_initialization(self, start_time: float = 0.0, stop_time: float | None = None) -> None:
         """Enter initialization mode at a start time [s]."""
         if self.version == 2:
-            self.fmu.setupExperiment(startTime=start, stopTime=stop)
+            self.fmu.setupExperiment(startTime=start_time, stopTime=stop_time)
             self.fmu.enterInitializationMode()
         else:
-            self.fmu.enterInitializationMode(startTime=start, stopTime=stop)
+            self.fmu.enterInitializationMode(startTime=start_time, stopTime=stop_time)
 
     def set_values(self, values: Mapping[str, object]) -> None:
         """Set variables of any type, one call each."""
@@ -122,7 +122,7 @@ class Instance:
         return RealVariables(self, names)
 
     def do_step(self, time: float, step_size: float) -> None:
-        """Do one co-simulation step: from `time` [s], with step size `size` [s]."""
+        """Do one co-simulation step: from `time` [s], with a step size [s]."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=step_size)
 
     def update_discrete_states(self) -> tuple[Any, ...]:
@@ -168,28 +168,28 @@ class RealVariables:
 def open_instance(
     folder: str,
     model_description: "ModelDescription",
-    source: str,
-    lines: list[str],
+    fmu_label: str,
+    log_lines: list[str],
     model_exchange: bool = False,
 ) -> Iterator[Instance]:
     """Context with an instance of an unpacked FMU, which is freed at the end.
 
-    source         : name of the FMU in error messages
-    lines          : list to which warnings and errors of the FMU are appended
+    fmu_label      : name of the FMU in error messages
+    log_lines      : list to which warnings and errors of the FMU are appended
     model_exchange : whether to use model exchange; default co-simulation
 
     Raises ValueError if the library cannot be loaded, RuntimeError if it does not instantiate, both with one
     line.
     """
     try:
-        instance = Instance(folder, model_description, "host", model_exchange, lines)
+        instance = Instance(folder, model_description, "host", model_exchange, log_lines)
     except Exception as error:  # fmpy raises bare Exception, ctypes its own
         reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
-        raise ValueError(f"{source}: its library cannot be loaded ({reason.rstrip('.')})") from None
+        raise ValueError(f"{fmu_label}: its library cannot be loaded ({reason.rstrip('.')})") from None
     try:
         instance.instantiate()
     except Exception as error:  # fmpy raises bare Exception
-        raise RuntimeError(f"{source}: {lines[-1] if lines else error}") from None
+        raise RuntimeError(f"{fmu_label}: {log_lines[-1] if log_lines else error}") from None
     try:
         yield instance
     finally:
@@ -249,31 +249,33 @@ def unpack_fmu(fmu: str | Path, model_exchange: bool = False) -> "Iterator[tuple
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def is_needed_to_run(member: str) -> bool:
+def is_needed_to_run(member_path: str) -> bool:
     """Return whether a file inside an FMU is needed to run it here: description, resources, binaries."""
     from fmpy import platform, platform_tuple
 
     needed = ("modelDescription.xml", "resources/", f"binaries/{platform}/", f"binaries/{platform_tuple}/")
-    return member.startswith(needed)
+    return member_path.startswith(needed)
 
 
-def _check_interface(model_description: "ModelDescription", source: Path, model_exchange: bool) -> None:
+def _check_interface(model_description: "ModelDescription", fmu_path: Path, model_exchange: bool) -> None:
     """Raise ValueError if the FMU has no co-simulation, or no binary for this platform."""
     from fmpy import platform, supported_platforms
 
     if model_description.coSimulation is None and not (model_exchange and model_description.modelExchange):
-        raise ValueError(f"{source}: has no co-simulation; expected an FMU for co-simulation")
-    if platform not in (built_for := supported_platforms(str(source))):
-        raise ValueError(f"{source}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")
+        raise ValueError(f"{fmu_path}: has no co-simulation; expected an FMU for co-simulation")
+    if platform not in (built_for := supported_platforms(str(fmu_path))):
+        raise ValueError(
+            f"{fmu_path}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}"
+        )
 
 
-def _check_python_flavour(resources: Path, source: Path) -> None:
+def _check_python_flavour(resources: Path, fmu_path: Path) -> None:
     """Raise ValueError if files of a pythonfmu FMU are missing; its library would crash without them."""
     if not (resources / "pythonfmu").is_dir():
         return
     entry = resources / "slavemodule.txt"
     if not entry.is_file():
-        raise ValueError(f"{source}: is no complete FMU; resources/slavemodule.txt is missing")
+        raise ValueError(f"{fmu_path}: is no complete FMU; resources/slavemodule.txt is missing")
     script = resources / f"{entry.read_text(encoding='utf-8').strip()}.py"
     if not script.is_file():
-        raise ValueError(f"{source}: is no complete FMU; resources/{script.name} is missing")
+        raise ValueError(f"{fmu_path}: is no complete FMU; resources/{script.name} is missing")

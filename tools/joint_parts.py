@@ -40,7 +40,7 @@ TOOL_NAMES = (
 class ToolParts:
     """Tool modules of one joint.
 
-    package      : of the folder of the joint
+    package      : name of the package that is the joint's folder
     module_names : modules with the name of their tool
     modules      : {tool: module}, if a module has another name than its tool
 

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from jointfmu.contact.interface import InterfaceLaw, find_validity_violations, stiffness_curve
-from jointfmu.contact.roughness import GAMMA, MAX_HEIGHT, combined_height, predicted_stiffness
+from jointfmu.contact.roughness import MAX_HEIGHT, PERSSON_GAMMA, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
-MAX_RATIO = 3.0
+MAX_STIFFNESS_RATIO = 3.0
 """Factor [1] above or below the estimate p/(GAMMA h) that makes a stiffness doubtful (docs/validity.md)."""
 
 
@@ -40,19 +40,19 @@ class StiffnessComparison:
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether the ratio is above MAX_RATIO or below 1/MAX_RATIO at any pressure."""
-        return bool(np.any((self.ratio > MAX_RATIO) | (self.ratio < 1.0 / MAX_RATIO)))
+        """Whether the ratio is above MAX_STIFFNESS_RATIO or below 1/MAX_STIFFNESS_RATIO at any pressure."""
+        return bool(np.any((self.ratio > MAX_STIFFNESS_RATIO) | (self.ratio < 1.0 / MAX_STIFFNESS_RATIO)))
 
     def __str__(self) -> str:
         at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.h:.3g} um"
-        return f"the law's K is {_format_range(self.ratio)} times p/({GAMMA:g} h) {at}"
+        return f"the law's K is {_format_range(self.ratio)} times p/({PERSSON_GAMMA:g} h) {at}"
 
     def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object."""
         columns = (self.pressure, self.stiffness, predicted_stiffness(self.pressure, self.h), self.ratio)
         names = ("pressure", "stiffness", "expected", "ratio")
         points = [dict(zip(names, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
-        return {"h": self.h, "gamma": GAMMA, "points": points}
+        return {"h": self.h, "gamma": PERSSON_GAMMA, "points": points}
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,12 +79,12 @@ class Plausibility:
         return {"level": self.comparison and self.comparison.to_json(), "warnings": list(self.warnings)}
 
 
-def find_height(file: ParameterFile) -> float | None:
+def find_rms_height(file: ParameterFile) -> float | None:
     """Combined rms height h [m] of both surfaces, from the law or else from the surface data of the file.
 
     None if the file has neither.
     """
-    h = law_height(KINDS[file.joint].extract_law(file.values))
+    h = law_rms_height(KINDS[file.joint].extract_law(file.values))
     return combined_height(file.roughness) if h is None else h
 
 
@@ -92,24 +92,24 @@ def assess_law(
     law: InterfaceLaw,
     pressures: Sequence[float],
     h: float | None,
-    peak: float = 0.0,
-    scale: Sequence[float] | float = 1.0,
+    peak_pressure: float = 0.0,
+    stiffness_ratio: Sequence[float] | float = 1.0,
     check_limits: bool = True,
 ) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa]. Zero and infinite ones are ignored.
 
-    h            : [m] combined rms height of both surfaces; None: unknown
-    peak         : [Pa] largest pressure, if `pressures` are mean values
-    scale        : stiffness of the joint over that of the interface law [1], one value or one per pressure
-    check_limits : also warn about pressures outside the range of validity
+    h               : [m] combined rms height of both surfaces; None: unknown
+    peak_pressure   : [Pa] largest pressure, if `pressures` are mean values
+    stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one per pressure
+    check_limits    : also warn about pressures outside the range of validity
     """
     nominal = np.asarray(pressures, dtype=np.float64)
     in_contact = (nominal > 0.0) & (nominal < np.inf)
-    p, factor = nominal[in_contact], np.broadcast_to(scale, nominal.shape)[in_contact]
+    p, factor = nominal[in_contact], np.broadcast_to(stiffness_ratio, nominal.shape)[in_contact]
     comparison = None
     if h is not None and p.size:
         comparison = StiffnessComparison(h, p, factor * stiffness_curve(law, p)[0])
-    highest = float(np.max(p, initial=peak))
+    highest = float(np.max(p, initial=peak_pressure))
     lowest = float(np.min(p, initial=highest))
     warnings = find_validity_violations(law, highest, lowest) if check_limits and highest > 0.0 else []
     if h is not None and h > 2.0 * MAX_HEIGHT:
@@ -119,14 +119,14 @@ def assess_law(
     if comparison is not None and comparison.is_doubtful:
         warnings.append(
             f"the law's K is {_format_range(comparison.ratio)} times that of the roughness, "
-            f"K/A_0 = p/({GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of "
-            f"{MAX_RATIO:g} a "
+            f"K/A_0 = p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of "
+            f"{MAX_STIFFNESS_RATIO:g} a "
             "measurement decides, and without one believe the roughness (docs/validity.md)"
         )
     return Plausibility(comparison, tuple(warnings))
 
 
-def law_height(law: InterfaceLaw) -> Number | None:
+def law_rms_height(law: InterfaceLaw) -> Number | None:
     """Combined rms height h [m] of an interface law; None if the law has no such parameter."""
     return getattr(law, "h", None)
 

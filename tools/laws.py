@@ -13,7 +13,7 @@ from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 from jointfmu.quantity import Number, build_parameter_set, flat_fields, flatten_parameters
 
 from . import fractal
-from .judgement import find_height, law_height
+from .judgement import find_rms_height, law_rms_height
 
 LAW_COLUMNS = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of the output of every law; a column that a law does not define is null."""
@@ -51,7 +51,7 @@ def build_law_parameters(law: str, file: ParameterFile | None, settings: dict[st
             | {"H": float(file_law.hardness)}
         )
     if law == ROUGHNESS_LAW:
-        fractal, stated = (flatten_parameters(file_law), find_height(file)) if differs else ({}, None)
+        fractal, stated = (flatten_parameters(file_law), find_rms_height(file)) if differs else ({}, None)
         settings = roughness_settings(fractal, stated, known["longest_wave"], settings)
     return build_parameter_set(LAWS[law], {k: v for k, v in known.items() if k in names} | settings)
 
@@ -106,9 +106,9 @@ def known_surface_height(
     If the parameters have no height, it is that of the file. The height of the default file is not used if
     the settings change the surfaces.
     """
-    h = law_height(parameters)
+    h = law_rms_height(parameters)
     if h is None and (file or not any(name.startswith("surface") for name in settings)):
-        return find_height(file or load_default(default_joint(law), law))
+        return find_rms_height(file or load_default(default_joint(law), law))
     return h
 
 

@@ -20,7 +20,7 @@ COMMAND_GROUPS = {
 }
 """{heading: commands}. The function `add` of the module `commands.COMMAND` declares each command."""
 COMMANDS = tuple(name for names in COMMAND_GROUPS.values() for name in names)
-SHELLS = ("bash", "zsh")
+COMPLETION_SHELLS = ("bash", "zsh")
 COMMAND_MODULES = {
     "cache": "build",
     "catalogue": "new",
@@ -116,8 +116,8 @@ def build_parser(words: Sequence[str] = ()) -> CommandLine:
     """
     top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
-    text = f"print a script for command completion in a shell: {', '.join(SHELLS)}"
-    top.add_argument("--completion", action=Completion, choices=SHELLS, metavar="SHELL", help=text)
+    text = f"print a script for command completion in a shell: {', '.join(COMPLETION_SHELLS)}"
+    top.add_argument("--completion", action=Completion, choices=COMPLETION_SHELLS, metavar="SHELL", help=text)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
         module = import_module(f"jointfmu_tools.commands.{COMMAND_MODULES.get(name, name)}")

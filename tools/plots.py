@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
-FORMATS = (".png", ".svg")
+PICTURE_FORMATS = (".png", ".svg")
 STYLE_SETTINGS: Any = {
     "svg.hashsalt": "jointfmu",
     "svg.fonttype": "path",
@@ -39,22 +39,22 @@ def check_picture(path: str | Path) -> None:
 
     Call it before long work.
     """
-    if Path(path).suffix.lower() not in FORMATS:
+    if Path(path).suffix.lower() not in PICTURE_FORMATS:
         raise ValueError(f"{path}: suffix {Path(path).suffix!r} is no picture, allowed are .png, .svg")
-    _rc_context()
+    _load_style_context()
 
 
 def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
     """Choose a display unit by the largest of the values; returns the unit and the factor to it."""
     name = display_unit(unit, float(np.max(np.abs(values))))
-    return name, UNITS[unit].display[name]
+    return name, UNITS[unit].display_factors[name]
 
 
 @contextmanager
 def open_figure(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
     """Create a figure of a size [inch] in the common style; it is saved at the end of the `with` block.
 
-    with plots.drawing("ramp.png") as figure:
+    with plots.open_figure("ramp.png") as figure:
         axes = figure.subplots()
     """
     check_picture(path)
@@ -72,11 +72,11 @@ def apply_style() -> Iterator[None]:
 
     Raises ValueError if matplotlib is missing.
     """
-    with _rc_context()(STYLE_SETTINGS):
+    with _load_style_context()(STYLE_SETTINGS):
         yield
 
 
-def _rc_context() -> Callable[..., AbstractContextManager[None, bool | None]]:
+def _load_style_context() -> Callable[..., AbstractContextManager[None, bool | None]]:
     try:
         from matplotlib import rc_context
     except ImportError:

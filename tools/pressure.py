@@ -12,7 +12,7 @@ from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile
 
 from .joint_parts import load_tool_module
-from .judgement import Plausibility, assess_law, find_height
+from .judgement import Plausibility, assess_law, find_rms_height
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,8 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Pla
     """Judge the stiffness of a joint under loads.
 
     loads : values of `NominalPressure.load_variable` [SI]; None: the start value in the file, or, if it is
-            zero, the default load. At the default load only the level of the stiffness is judged
+            zero, the default load. At the default load the stiffness is only compared with the estimate from
+            roughness
     """
     kind = KINDS[file.joint]
     nominal = nominal_pressure(kind)
@@ -69,7 +70,7 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Pla
         return Plausibility(None, ())
     if loads is None and file.start_value(nominal.load_variable) > 0.0:
         loads = [file.start_value(nominal.load_variable)]
-    law, h, limits = kind.extract_law(file.values), find_height(file), loads is not None
+    law, h, limits = kind.extract_law(file.values), find_rms_height(file), loads is not None
     if loads is None:
         loads = [nominal.default_load(file.values)]
     loads = [load for load in loads if load > 0.0]

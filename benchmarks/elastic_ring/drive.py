@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 
@@ -139,7 +139,7 @@ def oval(drive: HarmonicDrive, rings: Rings, theta: Array, height: Array) -> tup
 
 def torsional_stiffness(drive: HarmonicDrive, nodes: Footprint) -> float:
     """K_TS [N.m/rad] of nodes by Eq. 45 and the law, both corrected, without any scale."""
-    state = at_pressure(drive.law, nodes.pressure)
+    state = evaluate_at_pressure(drive.law, nodes.pressure)
     return float(nodes.rotation(state["K_N"], state["K_T"], (0.0, 0.0, 1.0)))
 
 

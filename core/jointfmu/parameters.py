@@ -42,12 +42,12 @@ an engineering estimate, fitted to calibration points, or set by the user."""
 _NUMBERS_PER_LINE = 5
 """Numbers of a list per line of the file [1]."""
 _INPUTS_PREFIX = "inputs."
-"""Prefix of the names of start values."""
-HEIGHT_TOLERANCE = 0.01
-"""Largest relative difference [1] between h of a law and the h computed from the section [roughness]: such
-heights are printed with two digits."""
-_ACTIVE, _COMPARISON = "roughness.", "comparison."
-"""Sections of the surface heights, as prefixes: of a law with the parameter h, and of a law without it."""
+"""Prefix of the structured names of the start values of inputs."""
+RELATIVE_HEIGHT_TOLERANCE = 0.01
+"""Largest relative difference [1] between h of a law and the h computed from the section [roughness]: heights
+are printed with two digits."""
+_ROUGHNESS_PREFIX, _COMPARISON_PREFIX = "roughness.", "comparison."
+"""Prefixes of the names of surface heights: for a law with the parameter h, and for a law without it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,29 +94,29 @@ class ParameterFile:
         """Prefix of the names of the surface heights: `roughness.` or `comparison.`."""
         return _heights_prefix(type(self.values))
 
-    def start_value(self, name: str) -> float:
+    def start_value(self, input_name: str) -> float:
         """Start value of an input in its SI unit: that of the file, else the default of the joint."""
-        variable = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
-        return self.inputs.get(name, variable.start if variable else 0.0)
+        variable = KINDS[self.joint].variables.get(input_name) if self.joint in KINDS else None
+        return self.inputs.get(input_name, variable.start if variable else 0.0)
 
-    def with_values(self, changes: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
-        """Copy with some values replaced; names and intervals are checked.
+    def with_values(self, new_values: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
+        """Copy of the file with new values, {structured name: value}; names and intervals are checked.
 
         A new height h of the law removes the heights of the surfaces from which h was computed.
         """
-        removed = {*self.roughness} if any(map(is_height, changes)) else set[str]()
+        removed = {*self.roughness} if any(map(is_height, new_values)) else set[str]()
         removed_names = {self.heights_prefix + name for name in removed}
         return replace(
             self,
-            values=replace_values(self.values, changes),
-            origins=_drop_names(removed_names, self.origins) | dict.fromkeys(changes, origin),
-            sources=_drop_names(removed_names, self.sources) | dict.fromkeys(changes, source),
+            values=replace_values(self.values, new_values),
+            origins=_drop_names(removed_names, self.origins) | dict.fromkeys(new_values, origin),
+            sources=_drop_names(removed_names, self.sources) | dict.fromkeys(new_values, source),
             roughness=_drop_names(removed, self.roughness),
-            ranges=_drop_names(changes, self.ranges),
+            ranges=_drop_names(new_values, self.ranges),
         )
 
     def with_roughness(self, heights: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
-        """Copy with new heights [m] of the surfaces, {name: height}.
+        """Copy of the file with new heights [m] of the surfaces, {name: height}.
 
         Earlier heights of the same side are removed. A law with the parameter h gets h computed from all
         heights. Raises ValueError as `roughness.check_heights` does.
@@ -165,7 +165,7 @@ def load_parameter_file(path: str | Path, joint: str | None = None) -> Parameter
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "law", "name")}
     cls = laws[law]
     prefix = _heights_prefix(cls)
-    if prefix == _COMPARISON and _ACTIVE[:-1] in body:
+    if prefix == _COMPARISON_PREFIX and _ROUGHNESS_PREFIX[:-1] in body:
         raise ValueError(
             f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] beside a law with a "
             "height, and [comparison] for what the level is judged by"
@@ -175,10 +175,8 @@ def load_parameter_file(path: str | Path, joint: str | None = None) -> Parameter
     values, origins, sources = read_entries(path, declared, body, keys)
     input_values, surface_heights = _pop_section(values, _INPUTS_PREFIX), _pop_section(values, prefix)
     try:
-        inputs, heights = (
-            _check_start_values(stated, input_values),
-            roughness.check_heights(surface_heights, prefix),
-        )
+        inputs = _check_start_values(stated, input_values)
+        heights = roughness.check_heights(surface_heights, prefix)
         of_law = _law_height(declared, values, heights)
         parameters = build_parameter_set(cls, values | of_law)
     except ValueError as error:
@@ -209,38 +207,41 @@ def _height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, st
 
 
 def _law_height(
-    declared: Mapping[str, object], values: Mapping[str, Any], heights: Mapping[str, float]
+    declared_fields: Mapping[str, object], entry_values: Mapping[str, Any], heights: Mapping[str, float]
 ) -> dict[str, float]:
-    """{name: h [m]} of the law, computed from the heights of the surfaces; empty if the file states h itself.
+    """Height h [m] of the law, {name: h}, from the heights of the surfaces; empty if the file states h.
 
     Empty also for a law without the parameter h. Raises ValueError if the file states both and they differ
-    by more than HEIGHT_TOLERANCE.
+    by more than RELATIVE_HEIGHT_TOLERANCE.
     """
     stated = roughness.combined_height(heights)
-    name = next((name for name in declared if is_height(name)), None)
+    name = next((name for name in declared_fields if is_height(name)), None)
     if stated is None or name is None:
         return {}
-    if name not in values:
+    if name not in entry_values:
         return {name: stated}
-    if not abs(values[name] / stated - 1.0) <= HEIGHT_TOLERANCE:
-        makers = ", ".join(_ACTIVE + height for height in heights)
+    if not abs(entry_values[name] / stated - 1.0) <= RELATIVE_HEIGHT_TOLERANCE:
+        makers = ", ".join(_ROUGHNESS_PREFIX + height for height in heights)
         raise ValueError(
-            f"{name} = {values[name]:g} m beside {makers}, which make {stated:.4g} m: expected one of them, "
-            f"or both within {HEIGHT_TOLERANCE:.1%}"
+            f"{name} = {entry_values[name]:g} m beside {makers}, which make {stated:.4g} m: expected "
+            "one of them, "
+            f"or both within {RELATIVE_HEIGHT_TOLERANCE:.1%}"
         )
     return {}
 
 
-def read_document(path: Path, expected: str) -> dict[str, Any]:
-    """Read a TOML document with the schema of this package; `expected` says in errors what it should be.
+def read_document(path: Path, expected_content: str) -> dict[str, Any]:
+    """Read a TOML document with the schema of this package.
+
+    expected_content : what the file should be, for the error
 
     Raises ValueError with one line if the file cannot be read, is no TOML or of another schema, or if a key
     or a text is too long or has control characters.
     """
     try:
-        document = tomllib.loads(read_bytes(path, expected).decode("utf-8-sig"))
+        document = tomllib.loads(read_bytes(path, expected_content).decode("utf-8-sig"))
     except UnicodeDecodeError:
-        raise ValueError(f"{path}: is no text file; expected {expected} (TOML, UTF-8)") from None
+        raise ValueError(f"{path}: is no text file; expected {expected_content} (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path}: is no valid TOML ({error})") from None
     try:
@@ -254,15 +255,15 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
 
 def read_entries(
     path: Path,
-    declared: Mapping[str, Field[Any]],
+    declared_fields: Mapping[str, Field[Any]],
     sections: Mapping[str, object],
-    keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
+    allowed_keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
     """Values, origins and sources of the entries, each by structured name.
 
-    declared : {structured name: field}; the unit of each entry is checked against its field
-    sections : nested sections and entries of the document
-    keys     : keys that an entry may have
+    declared_fields : {structured name: field}; the unit of each entry is checked against its field
+    sections        : nested sections and entries of the document
+    allowed_keys    : keys that an entry may have
 
     Raises ValueError, one line, for an entry that is no table, or has an unknown key, a wrong unit, an
     unknown kind or no source. Unknown names and the values themselves are not checked here.
@@ -273,12 +274,13 @@ def read_entries(
     for name, entry in list_entries(sections):
         if not isinstance(entry, Mapping):
             raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
-        if unknown := set(entry) - set(keys):
+        if unknown := set(entry) - set(allowed_keys):
             raise ValueError(
-                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, allowed are {', '.join(keys)}"
+                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, allowed are "
+                f"{', '.join(allowed_keys)}"
             )
-        if name in declared:
-            unit = declared[name].metadata.get("unit")
+        if name in declared_fields:
+            unit = declared_fields[name].metadata.get("unit")
             if entry.get("unit") != unit:
                 raise ValueError(f"{path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
         if entry.get("kind") not in ORIGINS:
@@ -293,7 +295,7 @@ def read_entries(
 
 
 def _read_ranges(
-    path: Path, declared: Mapping[str, Field[Any]], sections: Mapping[str, Any]
+    path: Path, declared_fields: Mapping[str, Field[Any]], sections: Mapping[str, Any]
 ) -> dict[str, tuple[float, float]]:
     """{structured name: (smallest, largest value)} of the entries that state a range.
 
@@ -307,20 +309,20 @@ def _read_ranges(
         numbers = isinstance(ends, list) and len(ends) == 2 and all(type(x) in (int, float) for x in ends)
         if not numbers or type(value) not in (int, float) or not ends[0] <= value <= ends[1] > ends[0]:
             raise ValueError(f"{path}: {name}: range = {ends!r}, expected [LOW, HIGH] around {value!r}")
-        for text in (find_problem(name, float(end), declared[name]) for end in ends):
+        for text in (find_problem(name, float(end), declared_fields[name]) for end in ends):
             if text:
                 raise ValueError(f"{path}: range of {text}")
         ranges[name] = (float(ends[0]), float(ends[1]))
     return ranges
 
 
-def list_entries(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
+def list_entries(sections: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
     """(structured name, entry) for each innermost item of a nested table.
 
     Innermost items are tables with a key `value`, empty tables and all items that are no table.
     """
     items: list[tuple[str, Any]] = []
-    for key, value in table.items():
+    for key, value in sections.items():
         if isinstance(value, Mapping) and value and "value" not in value:
             items += list_entries(value, f"{prefix}{key}.")
         else:
@@ -335,13 +337,15 @@ def _input_fields(joint: str) -> dict[str, Field[Any]]:
 
 
 def _heights_prefix(cls: type) -> str:
-    """Prefix of the names of the surface heights for a parameter set class, see `_ACTIVE`."""
-    return _ACTIVE if any(is_height(name) for name, _ in flat_fields(cls)) else _COMPARISON
+    """Prefix of the names of the surface heights for a parameter set class, see `_ROUGHNESS_PREFIX`."""
+    return _ROUGHNESS_PREFIX if any(is_height(name) for name, _ in flat_fields(cls)) else _COMPARISON_PREFIX
 
 
-def is_height(name: str) -> bool:
+def is_height(parameter_name: str) -> bool:
     """Whether a parameter of a law is the combined rms height h of both surfaces."""
-    return name.split(".")[-1] == "h" and not name.startswith((_ACTIVE, _COMPARISON))
+    return parameter_name.split(".")[-1] == "h" and not parameter_name.startswith(
+        (_ROUGHNESS_PREFIX, _COMPARISON_PREFIX)
+    )
 
 
 def _roughness_fields(prefix: str) -> dict[str, Field[Any]]:
@@ -349,9 +353,13 @@ def _roughness_fields(prefix: str) -> dict[str, Field[Any]]:
     return {prefix + name: item for name, item in roughness.HEIGHT_FIELDS.items()}
 
 
-def _pop_section(values: dict[str, Any], prefix: str) -> dict[str, Any]:
+def _pop_section(values_by_name: dict[str, Any], section_prefix: str) -> dict[str, Any]:
     """Remove a section from {structured name: value}; return {name in the section: value}."""
-    return {n.removeprefix(prefix): values.pop(n) for n in list(values) if n.startswith(prefix)}
+    return {
+        n.removeprefix(section_prefix): values_by_name.pop(n)
+        for n in list(values_by_name)
+        if n.startswith(section_prefix)
+    }
 
 
 def _check_start_values(joint: str, start_values: Mapping[str, Any]) -> dict[str, float]:

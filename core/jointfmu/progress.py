@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 J = TypeVar("J")
 T = TypeVar("T")
 MAX_ATTEMPTS = 4
-"""Attempts for a job [1] whose process dies."""
+"""Largest number of attempts [1] for a job whose process dies."""
 STATUS_DELAY = 2.0
 """Time [s] after which a command prints a status line."""
 _status: dict[str, Any] = {"step": "", "bars": 0}
@@ -25,7 +25,7 @@ _START_LOCK = Lock()
 """Lock held while a process starts: its start redirects standard error, which all threads share."""
 
 
-def track_progress(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T]:
+def track_progress(items: Iterable[T], bar_label: str, total: int | None = None) -> Iterator[T]:
     """Yield the items; show a progress bar if tqdm (extra `build`) is installed and stderr is a terminal."""
     try:
         from tqdm import tqdm
@@ -35,18 +35,18 @@ def track_progress(items: Iterable[T], text: str, total: int | None = None) -> I
     tqdm.set_lock(RLock())  # tqdm's default lock is shared by processes, and left behind by killed ones
     _status["bars"] += 1
     try:
-        yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
+        yield from tqdm(items, desc=bar_label, total=total, file=sys.stderr, disable=None, leave=False)
     finally:
         _status["bars"] -= 1
 
 
-def set_step(text: str) -> None:
+def set_step(step_text: str) -> None:
     """Set the text of the current step, which `show_status` prints."""
-    _status["step"] = text
+    _status["step"] = step_text
 
 
 @contextmanager
-def show_status(name: str) -> Iterator[None]:
+def show_status(command_name: str) -> Iterator[None]:
     """Context that shows a status line with name, step and seconds, on a terminal without a progress bar."""
     if not sys.stderr.isatty():
         yield
@@ -62,7 +62,7 @@ def show_status(name: str) -> Iterator[None]:
             elapsed = time.monotonic() - began
             if elapsed > STATUS_DELAY and not _status["bars"]:
                 status = ", ".join(filter(None, (_status["step"], f"{elapsed:.0f} s")))
-                print(f"\r{name}: {status}\x1b[K", end="", file=sys.stderr, flush=True)
+                print(f"\r{command_name}: {status}\x1b[K", end="", file=sys.stderr, flush=True)
 
     shower = Thread(target=print_status, daemon=True)
     shower.start()
@@ -93,7 +93,7 @@ class _StatusClearingStream:
 
 
 def map_jobs(
-    pool: Executor | None, function: Callable[..., T], text: str, *jobs: Sequence[object]
+    pool: Executor | None, function: Callable[..., T], bar_label: str, *jobs: Sequence[object]
 ) -> list[T]:
     """Apply a function to all jobs; return the results in the order of the jobs. Shows a progress bar.
 
@@ -102,15 +102,15 @@ def map_jobs(
     """
     count = len(jobs[0])
     run = pool.map if pool and count > 1 else map
-    return list(track_progress(run(function, *jobs), text, count))
+    return list(track_progress(run(function, *jobs), bar_label, count))
 
 
 class _Pool(ProcessPoolExecutor):
     """Process pool with the start method spawn; it communicates by pipes, without network ports."""
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, process_count: int) -> None:
         with _quiet_start_context():
-            super().__init__(count, multiprocessing.get_context("spawn"), _set_up_worker)
+            super().__init__(process_count, multiprocessing.get_context("spawn"), _set_up_worker)
 
     def submit(self, /, *args: Any, **arguments: Any) -> Future[Any]:
         with _quiet_start_context():
@@ -118,15 +118,15 @@ class _Pool(ProcessPoolExecutor):
 
 
 @contextmanager
-def worker_processes(count: int | None = None) -> Iterator[Executor]:
-    """Context with a pool of worker processes; `count` None: one per core.
+def worker_processes(process_count: int | None = None) -> Iterator[Executor]:
+    """Context with a pool of worker processes; `process_count` None: one per core.
 
     Functions and arguments must be picklable. The workers print no errors and ignore Ctrl-C; this process
     handles Ctrl-C and ends them. They also end if this process is killed. The program that starts them needs
     a guard, `if __name__ == "__main__"`.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # per process: more threads would only wait
-    pool = _Pool(count or os.cpu_count() or 1)
+    pool = _Pool(process_count or os.cpu_count() or 1)
     try:
         yield pool
     except BaseException:
@@ -138,13 +138,13 @@ def worker_processes(count: int | None = None) -> Iterator[Executor]:
 
 
 def run_jobs(
-    function: Callable[[J], T], jobs: Iterable[J], count: int | None = None
+    function: Callable[[J], T], jobs: Iterable[J], process_count: int | None = None
 ) -> Generator[tuple[J, T | None]]:
-    """Run a function for all jobs in `count` processes; yield (job, result) in the order of completion.
+    """Run a function for all jobs in several processes; yield (job, result) in the order of completion.
 
     Each process does one job at a time, so the job of a process that died is known. This job is repeated; its
     result is None after MAX_ATTEMPTS. Exceptions of the function are raised here. Close the iterator if you
-    stop before its end: this ends the processes. `count` None: one process per core.
+    stop before its end: this ends the processes. `process_count` None: one process per core.
     """
     waiting = iter(jobs)
     with ExitStack() as entered:
@@ -157,7 +157,7 @@ def run_jobs(
             except BrokenProcessPool:  # its process died after its last job
                 submit_job(job, attempt, None)
 
-        for job in islice(waiting, count or os.cpu_count() or 1):
+        for job in islice(waiting, process_count or os.cpu_count() or 1):
             submit_job(job, 1, None)
         while running:
             for future in wait(running, return_when=FIRST_COMPLETED).done:

@@ -10,25 +10,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from . import chart
-from .data import DataPart
+from .data import DataConversion
 from .terminals import Terminal
 
 if TYPE_CHECKING:
-    from .native import NativePart
+    from .native import NativeDefinition
 
 Drawing = Callable[..., Sequence[chart.Panel]]
-"""(tabulated joint, end of the load ramp) -> panels side by side."""
+"""Function (tabulated joint, end of the load ramp) -> panels of a chart, side by side."""
 
 
 class RampPanel(NamedTuple):
     """Chart of the load ramp on the page: quantities of one unit against an input or output (`abscissa`)."""
 
-    over: str
+    abscissa: str
     quantities: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Parts:
+class FmuParts:
     """Builder data of one joint; fields that differ between its FMUs are {FMU: ...}.
 
     folder    : folder with page, icons and C sources of the joint
@@ -41,25 +41,25 @@ class Parts:
     """
 
     folder: Path
-    native: "Callable[[], NativePart] | None" = None
-    data: DataPart = DataPart()
+    native: "Callable[[], NativeDefinition] | None" = None
+    data: DataConversion = DataConversion()
     terminals: Mapping[str, tuple[Terminal, ...]] = field(default_factory=dict)
     panels: Mapping[str, tuple[RampPanel, ...]] = field(default_factory=dict)
     drawings: Mapping[str, Mapping[str, Drawing]] = field(default_factory=dict)
 
 
-def native_of(package: str) -> "Callable[[], NativePart]":
+def native_loader(package: str) -> "Callable[[], NativeDefinition]":
     """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
 
-    def load() -> "NativePart":
-        part: NativePart = import_module(f"{package}.native").PART
+    def load() -> "NativeDefinition":
+        part: NativeDefinition = import_module(f"{package}.native").NATIVE_PART
         return part
 
     return load
 
 
-def equations() -> "NativePart":
+def load_equations() -> "NativeDefinition":
     """C definition of a joint whose outputs are explicit functions: it needs no C sources of its own."""
-    from .native import EQUATIONS
+    from .native import EQUATIONS_DEFINITION
 
-    return EQUATIONS
+    return EQUATIONS_DEFINITION

@@ -5,24 +5,24 @@ import re
 from collections.abc import Iterable
 
 
-def array(declaration: str, rows: Iterable[str]) -> str:
+def format_array(declaration: str, rows: Iterable[str]) -> str:
     """Define a C array with one row per line."""
     return f"{declaration} = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """C literal of a double, exact to the last bit."""
     if math.isinf(value):
         return "INFINITY" if value > 0 else "-INFINITY"
     return repr(float(value))
 
 
-def string(text: str) -> str:
+def format_string(text: str) -> str:
     """C string literal in ASCII without trigraphs; other characters as octal escapes of UTF-8 bytes."""
     return '"' + re.sub(rb'[^ -~]|["\\]|(?<=\?)\?', _escape, text.encode()).decode("ascii") + '"'
 
 
-def comment(text: str) -> str:
+def escape_comment(text: str) -> str:
     """Text for the inside of a C comment: printable ASCII without comment delimiters and trigraphs."""
     plain = re.sub(r"[^ -~]", "?", text)
     return re.sub(r"\*(?=/)|/(?=\*)|\?(?=\?)", r"\g<0> ", plain)

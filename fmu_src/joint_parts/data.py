@@ -15,16 +15,16 @@ class DataTable(NamedTuple):
     """
 
     rows: Array
-    most: int
-    digits: bool = False
+    max_rows: int
+    is_integer: bool = False
 
 
 Tables = Mapping[str, DataTable]
-NO_TABLES: Tables = {}
+EMPTY_TABLES: Tables = {}
 
 
 @dataclass(frozen=True, slots=True)
-class DataPart:
+class DataConversion:
     """Conversion of parameters that are not FMU variables into data: `FmuParts.data`.
 
     By default every real number is data. All other values (choices, series, integers) select the C code.
@@ -36,12 +36,12 @@ class DataPart:
         `data.n_NAME` rows
     """
 
-    stands: Callable[..., Mapping[str, Any]] = flatten_parameters
-    of: Callable[..., type[object]] = type
-    tables: Callable[..., Tables] = lambda values: NO_TABLES
+    convert_parameters: Callable[..., Mapping[str, Any]] = flatten_parameters
+    find_class: Callable[..., type[object]] = type
+    make_tables: Callable[..., Tables] = lambda values: EMPTY_TABLES
 
 
-class Split(NamedTuple):
+class ParameterSplit(NamedTuple):
     """Parameters of an FMU, divided by their role in C.
 
     variable_names  : names of FMU variables, which a simulation tool can set
@@ -51,14 +51,14 @@ class Split(NamedTuple):
     tables          : {name: table} in the data block
     """
 
-    exposed: Sequence[str]
-    fixed: Mapping[str, float]
-    code: Mapping[str, object]
-    of: type[object]
+    variable_names: Sequence[str]
+    data_values: Mapping[str, float]
+    code_values: Mapping[str, object]
+    parameter_class: type[object]
     tables: Tables
 
     @property
-    def structure(self) -> str:
+    def structure_key(self) -> str:
         """Text that is equal for all parameter files with the same C code."""
-        shapes = {name: (table.most, table.rows.shape[1]) for name, table in self.tables.items()}
-        return repr((sorted(self.code.items()), list(self.fixed), sorted(shapes.items())))
+        shapes = {name: (table.max_rows, table.rows.shape[1]) for name, table in self.tables.items()}
+        return repr((sorted(self.code_values.items()), list(self.data_values), sorted(shapes.items())))

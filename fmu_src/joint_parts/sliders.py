@@ -5,18 +5,18 @@ import casadi as ca
 from jointfmu.mechanics.jenkins import ReturnMapping, elastic_predictor, limit_function, return_map
 from jointfmu.quantity import select
 
-from .graph import Graph, symbols
+from .graph import Graph, make_symbols
 
-SLIDERS = ("jenkins", "simd")
+SLIDER_FILES = ("jenkins", "simd")
 """Shared C files of joints with friction sliders."""
 
 
-def add_sliders(g: Graph) -> None:
+def add_slider_functions(function_graph: Graph) -> None:
     """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
-    force, displacement, limit_start, limit_end, stiffness, compliance = symbols("x", 6)
+    force, displacement, limit_start, limit_end, stiffness, compliance = make_symbols("x", 6)
     predictor = elastic_predictor([force], 1.0, stiffness, [displacement])
     doc = "force, displacement, limit, stiffness -> elastic predictor, its limit function"
-    g.add(
+    function_graph.add_function(
         "elastic_predictor_1d",
         doc,
         [force, displacement, limit_end, stiffness],
@@ -26,46 +26,45 @@ def add_sliders(g: Graph) -> None:
     results = "force, tangent along and across, loss"
     derivative = "derivative of the loss by the displacement"
     doc = f"force, limit, stiffness, compliance, displacement -> {results}, {derivative}"
-    loss_derivative = select(mapping.slip > 0.0, mapping.force[0], 0.0)
-    y = [*mapping.force, *mapping.tangent, mapping.loss, loss_derivative]
-    g.add("return_map_1d_constant_limit", doc, [force, limit_end, stiffness, compliance, displacement], y)
+    loss_derivative = select(mapping.slip_force > 0.0, mapping.force[0], 0.0)
+    y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy, loss_derivative]
+    x = [force, limit_end, stiffness, compliance, displacement]
+    function_graph.add_function("return_map_1d_constant_limit", doc, x, y)
     mapping = return_map(
         [force], 1.0, stiffness, [displacement], limit_start, limit_end, stiffness, compliance
     )
     doc = f"force, limit at start, stiffness, compliance, displacement, limit at end -> {results}"
-    x, y = (
-        [force, limit_start, stiffness, compliance, displacement, limit_end],
-        [*mapping.force, *mapping.tangent, mapping.loss],
-    )
-    g.add_with_seed("return_map_1d", doc, x, y, constant_count=4)
-    _plane(g)
+    x = [force, limit_start, stiffness, compliance, displacement, limit_end]
+    y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy]
+    function_graph.add_with_derivative("return_map_1d", doc, x, y, constant_count=4)
+    _add_plane_functions(function_graph)
 
 
-def _plane(g: Graph) -> None:
+def _add_plane_functions(function_graph: Graph) -> None:
     """Add the functions of a slider with two tangential directions."""
     x, (force, limit_end, displacement), mapping = _slider_update()
     predictor = elastic_predictor(force, x[2], x[3], displacement)
     doc = "force, retention, secant stiffness, displacement"
     y = [*predictor, limit_function(predictor, limit_end)]
-    g.add(
+    function_graph.add_function(
         "elastic_predictor_2d",
         f"{doc}, limit -> elastic predictor, its limit function",
         [*x[:6], limit_end],
         y,
     )
     doc = f"{doc}, limits at start and end, stiffness, compliance"
-    y = [*mapping.force, *mapping.tangent, mapping.loss, mapping.slip]
-    g.add("return_map_2d", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
-    g.add("return_map_2d_force", f"{doc} -> force", x, mapping.force)
-    g.add_seed("return_map_2d", doc, x, y, constant_count=2)
+    y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy, mapping.slip_force]
+    function_graph.add_function("return_map_2d", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
+    function_graph.add_function("return_map_2d_force", f"{doc} -> force", x, mapping.force)
+    function_graph.add_derivative("return_map_2d", doc, x, y, constant_count=2)
     x, (_, limit_end, displacement), mapping = _slider_update()  # new symbols: a separate function
     y = list(ca.densify(ca.jacobian(ca.vertcat(*mapping.force), ca.vertcat(*displacement, limit_end))).T.nz)
-    g.add(
+    function_graph.add_function(
         "return_map_2d_derivatives",
         f"{doc} -> derivatives of the force by displacement and limit at end",
         x,
         y,
-        looped=True,
+        called_in_loops=True,
     )
 
 
@@ -76,8 +75,9 @@ def _slider_update() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]
     increment, limits at start and end, stiffness, compliance), among them (force, limit at end, increment),
     and the result.
     """
-    force, displacement, (retention, secant_stiffness) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
-    limit_start, limit_end, stiffness, compliance = ends = symbols("x", 4)
+    force, displacement = make_symbols("q", 2), make_symbols("u", 2)
+    retention, secant_stiffness = make_symbols("k", 2)
+    limit_start, limit_end, stiffness, compliance = ends = make_symbols("x", 4)
     mapping = return_map(
         force, retention, secant_stiffness, displacement, limit_start, limit_end, stiffness, compliance
     )

@@ -8,24 +8,24 @@ from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
-from ..archive import pack, workshop
+from ..archive import staging_folder, write_archive
 from ..partners import PARTNERS
-from ..proof.members import proof
+from ..proof.members import make_proof_files
 from ..xml_parts import VARIABILITIES
 from .compiled.binary import fill_library
-from .compiled.compiler import exported, file_name, universal
-from .compiled.kept import compiled_model
-from .data import data_of, placeholder, split
-from .description import build_description, fmi2_xml, fmi3_xml
-from .page import documentation
-from .terminals import terminals_and_icons
+from .compiled.compiled_models import get_compiled_model
+from .compiled.compiler import join_universal, library_file_name, select_units
+from .data import make_fmu_data, make_placeholder, split_parameters
+from .description import format_build_description, format_fmi2_description, format_fmi3_description
+from .page import make_documentation
+from .terminals import terminal_files
 
 
 def build(
     name: str,
     parameters: ParameterFile,
-    out: Path,
-    version: str,
+    output_folder: Path,
+    fmi_version: str,
     variability: str = VARIABILITIES[0],
     alias: str = "",
 ) -> Path:
@@ -33,7 +33,7 @@ def build(
 
     Equal content gives equal files.
 
-    version     : of FMI, "2" or "3"
+    fmi_version : of FMI, "2" or "3"
     variability : of all parameters, one of VARIABILITIES
     alias       : name of the FMU instead of `name`; empty: `name`
 
@@ -43,37 +43,39 @@ def build(
     model = replace(
         (MODELS | PARTNERS)[name].with_parameters(parameters.joint, parameters.values), alias=alias
     )
-    target = out / f"{model.title}.fmu"
-    with workshop(target) as work:
-        pack(_members(model, parameters, version, variability), work / target.name)
+    target = output_folder / f"{model.title}.fmu"
+    with staging_folder(target) as work:
+        write_archive(_make_members(model, parameters, fmi_version, variability), work / target.name)
     return target
 
 
-def _members(model: Model, parameters: ParameterFile, version: str, variability: str) -> dict[str, bytes]:
+def _make_members(
+    model: Model, parameters: ParameterFile, fmi_version: str, variability: str
+) -> dict[str, bytes]:
     """{path: content} of all files of a native FMU."""
-    parameter_split = split(model, parameters)
-    compiled = compiled_model(model, parameters, parameter_split)
-    data = data_of(model, parameters, parameter_split, compiled.sources)
-    placeholder_data = placeholder(model, parameter_split)
-    files = compiled.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
+    parameter_split = split_parameters(model, parameters)
+    compiled = get_compiled_model(model, parameters, parameter_split)
+    data = make_fmu_data(model, parameters, parameter_split, compiled.sources)
+    placeholder_data = make_placeholder(model, parameter_split)
+    files = compiled.sources | {"data.c": data.make_source(f" from the parameters {parameters.name!r}")}
     filled_libraries = {
         platform: fill_library(library, placeholder_data, data, model.title)
-        for platform, library in compiled.libraries[version].items()
+        for platform, library in compiled.libraries[fmi_version].items()
     }
-    icons = terminals_and_icons(model)
+    icons = terminal_files(model)
     return (
-        fmu_members(model, parameters, version, files, data.token, filled_libraries, variability)
-        | ({"model.png": icons["icon.png"]} if version == "2" else {})
-        | _in_folder("documentation", documentation(model, parameters))
+        fmu_members(model, parameters, fmi_version, files, data.token, filled_libraries, variability)
+        | ({"model.png": icons["icon.png"]} if fmi_version == "2" else {})
+        | _in_folder("documentation", make_documentation(model, parameters))
         | _in_folder("terminalsAndIcons", icons)
-        | proof(model, parameters)
+        | make_proof_files(model, parameters)
     )
 
 
 def fmu_members(
     model: Model,
     parameters: ParameterFile,
-    version: str,
+    fmi_version: str,
     files: Mapping[str, str],
     token: str,
     libraries: Mapping[str, bytes],
@@ -85,34 +87,40 @@ def fmu_members(
     token     : GUID (FMI 2.0) or instantiation token (FMI 3.0)
     libraries : {platform of FMI 3.0: library}
     """
-    units = exported(sorted(files), version)
+    units = select_units(sorted(files), fmi_version)
     sources = {path: text.encode() for path, text in files.items() if path in units or path.endswith(".h")}
-    members = binaries(model.title, libraries, version) | _in_folder("sources", sources)
-    if version == "2":
-        return members | {"modelDescription.xml": fmi2_xml(model, parameters, token, units, variability)}
+    members = place_libraries(model.title, libraries, fmi_version) | _in_folder("sources", sources)
+    if fmi_version == "2":
+        return members | {
+            "modelDescription.xml": format_fmi2_description(model, parameters, token, units, variability)
+        }
     return members | {
-        "modelDescription.xml": fmi3_xml(model, parameters, token, variability),
-        "sources/buildDescription.xml": build_description(model, units),
+        "modelDescription.xml": format_fmi3_description(model, parameters, token, variability),
+        "sources/buildDescription.xml": format_build_description(model, units),
     }
 
 
-_FMI2 = {"x86_64-windows": "win64", "x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux"}
+_FMI2_PLATFORMS = {"x86_64-windows": "win64", "x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux"}
 """{platform name of FMI 3.0: platform name of FMI 2.0}; for macOS see `place_libraries`."""
-_MACS = ("x86_64-darwin", "aarch64-darwin")
+_MACOS_PLATFORMS = ("x86_64-darwin", "aarch64-darwin")
 
 
-def binaries(name: str, libraries: Mapping[str, bytes], version: str) -> dict[str, bytes]:
+def place_libraries(library_name: str, libraries: Mapping[str, bytes], fmi_version: str) -> dict[str, bytes]:
     """{path in an FMU: content} of its libraries; in FMI 2.0 one universal file serves both macOS platforms.
 
     libraries : {platform of FMI 3.0: content}
     """
-    if version == "3":
-        return {f"binaries/{p}/{file_name(name, p)}": content for p, content in libraries.items()}
+    if fmi_version == "3":
+        return {
+            f"binaries/{p}/{library_file_name(library_name, p)}": content for p, content in libraries.items()
+        }
     members = {
-        f"binaries/{_FMI2[p]}/{file_name(name, p)}": content for p, content in libraries.items() if p in _FMI2
+        f"binaries/{_FMI2_PLATFORMS[p]}/{library_file_name(library_name, p)}": content
+        for p, content in libraries.items()
+        if p in _FMI2_PLATFORMS
     }
-    if macs := [libraries[p] for p in _MACS if p in libraries]:
-        members[f"binaries/darwin64/{name}.dylib"] = universal(macs)
+    if macs := [libraries[p] for p in _MACOS_PLATFORMS if p in libraries]:
+        members[f"binaries/darwin64/{library_name}.dylib"] = join_universal(macs)
     return members
 
 

@@ -12,16 +12,16 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity.units import CELSIUS, UNITS
 
-from ..licence import copyright_line
+from ..licence import find_copyright_line
 from ..xml_parts import (
     ListedVariable,
+    format_start_value,
+    list_units,
     list_variables,
-    model_structure,
-    serialized,
+    make_model_structure,
+    make_unit_definitions,
+    serialize_xml,
     stop_time,
-    text,
-    unit_definitions,
-    units,
 )
 
 LOG_CATEGORIES = {
@@ -29,17 +29,19 @@ LOG_CATEGORIES = {
     "logStatusWarning": "the state has left the range of the law; once for each way of leaving it",
     "logStatusError": "why a call was refused: what was found and what was expected",
 }
-_TIME = ListedVariable("time", "independent", "simulation time", None, {"unit": "s", "displayUnit": "s"})
-_COMMON = {"needsExecutionTool": "false", "canBeInstantiatedOnlyOncePerProcess": "false"}
-_FMI2 = _COMMON | {
+_TIME_VARIABLE = ListedVariable(
+    "time", "independent", "simulation time", None, {"unit": "s", "displayUnit": "s"}
+)
+_COMMON_FLAGS = {"needsExecutionTool": "false", "canBeInstantiatedOnlyOncePerProcess": "false"}
+_FMI2_FLAGS = _COMMON_FLAGS | {
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
     "providesDirectionalDerivative": "true",
 }
 _FMI2_INTERFACES = {
-    "ModelExchange": _FMI2 | {"completedIntegratorStepNotNeeded": "true"},
-    "CoSimulation": _FMI2
+    "ModelExchange": _FMI2_FLAGS | {"completedIntegratorStepNotNeeded": "true"},
+    "CoSimulation": _FMI2_FLAGS
     | {
         "canHandleVariableCommunicationStepSize": "true",
         "canInterpolateInputs": "true",
@@ -47,7 +49,7 @@ _FMI2_INTERFACES = {
         "canRunAsynchronuously": "false",
     },
 }
-_FMI3 = _COMMON | {
+_FMI3_FLAGS = _COMMON_FLAGS | {
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
     "providesDirectionalDerivatives": "true",
@@ -55,9 +57,9 @@ _FMI3 = _COMMON | {
     "providesPerElementDependencies": "true",
 }
 _FMI3_INTERFACES = {
-    "ModelExchange": _FMI3
+    "ModelExchange": _FMI3_FLAGS
     | {"needsCompletedIntegratorStep": "false", "providesEvaluateDiscreteStates": "false"},
-    "CoSimulation": _FMI3
+    "CoSimulation": _FMI3_FLAGS
     | {
         "canHandleVariableCommunicationStepSize": "true",
         "maxOutputDerivativeOrder": "0",
@@ -71,61 +73,69 @@ _FMI3_INTERFACES = {
 }
 
 
-def fmi2_xml(
-    model: Model, parameters: ParameterFile, token: str, sources: Sequence[str], variability: str = "tunable"
+def format_fmi2_description(
+    model: Model,
+    parameters: ParameterFile,
+    token: str,
+    source_names: Sequence[str],
+    variability: str = "tunable",
 ) -> bytes:
     """Content of modelDescription.xml of FMI 2.0.
 
-    token       : GUID
-    sources     : names of the C files to compile, in `sources/`
-    variability : of all parameters, one of VARIABILITIES
+    token        : GUID
+    source_names : names of the C files to compile, in `sources/`
+    variability  : of all parameters, one of VARIABILITIES
     """
     variables = list_variables(model, parameters)
-    root = _root(model, "2.0", "guid", token)
+    root = _make_root(model, "2.0", "guid", token)
     root.set("numberOfEventIndicators", "0")
     for kind, flags in _FMI2_INTERFACES.items():
         interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.initial_history and kind == "ModelExchange":
             interface.set("completedIntegratorStepNotNeeded", "false")
         files = SubElement(interface, "SourceFiles")
-        for name in sources:
+        for name in source_names:
             SubElement(files, "File", name=name)
-    root.append(unit_definitions(variables))
+    root.append(make_unit_definitions(variables))
     types = SubElement(root, "TypeDefinitions")
-    for quantity, attributes in _types(variables).items():
+    for quantity, attributes in _type_attributes(variables).items():
         SubElement(SubElement(types, "SimpleType", name=quantity), "Real", attributes)
-    _log_categories_and_experiment(root, model)
+    _add_log_categories_and_experiment(root, model)
     nodes = SubElement(root, "ModelVariables")
     for reference, v in enumerate(variables, start=1):
-        node = SubElement(nodes, "ScalarVariable", _heading(v, reference, variability))
-        SubElement(node, "Boolean" if v.boolean else "Real", _value(v))
-    root.append(model_structure(model, variability))
-    return serialized(root)
+        node = SubElement(nodes, "ScalarVariable", _common_attributes(v, reference, variability))
+        SubElement(node, "Boolean" if v.is_boolean else "Real", _value_attributes(v))
+    root.append(make_model_structure(model, variability))
+    return serialize_xml(root)
 
 
-def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: str = "tunable") -> bytes:
+def format_fmi3_description(
+    model: Model, parameters: ParameterFile, token: str, variability: str = "tunable"
+) -> bytes:
     """Content of modelDescription.xml of FMI 3.0; parameters as in `format_fmi2_description`."""
-    variables = [_TIME, *list_variables(model, parameters)]
-    root = _root(model, "3.0", "instantiationToken", token)
+    variables = [_TIME_VARIABLE, *list_variables(model, parameters)]
+    root = _make_root(model, "3.0", "instantiationToken", token)
     for kind, flags in _FMI3_INTERFACES.items():
         interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.initial_history and kind == "ModelExchange":
             interface.set("needsCompletedIntegratorStep", "true")
-    root.append(unit_definitions(variables))
+    root.append(make_unit_definitions(variables))
     types = SubElement(root, "TypeDefinitions")
-    for quantity, attributes in _types(variables).items():
+    for quantity, attributes in _type_attributes(variables).items():
         SubElement(types, "Float64Type", {"name": quantity} | attributes)
-    _log_categories_and_experiment(root, model)
+    _add_log_categories_and_experiment(root, model)
     nodes = SubElement(root, "ModelVariables")
     for reference, v in enumerate(variables):
         SubElement(
-            nodes, "Boolean" if v.boolean else "Float64", _heading(v, reference, variability) | _value(v)
+            nodes,
+            "Boolean" if v.is_boolean else "Float64",
+            _common_attributes(v, reference, variability) | _value_attributes(v),
         )
-    root.append(model_structure(model, variability, "3"))
-    return serialized(root)
+    root.append(make_model_structure(model, variability, "3"))
+    return serialize_xml(root)
 
 
-def build_description(model: Model, sources: Sequence[str]) -> bytes:
+def format_build_description(model: Model, source_names: Sequence[str]) -> bytes:
     """Content of sources/buildDescription.xml of FMI 3.0: how to compile the C files in `sources/`.
 
     The first configuration is for any platform. On Linux the mathematical functions are a separate library:
@@ -135,24 +145,24 @@ def build_description(model: Model, sources: Sequence[str]) -> bytes:
     for platform in (None, "x86_64-linux", "aarch64-linux"):
         build = SubElement(root, "BuildConfiguration", modelIdentifier=model.title)
         files = SubElement(build, "SourceFileSet", language="C11")
-        for name in sources:
+        for name in source_names:
             SubElement(files, "SourceFile", name=name)
         if platform:
             build.set("platform", platform)
             SubElement(build, "Library", name="m", external="true", description="mathematical functions of C")
-    return serialized(root)
+    return serialize_xml(root)
 
 
-def _root(model: Model, version: str, token_name: str, token: str) -> Element:
+def _make_root(model: Model, fmi_version: str, token_name: str, token: str) -> Element:
     """Root element of a model description; `token_name` is the attribute that holds the token."""
     root = Element(
-        "fmiModelDescription", {"fmiVersion": version, "modelName": model.title, token_name: token}
+        "fmiModelDescription", {"fmiVersion": fmi_version, "modelName": model.title, token_name: token}
     )
     root.attrib |= {
         "description": model.doc,
         "author": "the jointfmu authors",
         "version": __version__,
-        "copyright": copyright_line(),
+        "copyright": find_copyright_line(),
         "license": "MIT",
         "generationTool": f"jointfmu {__version__}",
         "variableNamingConvention": "structured",
@@ -162,39 +172,53 @@ def _root(model: Model, version: str, token_name: str, token: str) -> Element:
     return root
 
 
-def _types(variables: Sequence[ListedVariable]) -> dict[str, dict[str, str]]:
+def _type_attributes(variables: Sequence[ListedVariable]) -> dict[str, dict[str, str]]:
     """{quantity: attributes of its type definition}; its display unit is the first one of the unit."""
     return {
         UNITS[name].quantity: {
             "quantity": UNITS[name].quantity,
             "unit": name,
-            "displayUnit": CELSIUS if name == "K" else next(iter(UNITS[name].display)),
+            "displayUnit": CELSIUS if name == "K" else next(iter(UNITS[name].display_factors)),
         }
-        for name in units(variables)
+        for name in list_units(variables)
     }
 
 
-def _log_categories_and_experiment(root: Element, model: Model) -> None:
+def _add_log_categories_and_experiment(root: Element, model: Model) -> None:
     categories = SubElement(root, "LogCategories")
     for name, doc in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=doc)
-    stop, step = text(stop_time(model)), f"{model.ramp.interval:g}"
+    stop, step = format_start_value(stop_time(model)), f"{model.ramp.step_duration:g}"
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=stop, stepSize=step)
 
 
-def _heading(v: ListedVariable, reference: int, parameters: str) -> dict[str, str]:
+def _common_attributes(
+    listed_variable: ListedVariable, value_reference: int, parameter_variability: str
+) -> dict[str, str]:
     """XML attributes of a variable of any type; `parameter_variability` applies to parameters."""
-    variability = parameters if v.causality == "parameter" else "continuous"
-    heading = {"name": v.name, "valueReference": str(reference), "description": v.doc}
-    heading |= {"causality": v.causality, "variability": variability}
-    if v.causality in ("parameter", "output"):
-        heading["initial"] = "calculated" if v.start is None else "exact"
+    variability = parameter_variability if listed_variable.causality == "parameter" else "continuous"
+    heading = {
+        "name": listed_variable.name,
+        "valueReference": str(value_reference),
+        "description": listed_variable.doc,
+    }
+    heading |= {"causality": listed_variable.causality, "variability": variability}
+    if listed_variable.causality in ("parameter", "output"):
+        heading["initial"] = "calculated" if listed_variable.start is None else "exact"
     return heading
 
 
-def _value(v: ListedVariable) -> dict[str, str]:
+def _value_attributes(listed_variable: ListedVariable) -> dict[str, str]:
     """XML attributes of the value of a variable; the unit is repeated for importers that ignore types."""
-    value = {"declaredType": UNITS[v.attributes["unit"]].quantity} if v.attributes else {}
-    if v.rate_of:
-        value["derivative"] = str(v.rate_of)
-    return value | v.attributes | ({} if v.start is None else {"start": text(v.start)})
+    value = (
+        {"declaredType": UNITS[listed_variable.attributes["unit"]].quantity}
+        if listed_variable.attributes
+        else {}
+    )
+    if listed_variable.rate_of:
+        value["derivative"] = str(listed_variable.rate_of)
+    return (
+        value
+        | listed_variable.attributes
+        | ({} if listed_variable.start is None else {"start": format_start_value(listed_variable.start)})
+    )

@@ -9,20 +9,20 @@ import numpy as np
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model, TabulatedJoint
-from jointfmu.mechanics.steps import largest_stable_steps
+from jointfmu.mechanics.stable_steps import largest_stable_steps
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import describe_range, find_problem, flat_fields
 from jointfmu.quantity.units import UNITS, display_unit
 
-from ..folders import asset, parts_of
+from ..folders import find_asset, find_fmu_parts
 from ..joint_parts import RampPanel, chart
 from ..joint_parts.terminals import Terminal
-from ..licence import licences
-from ..templates import law_terms, template
+from ..licence import licence_files
+from ..templates import law_variables, load_template
 from ..xml_parts import list_variables
-from .terminals import terminals
+from .terminals import find_terminals
 
-_POINTS = 41
+_RAMP_POINTS = 41
 
 
 class _ParameterRow(NamedTuple):
@@ -31,14 +31,14 @@ class _ParameterRow(NamedTuple):
     name: str
     value: Any
     unit: str
-    allowed: str
+    allowed_values: str
     doc: str
     kind: str
     source: str
 
 
-_STIFFNESS = {"N.m/rad": "kg.m2", "N/m": "kg"}
-_BODIES = {"kg.m2": (0.01, 0.1, 1.0, 10.0), "kg": (1.0, 10.0, 100.0, 1000.0)}
+_INERTIA_UNITS = {"N.m/rad": "kg.m2", "N/m": "kg"}
+_EXAMPLE_INERTIAS = {"kg.m2": (0.01, 0.1, 1.0, 10.0), "kg": (1.0, 10.0, 100.0, 1000.0)}
 """{unit: inertias or masses} for which the page lists the largest stable steps."""
 
 
@@ -52,20 +52,26 @@ class _StableSteps(NamedTuple):
     name: str
     stiffness: float
     unit: str
-    inertia: str
+    inertia_unit: str
     rows: Sequence[tuple[float, float, float]]
 
 
-def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
+def make_documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
     """{path: content} of the folder documentation, the same for FMI 2.0 and 3.0."""
-    source = model, parameters, asset(model, "page.html")
-    page = plain_page(*source, terminals(model)) if model.is_time_dependent else _page(*source)
-    return {"index.html": page.encode(), **licences()}
+    source = model, parameters, find_asset(model, "page.html")
+    page = (
+        render_variables_page(*source, find_terminals(model))
+        if model.is_time_dependent
+        else _render_joint_page(*source)
+    )
+    return {"index.html": page.encode(), **licence_files()}
 
 
-def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()) -> str:
+def render_variables_page(
+    model: Model, parameters: ParameterFile, template_path: Path, flanges: Sequence[Terminal] = ()
+) -> str:
     """Render a page that lists the variables only, from the template at `template_path`."""
-    return template(page, Path(__file__).parent).render(
+    return load_template(template_path, Path(__file__).parent).render(
         model=model,
         version=__version__,
         variables=list_variables(model, parameters),
@@ -73,37 +79,37 @@ def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Seq
     )
 
 
-def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
+def _render_joint_page(model: Model, parameters: ParameterFile, template_path: Path) -> str:
     """Render the page of a joint from the template at `template_path`."""
     spring = model.tabulate(parameters.values)
     rest = {v.name: parameters.start_value(v.name) for v in model.inputs}
     model = model.with_load_range(spring, rest)
     variables = list_variables(model, parameters)
     exposed = model.parameter_fields()
-    rows = _rows(parameters)
-    return template(page, Path(__file__).parent).render(
+    rows = _parameter_rows(parameters)
+    return load_template(template_path, Path(__file__).parent).render(
         model=model,
         spring=spring,
         fmu=True,
-        **law_terms(parameters),
+        **law_variables(parameters),
         file=parameters,
         version=__version__,
         inputs=[v for v in variables if v.causality == "input"],
         outputs=[v for v in variables if v.causality == "output"],
         exposed=[row for row in rows if row.name in exposed],
         hidden=[row for row in rows if row.name not in exposed],
-        terminals=terminals(model),
-        messages=_messages(model, spring, rest),
-        figure=_figure(model, spring, rest),
-        drawings=drawings(model, spring),
-        steps=_steps(model, spring, rest, parameters),
-        style=chart.style(),
-        script=chart.script("figures") + "drawAll();",
-        ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
+        terminals=find_terminals(model),
+        messages=_list_messages(model, spring, rest),
+        figure=_draw_ramp(model, spring, rest),
+        drawings=draw_further_charts(model, spring),
+        steps=_find_stable_steps(model, spring, rest, parameters),
+        style=chart.read_style(),
+        script=chart.read_script("figures") + "drawAll();",
+        ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input_name),
     )
 
 
-def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
+def _parameter_rows(parameters: ParameterFile) -> list[_ParameterRow]:
     """Rows of the table of all parameters."""
     fields, rows = dict(flat_fields(type(parameters.values))), []
     for name, value in parameters.values_by_name.items():
@@ -119,8 +125,8 @@ def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
     return rows
 
 
-def _steps(
-    model: Model, spring: TabulatedJoint, rest: Mapping[str, float], parameters: ParameterFile
+def _find_stable_steps(
+    model: Model, spring: TabulatedJoint, start_values: Mapping[str, float], parameters: ParameterFile
 ) -> _StableSteps | None:
     """Largest stable communication steps of a joint with a body, at the end of the load ramp.
 
@@ -128,13 +134,13 @@ def _steps(
     passes on the force before the body steps, and for a parallel master with `lag_b` = 1. None: no input is a
     speed, so the joint has no such limit.
     """
-    stiffnesses = [v for v in model.outputs if v.unit in _STIFFNESS]
+    stiffnesses = [v for v in model.outputs if v.unit in _INERTIA_UNITS]
     if not stiffnesses or not any(v.unit in ("rad/s", "m/s") for v in model.inputs):
         return None
     unit = stiffnesses[0].unit
     first, *others = (v.name for v in stiffnesses if v.unit == unit)
     axes = [name for name in others if re.fullmatch(r"K_(.)\1", first) and re.fullmatch(r"K_(.)\1", name)]
-    outputs = evaluated(model, spring, {**rest, model.ramp.input: model.ramp.end})
+    outputs = evaluate_outputs(model, spring, {**start_values, model.ramp.input_name: model.ramp.end_value})
     K, name = max((outputs[name], name) for name in (first, *axes))
     if not K > 0.0:
         return None
@@ -145,18 +151,20 @@ def _steps(
         else 0.0
     )
     rows = []
-    for J in _BODIES[_STIFFNESS[unit]]:
+    for J in _EXAMPLE_INERTIAS[_INERTIA_UNITS[unit]]:
         at_once, side_by_side = largest_stable_steps(K, d, 1.0 / J)
-        rows.append((J, _short(float(at_once)), _short(float(side_by_side))))
-    return _StableSteps(name, _short(K), unit, _STIFFNESS[unit], rows)
+        rows.append((J, _round_to_three_digits(float(at_once)), _round_to_three_digits(float(side_by_side))))
+    return _StableSteps(name, _round_to_three_digits(K), unit, _INERTIA_UNITS[unit], rows)
 
 
-def _short(number: float) -> float:
+def _round_to_three_digits(number: float) -> float:
     """Round a number to three significant digits."""
     return float(f"{number:.3g}")
 
 
-def _messages(model: Model, spring: TabulatedJoint, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
+def _list_messages(
+    model: Model, spring: TabulatedJoint, start_values: Mapping[str, float]
+) -> list[tuple[str, str, str]]:
     """(level, example, meaning) of the messages that an instance may log."""
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
@@ -181,53 +189,57 @@ def _messages(model: Model, spring: TabulatedJoint, rest: Mapping[str, float]) -
     ]
     return messages + [
         ("warning", text, "Logged once until reset; the call succeeds.")
-        for text in _warnings(model, spring, rest)
+        for text in _example_warnings(model, spring, start_values)
     ]
 
 
-def _warnings(model: Model, spring: TabulatedJoint, rest: Mapping[str, float]) -> list[str]:
+def _example_warnings(model: Model, spring: TabulatedJoint, start_values: Mapping[str, float]) -> list[str]:
     """Example of each warning: end of the load ramp, one variable 10 % beyond its validity limit."""
-    inputs = {**rest, model.ramp.input: model.ramp.end}
-    values = inputs | evaluated(model, spring, inputs)
+    inputs = {**start_values, model.ramp.input_name: model.ramp.end_value}
+    values = inputs | evaluate_outputs(model, spring, inputs)
     warnings = []
     for i, outside in enumerate(model.validity_limits):
-        low, high = outside.interval(spring.joint, spring.curve.end, values)
-        value = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end
-        warnings.append(model.find_warnings(spring, values | {outside.variable: float(value)})[i])
+        low, high = outside.find_interval(spring.joint, spring.curve.end, values)
+        value = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end_value
+        warnings.append(model.find_warnings(spring, values | {outside.variable_name: float(value)})[i])
     return warnings
 
 
-def evaluated(model: Model, spring: TabulatedJoint, inputs: Mapping[str, float]) -> dict[str, float]:
+def evaluate_outputs(model: Model, spring: TabulatedJoint, inputs: Mapping[str, float]) -> dict[str, float]:
     """{output: value} of a tabulated joint at given inputs."""
     return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
 
 
-def panels(model: Model) -> tuple[RampPanel, ...]:
+def find_ramp_panels(model: Model) -> tuple[RampPanel, ...]:
     """Charts of the load ramp; default: the first output against the ramped input."""
-    charts = parts_of(model).panels.get(model.name)
-    return charts or (RampPanel(model.ramp.input, (model.outputs[0].name,)),)
+    charts = find_fmu_parts(model).panels.get(model.name)
+    return charts or (RampPanel(model.ramp.input_name, (model.outputs[0].name,)),)
 
 
-def _figure(model: Model, spring: TabulatedJoint, rest: Mapping[str, float]) -> str:
+def _draw_ramp(model: Model, spring: TabulatedJoint, start_values: Mapping[str, float]) -> str:
     """HTML element with the charts of the load ramp; the other inputs keep their start values."""
-    points = [{**rest, model.ramp.input: float(x)} for x in model.ramp.sample_inputs(_POINTS)]
-    rows = [point | evaluated(model, spring, point) for point in points]
+    points = [
+        {**start_values, model.ramp.input_name: float(x)} for x in model.ramp.sample_inputs(_RAMP_POINTS)
+    ]
+    rows = [point | evaluate_outputs(model, spring, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 
-    def column(name: str, shown: str) -> list[float]:
-        factor = UNITS[variables[name].unit].display[shown]
+    def convert_column(name: str, unit: str) -> list[float]:
+        factor = UNITS[variables[name].unit].display_factors[unit]
         return [factor * row[name] for row in rows]
 
     charts = []
-    for over, names in panels(model):
+    for over, names in find_ramp_panels(model):
         x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
-        lines = [chart.Series(name, column(over, x), column(name, y)) for name in names]
+        lines = [chart.Series(name, convert_column(over, x), convert_column(name, y)) for name in names]
         title = ", ".join(names)
         charts.append(chart.Panel(f"{title} over {over}", f"{over} [{x}]", f"{title} [{y}]", lines))
-    return chart.element(charts)
+    return chart.make_figure(charts)
 
 
-def drawings(model: Model, spring: TabulatedJoint) -> dict[str, str]:
+def draw_further_charts(model: Model, spring: TabulatedJoint) -> dict[str, str]:
     """{name: HTML element} of the further charts of a page."""
-    drawings = parts_of(model).drawings.get(model.name, {})
-    return {name: chart.element(panels(spring, model.ramp.end)) for name, panels in drawings.items()}
+    drawings = find_fmu_parts(model).drawings.get(model.name, {})
+    return {
+        name: chart.make_figure(panels(spring, model.ramp.end_value)) for name, panels in drawings.items()
+    }

@@ -9,37 +9,39 @@ from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
 
-from ..folders import asset, parts_of
+from ..folders import find_asset, find_fmu_parts
 from ..joint_parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
-from ..xml_parts import serialized
+from ..xml_parts import serialize_xml
 
-_COLORS = {ROTATIONAL: "0 0 0", TRANSLATIONAL: "0 127 0"}
-_HALF_SIZE = 10.0
-_FLANGES = Path(__file__).with_name("flanges")
+_FLANGE_COLORS = {ROTATIONAL: "0 0 0", TRANSLATIONAL: "0 127 0"}
+_ICON_HALF_SIZE = 10.0
+_FLANGE_ICONS = Path(__file__).with_name("flanges")
 """Folder of the flange icons, 32 x 32 pixels: circle or square, filled for side a, open for side b."""
 
 
-def terminals(model: Model) -> tuple[Terminal, ...]:
+def find_terminals(model: Model) -> tuple[Terminal, ...]:
     """Flanges of an FMU; may be empty."""
-    return parts_of(model).terminals.get(model.name, ())
+    return find_fmu_parts(model).terminals.get(model.name, ())
 
 
-def terminals_and_icons(model: Model) -> dict[str, bytes]:
+def terminal_files(model: Model) -> dict[str, bytes]:
     """{file name: content} of the folder terminalsAndIcons."""
-    files = {"terminalsAndIcons.xml": terminals_xml(model)}
-    files |= {f"icon.{kind}": asset(model, f"{model.name}.{kind}").read_bytes() for kind in ("png", "svg")}
-    flanges = {f"{_icon_name(terminal)}.png" for terminal in terminals(model)}
-    return files | {name: (_FLANGES / name).read_bytes() for name in sorted(flanges)}
+    files = {"terminalsAndIcons.xml": format_terminals(model)}
+    files |= {
+        f"icon.{kind}": find_asset(model, f"{model.name}.{kind}").read_bytes() for kind in ("png", "svg")
+    }
+    flanges = {f"{_icon_name(terminal)}.png" for terminal in find_terminals(model)}
+    return files | {name: (_FLANGE_ICONS / name).read_bytes() for name in sorted(flanges)}
 
 
-def terminals_xml(model: Model) -> bytes:
+def format_terminals(model: Model) -> bytes:
     """Content of terminalsAndIcons.xml."""
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
     graphics = SubElement(root, "GraphicalRepresentation")
     SubElement(graphics, "CoordinateSystem", corners | {"suggestedScalingFactorTo_mm": "0.1"})
     SubElement(graphics, "Icon", corners)
-    flanges = terminals(model)
+    flanges = find_terminals(model)
     group = SubElement(root, "Terminals") if flanges else root
     for terminal in flanges:
         node = SubElement(
@@ -47,7 +49,7 @@ def terminals_xml(model: Model) -> bytes:
             "Terminal",
             name=terminal.name,
             matchingRule="plug",
-            terminalKind=terminal.kind + terminal.side,
+            terminalKind=terminal.connector_class + terminal.side,
             description=terminal.doc,
         )
         for member, (variable, kind) in terminal.members.items():
@@ -58,17 +60,17 @@ def terminals_xml(model: Model) -> bytes:
         SubElement(
             node,
             "TerminalGraphicalRepresentation",
-            defaultConnectionColor=_COLORS[terminal.kind],
-            x1=f"{x - _HALF_SIZE:g}",
-            y1=f"{terminal.y - _HALF_SIZE:g}",
-            x2=f"{x + _HALF_SIZE:g}",
-            y2=f"{terminal.y + _HALF_SIZE:g}",
+            defaultConnectionColor=_FLANGE_COLORS[terminal.connector_class],
+            x1=f"{x - _ICON_HALF_SIZE:g}",
+            y1=f"{terminal.icon_y - _ICON_HALF_SIZE:g}",
+            x2=f"{x + _ICON_HALF_SIZE:g}",
+            y2=f"{terminal.icon_y + _ICON_HALF_SIZE:g}",
             iconBaseName=_icon_name(terminal),
         )
-    return serialized(root)
+    return serialize_xml(root)
 
 
 def _icon_name(terminal: Terminal) -> str:
     """File name of the icon of a flange, without extension."""
-    domain = "rotational" if terminal.kind == ROTATIONAL else "translational"
+    domain = "rotational" if terminal.connector_class == ROTATIONAL else "translational"
     return f"{domain}_{terminal.side}"

@@ -2,28 +2,36 @@
 
 from pathlib import Path
 
-from ..joint_parts import Parts, equations
+from ..joint_parts import FmuParts, load_equations
 from ..joint_parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
-from .models import PARTNERS, parameters
+from .models import PARTNERS, load_partner_parameters
 
 
-def _body(motion: str, rate: str, flow: str, kind: str, body: str) -> tuple[Terminal, ...]:
+def _make_body_flanges(
+    position_name: str, speed_name: str, load_name: str, connector_class: str, body_name: str
+) -> tuple[Terminal, ...]:
     """Two flanges of an inertia or mass; each has its own load input."""
-    members = {motion: (motion, "signal"), rate: (rate, "signal")}
-    loads = {side: f"{flow}_{side}" for side in ("a", "b")}
+    members = {position_name: (position_name, "signal"), speed_name: (speed_name, "signal")}
+    loads = {side: f"{load_name}_{side}" for side in ("a", "b")}
     return tuple(
-        Terminal(f"flange_{side}", kind, side, f"{body}, load {load}", members | {flow: (load, "inflow")})
+        Terminal(
+            f"flange_{side}",
+            connector_class,
+            side,
+            f"{body_name}, load {load}",
+            members | {load_name: (load, "inflow")},
+        )
         for side, load in loads.items()
     )
 
 
-PARTS = Parts(
+FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=equations,
+    native=load_equations,
     terminals={  # a load over time has no motion and so no flange
-        "RotationalInertia": _body("phi", "w", "tau", ROTATIONAL, "the inertia"),
-        "TranslationalMass": _body("s", "v", "f", TRANSLATIONAL, "the mass"),
+        "RotationalInertia": _make_body_flanges("phi", "w", "tau", ROTATIONAL, "the inertia"),
+        "TranslationalMass": _make_body_flanges("s", "v", "f", TRANSLATIONAL, "the mass"),
     },
 )
 
-__all__ = ["PARTNERS", "PARTS", "parameters"]
+__all__ = ["FMU_PARTS", "PARTNERS", "load_partner_parameters"]

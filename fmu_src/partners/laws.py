@@ -14,7 +14,7 @@ GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2]."""
 
 
-def _lag(flange: str) -> Any:
+def _lag_parameter(flange: str) -> Any:
     """Parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
     doc = f"communication steps by which the load on {flange} comes late: 1 from a joint in a parallel master"
     return quantity_field("1", doc, ge=0.0, le=1.0)
@@ -24,35 +24,43 @@ def _lag(flange: str) -> Any:
 class RotationalInertia(CheckedParameters):
     """Rotational inertia loaded by two torques and its weight."""
 
-    inertia: ClassVar[str] = "J"
+    inertia_name: ClassVar[str] = "J"
     J: float = quantity_field("kg.m2", "moment of inertia about the axis", gt=0.0)
     m: float = quantity_field("kg", "mass on which the weight acts", ge=0.0)
     l: float = quantity_field("m", "from the axis to the centre of mass", ge=0.0)  # noqa: E741
-    lag_a: float = _lag("a")
-    lag_b: float = _lag("b")
+    lag_a: float = _lag_parameter("a")
+    lag_b: float = _lag_parameter("b")
 
-    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+    def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Angle [rad] from the hanging position, angular speed [rad/s], angular acceleration [rad/s2]."""
-        weight = self.m * GRAVITY * self.l * np.sin(v["phi"])
-        return {"phi": v["phi"], "w": v["w"], "a": (v["tau_a"] + v["tau_b"] - weight) / self.J}
+        weight = self.m * GRAVITY * self.l * np.sin(variable_values["phi"])
+        return {
+            "phi": variable_values["phi"],
+            "w": variable_values["w"],
+            "a": (variable_values["tau_a"] + variable_values["tau_b"] - weight) / self.J,
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
 class TranslationalMass(CheckedParameters):
     """Mass loaded by two forces."""
 
-    inertia: ClassVar[str] = "m"
+    inertia_name: ClassVar[str] = "m"
     m: float = quantity_field("kg", "mass", gt=0.0)
-    lag_a: float = _lag("a")
-    lag_b: float = _lag("b")
+    lag_a: float = _lag_parameter("a")
+    lag_b: float = _lag_parameter("b")
 
-    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+    def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Position [m], speed [m/s], acceleration [m/s2]."""
-        return {"s": v["s"], "v": v["v"], "a": (v["f_a"] + v["f_b"]) / self.m}
+        return {
+            "s": variable_values["s"],
+            "v": variable_values["v"],
+            "a": (variable_values["f_a"] + variable_values["f_b"]) / self.m,
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Load(CheckedParameters):
+class _RampAndPulse(CheckedParameters):
     """Load over time: a ramp that stays at its end value, and a pulse; subclasses define the heights."""
 
     ramp_start: float = quantity_field("s", "begin of the ramp")
@@ -61,41 +69,49 @@ class _Load(CheckedParameters):
     pulse_rise: float = quantity_field("s", "rise time of the pulse, and of its fall", gt=0.0)
     pulse_hold: float = quantity_field("s", "time at the pulse's height", ge=0.0)
 
-    def corners(self) -> tuple[Number, ...]:
+    def find_corner_times(self) -> tuple[Number, ...]:
         """Times [s] at which a ramp or an edge of the pulse begins or ends."""
         top, fall = self.pulse_start + self.pulse_rise, self.pulse_start + self.pulse_rise + self.pulse_hold
         ramp = (self.ramp_start, self.ramp_start + self.ramp_duration)
         return (*ramp, self.pulse_start, top, fall, fall + self.pulse_rise)
 
-    def at(self, time: Number, ramp: Number, pulse: Number) -> Number:
+    def evaluate_load(self, time: Number, ramp_height: Number, pulse_height: Number) -> Number:
         """Load at a time [s], for given heights of ramp and pulse."""
         rise = smooth_step((time - self.pulse_start) / self.pulse_rise)
         fall = smooth_step((time - self.pulse_start - self.pulse_rise - self.pulse_hold) / self.pulse_rise)
-        return ramp * smooth_step((time - self.ramp_start) / self.ramp_duration) + pulse * (rise - fall)
+        return ramp_height * smooth_step((time - self.ramp_start) / self.ramp_duration) + pulse_height * (
+            rise - fall
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorqueProfile(_Load):
+class TorqueProfile(_RampAndPulse):
     """Torque over time: ramp and pulse."""
 
     ramp_height: float = quantity_field("N.m", "torque of the ramp")
     pulse_height: float = quantity_field("N.m", "torque of the pulse")
 
-    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+    def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Torque [N.m], including the input torque."""
-        return {"tau": v["tau_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}
+        return {
+            "tau": variable_values["tau_in"]
+            + self.evaluate_load(variable_values["time"], self.ramp_height, self.pulse_height)
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
-class ForceProfile(_Load):
+class ForceProfile(_RampAndPulse):
     """Force over time: ramp and pulse."""
 
     ramp_height: float = quantity_field("N", "force of the ramp")
     pulse_height: float = quantity_field("N", "force of the pulse")
 
-    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+    def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Force [N], including the input force."""
-        return {"f": v["f_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}
+        return {
+            "f": variable_values["f_in"]
+            + self.evaluate_load(variable_values["time"], self.ramp_height, self.pulse_height)
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,76 +122,78 @@ class AngleProfile(CheckedParameters):
     duration: float = quantity_field("s", "from its begin to its end", gt=0.0)
     height: float = quantity_field("rad", "angle of the turn")
 
-    def corners(self) -> tuple[Number, ...]:
+    def find_corner_times(self) -> tuple[Number, ...]:
         """Times [s] at which the rotation begins and ends."""
         return (self.start, self.start + self.duration)
 
-    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+    def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Angle [rad] and angular speed [rad/s], including the input angle and speed."""
-        x = (v["time"] - self.start) / self.duration
+        x = (variable_values["time"] - self.start) / self.duration
         rate, _ = smooth_step_slopes(x)
         return {
-            "phi": v["phi_in"] + self.height * smooth_step(x),
-            "w": v["w_in"] + self.height * rate / self.duration,
+            "phi": variable_values["phi_in"] + self.height * smooth_step(x),
+            "w": variable_values["w_in"] + self.height * rate / self.duration,
         }
 
 
-POINTS = 17
+CONTROL_POINTS = 17
 """Number of control points of a TorqueCurve [1]."""
 
 
-_NAMES = [f"p{k + 1}" for k in range(POINTS)]
+_POINT_NAMES = [f"p{k + 1}" for k in range(CONTROL_POINTS)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Bernstein(CheckedParameters):
+class _BernsteinTorque(CheckedParameters):
     """Torque over time as a Bernstein polynomial; constant before its start and after its end."""
 
     start: float = quantity_field("s", "begin of the curve")
     duration: float = quantity_field("s", "from its begin to its end", gt=0.0)
 
     @staticmethod
-    def shares(x: Number) -> list[Number]:
+    def basis_functions(normalized_time: Number) -> list[Number]:
         """Bernstein basis: weight of each control point at the normalized time x [1]."""
-        r = np.fmin(np.fmax(x, 0.0), 1.0)
-        last = POINTS - 1
-        return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(POINTS)]
+        r = np.fmin(np.fmax(normalized_time, 0.0), 1.0)
+        last = CONTROL_POINTS - 1
+        return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(CONTROL_POINTS)]
 
     @classmethod
-    def fitted(cls, x: NDArray[np.float64], torque: NDArray[np.float64]) -> dict[str, float]:
+    def fit_points(
+        cls, normalized_times: NDArray[np.float64], torque: NDArray[np.float64]
+    ) -> dict[str, float]:
         """Fit control points {name: torque [N.m]} to torques over x [1] from 0 to 1, exact at both ends.
 
         Least squares at the given points.
         """
-        weights = np.stack(cls.shares(x), axis=1)
-        ends = [0, POINTS - 1]
+        weights = np.stack(cls.basis_functions(normalized_times), axis=1)
+        ends = [0, CONTROL_POINTS - 1]
         remainder = torque - weights[:, ends] @ torque[[0, -1]]
         inner, *_ = np.linalg.lstsq(weights[:, 1:-1], remainder, rcond=None)
         points = [torque[0], *inner, torque[-1]]
-        return dict(zip(_NAMES, map(float, points), strict=True))
+        return dict(zip(_POINT_NAMES, map(float, points), strict=True))
 
-    def corners(self) -> tuple[Number, ...]:
+    def find_corner_times(self) -> tuple[Number, ...]:
         """Times [s] at which the curve begins and ends."""
         return (self.start, self.start + self.duration)
 
-    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+    def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Torque [N.m], including the input torque."""
-        weights = self.shares((v["time"] - self.start) / self.duration)
-        terms = [getattr(self, name) * weight for name, weight in zip(_NAMES, weights, strict=True)]
-        return {"tau": v["tau_in"] + sum(terms)}
+        weights = self.basis_functions((variable_values["time"] - self.start) / self.duration)
+        terms = [getattr(self, name) * weight for name, weight in zip(_POINT_NAMES, weights, strict=True)]
+        return {"tau": variable_values["tau_in"] + sum(terms)}
 
 
-def _point(name: str) -> tuple[str, type, Any]:
+def _define_point(point_name: str) -> tuple[str, type, Any]:
     """Dataclass field of one control point."""
-    doc = f"torque at point {name[1:]} of {POINTS} of the Bernstein polynomial"
-    return name, float, quantity_field("N.m", doc)
+    doc = f"torque at point {point_name[1:]} of {CONTROL_POINTS} of the Bernstein polynomial"
+    return point_name, float, quantity_field("N.m", doc)
 
 
-TorqueCurve: type[_Bernstein] = make_dataclass(
+TorqueCurve: type[_BernsteinTorque] = make_dataclass(
     "TorqueCurve",
-    [_point(name) for name in _NAMES],
-    bases=(_Bernstein,),
-    namespace={"__doc__": _Bernstein.__doc__, "__module__": __name__},
+    [_define_point(name) for name in _POINT_NAMES],
+    bases=(_BernsteinTorque,),
+    namespace={"__doc__": _BernsteinTorque.__doc__, "__module__": __name__},
     frozen=True,
     kw_only=True,
 )

@@ -12,13 +12,13 @@ from jointfmu.quantity import build_parameter_set, flat_fields
 from .laws import AngleProfile, ForceProfile, RotationalInertia, TorqueCurve, TorqueProfile, TranslationalMass
 
 
-def _model(
+def _make_model(
     parameters: type[Any],
     doc: str,
     inputs: Sequence[Variable],
     outputs: Sequence[Variable],
     ramp: LoadRamp,
-    states: int = 0,
+    state_count: int = 0,
 ) -> Model:
     """Model of a partner, from its parameter class and variables."""
     return Model(
@@ -29,24 +29,26 @@ def _model(
         tabulate=lambda partner: partner,
         inputs=inputs,
         outputs=outputs,
-        evaluate=lambda partner, values: partner.outputs(values),
+        evaluate=lambda partner, values: partner.evaluate_outputs(values),
         validity_limits=(),
         ramp=ramp,
         # states depend on no input; the acceleration depends on the inputs and the position
-        dependencies={v.name: (v.name,) for v in outputs[:states]}
-        | {v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[states:] if states},
-        state_count=states,
+        dependencies={v.name: (v.name,) for v in outputs[:state_count]}
+        | {
+            v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[state_count:] if state_count
+        },
+        state_count=state_count,
         is_time_dependent=True,
-        find_event_times=getattr(parameters, "corners", None),
+        find_event_times=getattr(parameters, "find_corner_times", None),
     )
 
 
-_TORQUE = (Variable("tau_in", "N.m", "torque that is added"),), (Variable("tau", "N.m", "torque"),)
+_TORQUE_VARIABLES = (Variable("tau_in", "N.m", "torque that is added"),), (Variable("tau", "N.m", "torque"),)
 """Inputs and outputs of models that prescribe a torque over time."""
 PARTNERS: dict[str, Model] = {
     model.name: model
     for model in (
-        _model(
+        _make_model(
             RotationalInertia,
             "Rotational inertia with its weight: torques in, motion out",
             (
@@ -59,9 +61,9 @@ PARTNERS: dict[str, Model] = {
                 Variable("a", "rad/s2", "acceleration", 1e2),
             ),
             LoadRamp("tau_a", 1.0, 1e-3, 1e-3),
-            states=2,
+            state_count=2,
         ),
-        _model(
+        _make_model(
             TranslationalMass,
             "Mass: forces in, motion out",
             (
@@ -74,22 +76,22 @@ PARTNERS: dict[str, Model] = {
                 Variable("a", "m/s2", "acceleration", 1e2),
             ),
             LoadRamp("f_a", 1e3, 1.0, 1e-5),
-            states=2,
+            state_count=2,
         ),
-        _model(
+        _make_model(
             TorqueProfile,
             "Torque over time: a ramp that stays and a pulse, without corners",
-            *_TORQUE,
+            *_TORQUE_VARIABLES,
             LoadRamp("tau_in", 1.0, 1e-3, 1e-3, {"pulse_height": 1.0}),
         ),
-        _model(
+        _make_model(
             ForceProfile,
             "Force over time: a ramp that stays and a pulse, without corners",
             (Variable("f_in", "N", "force that is added", 1e3),),
             (Variable("f", "N", "force", 1e3),),
             LoadRamp("f_in", 1e3, 1.0, 1e-3, {"pulse_height": 1e3}),
         ),
-        _model(
+        _make_model(
             AngleProfile,
             "Angle over time: a turn from rest to rest, without corners",
             (
@@ -99,17 +101,17 @@ PARTNERS: dict[str, Model] = {
             (Variable("phi", "rad", "angle"), Variable("w", "rad/s", "speed")),
             LoadRamp("phi_in", 1.0, 1e-3, 1e-3, {"height": 1.0}),
         ),
-        _model(
+        _make_model(
             TorqueCurve,
             "Torque over time: a Bernstein polynomial, held before and after it",
-            *_TORQUE,
+            *_TORQUE_VARIABLES,
             LoadRamp("tau_in", 1.0, 1e-3, 1e-3),
         ),
     )
 }
 
 
-def parameters(name: str) -> ParameterFile:
+def load_partner_parameters(name: str) -> ParameterFile:
     """Load the parameter file of a partner, models/partners/NAME.toml.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.

@@ -16,25 +16,25 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load_parameter_file, read_document
 from jointfmu.quantity import replace_values
 
-from .neighbours import neighbours
-from .reference import Stimulus, results, rounded, start_of
+from .boundary_values import find_boundary_values
+from .reference import Stimulus, compute_results, list_start_values, round_to_digits
 from .series import TimeSeries
 
-RAMP = 20
+RAMP_LEVELS = 20
 """Number of levels of the load ramp [1]."""
-SMOKE_LEVELS = 4
+SMOKE_LEVEL_COUNT = 4
 """Number of levels of the smoke test and of the shipped models [1]."""
-MIN_LEVELS = 2
+MIN_LEVEL_COUNT = 2
 """Number of levels of boundary values and samples [1]."""
-QUARTER = 6
+QUARTER_LEVELS = 6
 """Number of levels of a quarter cycle of the loop [1]."""
-CYCLES = 1
+CYCLE_COUNT = 1
 """Number of cycles of the loop after first loading [1]."""
-FRACTION = 0.25
+INTERVAL_RATIO = 0.25
 """Sampling interval of a time-dependent model over the interval of its ramp [1]."""
-SAMPLES = 6
-"""Number of experiments with varied parameters [1]."""
-_REFUSALS = (ValueError, RuntimeError, ArithmeticError)
+SAMPLE_COUNT = 6
+"""Number of experiments in which all parameters are varied [1]."""
+_REFUSAL_ERRORS = (ValueError, RuntimeError, ArithmeticError)
 UNCERTAINTY_HALF_WIDTH = 0.01
 """Half width of the parameter variation [1]: a test plan, no statement on the uncertainty of parameters."""
 
@@ -52,38 +52,42 @@ class ReferenceExperiment:
     name: str
     doc: str
     settings: Mapping[str, object]
-    drive: Stimulus
+    stimulus: Stimulus
     results: TimeSeries
 
 
-def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperiment]:
+def compute_experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperiment]:
     """Compute all experiments of an FMU, the smoke test first.
 
     Raises ValueError or RuntimeError if the joint refuses its own parameter file.
     """
-    model = model.with_load_range(model.tabulate(parameters.values), start_of(model, parameters))
+    model = model.with_load_range(model.tabulate(parameters.values), list_start_values(model, parameters))
     return [
-        _experiment(model, parameters, "smoke-test", "smoke test", "a few loads", {}, SMOKE_LEVELS),
-        _experiment(model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP),
-        *_loop(model, parameters),
+        _compute_ramp(model, parameters, "smoke-test", "smoke test", "a few loads", {}, SMOKE_LEVEL_COUNT),
+        _compute_ramp(
+            model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP_LEVELS
+        ),
+        *_compute_loop(model, parameters),
         *(
-            _experiment(
+            _compute_ramp(
                 model,
                 parameters,
                 "validation",
                 f"model {file.name}",
                 "a shipped model",
                 settings,
-                SMOKE_LEVELS,
+                SMOKE_LEVEL_COUNT,
             )
-            for file, settings in models(model, parameters)[1:]
+            for file, settings in list_shipped_variants(model, parameters)[1:]
         ),
-        *_neighbours(model, parameters),
-        *_samples(model, parameters),
+        *_compute_boundary_experiments(model, parameters),
+        *_compute_samples(model, parameters),
     ]
 
 
-def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile, dict[str, object]]]:
+def list_shipped_variants(
+    model: Model, parameters: ParameterFile
+) -> list[tuple[ParameterFile, dict[str, object]]]:
     """The parameter file, and the shipped files with the same C code, each with {FMU variable: other value}.
 
     Hidden numbers (no FMU variables) keep the values of the parameter file. Shipped files that differ in
@@ -93,7 +97,7 @@ def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile,
     if model.joint not in KINDS:
         return files_and_settings
     fields = model.parameter_fields()
-    for file in _shipped(model.joint, KINDS[model.joint].default_file().parent):
+    for file in _load_shipped_files(model.joint, KINDS[model.joint].default_file().parent):
         if (
             type(file.values) is not type(parameters.values)
             or file.values_by_name.keys() != parameters.values_by_name.keys()
@@ -109,7 +113,7 @@ def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile,
 
 
 @cache
-def _shipped(joint: str, folder: Path) -> tuple[ParameterFile, ...]:
+def _load_shipped_files(joint: str, folder: Path) -> tuple[ParameterFile, ...]:
     """Parameter files of a joint in a folder, and in the catalogue of bought joints."""
     folders = [folder, Path(str(files("jointfmu_models") / "catalogue"))]
     paths = sorted(path for source in folders if source.is_dir() for path in source.glob("*.toml"))
@@ -117,13 +121,13 @@ def _shipped(joint: str, folder: Path) -> tuple[ParameterFile, ...]:
     return tuple(load_parameter_file(path, joint) for path in joint_paths)
 
 
-def study(model: Model, parameters: ParameterFile) -> dict[str, str]:
+def make_study(model: Model, parameters: ParameterFile) -> dict[str, str]:
     """{parameter: distribution} of the uncertainty experiments, in the notation of study files."""
-    return dict.fromkeys(_uncertain(model, parameters), f"+-{UNCERTAINTY_HALF_WIDTH:.0%}")
+    return dict.fromkeys(_list_varied_parameters(model, parameters), f"+-{UNCERTAINTY_HALF_WIDTH:.0%}")
 
 
-def _uncertain(model: Model, parameters: ParameterFile) -> list[str]:
-    """Names of the real, nonzero parameters."""
+def _list_varied_parameters(model: Model, parameters: ParameterFile) -> list[str]:
+    """Names of the parameters that are varied: real numbers other than zero."""
     return [
         name
         for name, item in model.parameter_fields().items()
@@ -133,92 +137,92 @@ def _uncertain(model: Model, parameters: ParameterFile) -> list[str]:
     ]
 
 
-def _experiment(
+def _compute_ramp(
     model: Model,
     parameters: ParameterFile,
     purpose: str,
     name: str,
     doc: str,
     settings: Mapping[str, object],
-    levels: int,
+    level_count: int,
 ) -> ReferenceExperiment:
     """Compute a load ramp with a number of levels; a model with states gets the end load throughout."""
     settings = {**model.ramp.settings, **settings}
-    start, end = start_of(model, parameters)[model.ramp.input], model.ramp.end
+    start, end = list_start_values(model, parameters)[model.ramp.input_name], model.ramp.end_value
     if model.state_count:
-        ramp_levels = np.full(levels + 1, end)
-        settings = {**settings, model.ramp.input: end}
+        ramp_levels = np.full(level_count + 1, end)
+        settings = {**settings, model.ramp.input_name: end}
     else:
-        loading = np.linspace(max(start, model.ramp.onset), end, levels + 1)[1:]
-        ramp_levels = np.array([rounded(x) for x in (start, *loading)])
-    interval = model.ramp.interval * (FRACTION if model.is_time_dependent else 1.0)
-    drive = Stimulus(model.ramp.input, ramp_levels, interval)
+        loading = np.linspace(max(start, model.ramp.onset_value), end, level_count + 1)[1:]
+        ramp_levels = np.array([round_to_digits(x) for x in (start, *loading)])
+    interval = model.ramp.step_duration * (INTERVAL_RATIO if model.is_time_dependent else 1.0)
+    drive = Stimulus(model.ramp.input_name, ramp_levels, interval)
     return ReferenceExperiment(
-        purpose, name, doc, settings, drive, _results(model, parameters, settings, drive)
+        purpose, name, doc, settings, drive, _compute_outputs(model, parameters, settings, drive)
     )
 
 
-def _results(
-    model: Model, parameters: ParameterFile, settings: Mapping[str, Any], drive: Stimulus
+def _compute_outputs(
+    model: Model, parameters: ParameterFile, settings: Mapping[str, Any], stimulus: Stimulus
 ) -> TimeSeries:
     """Outputs of the package for an experiment with given parameters and start values."""
-    start = start_of(model, parameters)
+    start = list_start_values(model, parameters)
     changes = {name: value for name, value in settings.items() if name not in start}
     values = replace_values(parameters.values, changes) if changes else parameters.values
-    return results(model, values, start | {n: v for n, v in settings.items() if n in start}, drive)
+    return compute_results(model, values, start | {n: v for n, v in settings.items() if n in start}, stimulus)
 
 
-def _loop(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
+def _compute_loop(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """Yield the loop experiment of the model, if it has one: triangular cycles about the start value."""
-    if (loop := model.loop) is None:
+    if (loop := model.load_cycle) is None:
         return
-    middle = dict(loop.settings).get(loop.input, start_of(model, parameters)[loop.input])
-    phase = np.arange(QUARTER * (1 + 4 * CYCLES) + 1) / (4.0 * QUARTER)
+    middle = dict(loop.settings).get(loop.input_name, list_start_values(model, parameters)[loop.input_name])
+    phase = np.arange(QUARTER_LEVELS * (1 + 4 * CYCLE_COUNT) + 1) / (4.0 * QUARTER_LEVELS)
     triangle = 1.0 - 4.0 * np.abs((phase + 0.25) % 1.0 - 0.5)
-    levels = np.array([rounded(middle + loop.amplitude * x) for x in triangle])
-    drive = Stimulus(loop.input, levels, model.ramp.interval)
-    doc = f"{loop.input} to and fro by {loop.amplitude:g}, from rest"
-    with suppress(*_REFUSALS):
-        outputs = _results(model, parameters, loop.settings, drive)
+    levels = np.array([round_to_digits(middle + loop.amplitude * x) for x in triangle])
+    drive = Stimulus(loop.input_name, levels, model.ramp.step_duration)
+    doc = f"{loop.input_name} to and fro by {loop.amplitude:g}, from rest"
+    with suppress(*_REFUSAL_ERRORS):
+        outputs = _compute_outputs(model, parameters, loop.settings, drive)
         yield ReferenceExperiment("validation", "loop", doc, loop.settings, drive, outputs)
 
 
-def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
+def _compute_boundary_experiments(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """Yield an experiment for each parameter value just inside its allowed interval."""
     computed: dict[tuple[str, object], ReferenceExperiment] = {}
 
     def is_accepted(name: str, value: object) -> bool:
         value_text = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
-        with suppress(*_REFUSALS):
-            computed[name, value] = _experiment(
-                model, parameters, "validation", f"{name} = {value_text}", "", {name: value}, MIN_LEVELS
+        with suppress(*_REFUSAL_ERRORS):
+            computed[name, value] = _compute_ramp(
+                model, parameters, "validation", f"{name} = {value_text}", "", {name: value}, MIN_LEVEL_COUNT
             )
         return (name, value) in computed
 
-    for name, value, doc in neighbours(model, parameters, is_accepted):
+    for name, value, doc in find_boundary_values(model, parameters, is_accepted):
         yield replace(computed[name, value], doc=doc)
 
 
-def _samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
+def _compute_samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """Yield experiments with all real parameters varied, except points that the joint refuses.
 
     The points are an additive recurrence with the square roots of primes (low discrepancy).
     """
-    names = _uncertain(model, parameters)
-    steps = np.sqrt(list(islice(_primes(), len(names))))
+    names = _list_varied_parameters(model, parameters)
+    steps = np.sqrt(list(islice(_generate_primes(), len(names))))
     doc = f"all real parameters within {UNCERTAINTY_HALF_WIDTH:.0%}"
-    for number in range(1, SAMPLES + 1 if names else 1):
+    for number in range(1, SAMPLE_COUNT + 1 if names else 1):
         point = 2.0 * ((number * steps) % 1.0) - 1.0
         settings = {
-            name: rounded(parameters.values_by_name[name] * (1.0 + UNCERTAINTY_HALF_WIDTH * x))
+            name: round_to_digits(parameters.values_by_name[name] * (1.0 + UNCERTAINTY_HALF_WIDTH * x))
             for name, x in zip(names, point, strict=True)
         }
-        with suppress(*_REFUSALS):
-            yield _experiment(
-                model, parameters, "uncertainty-analysis", f"sample {number}", doc, settings, MIN_LEVELS
+        with suppress(*_REFUSAL_ERRORS):
+            yield _compute_ramp(
+                model, parameters, "uncertainty-analysis", f"sample {number}", doc, settings, MIN_LEVEL_COUNT
             )
 
 
-def _primes() -> Iterator[int]:
+def _generate_primes() -> Iterator[int]:
     """Yield the prime numbers."""
     return (n for n in count(2) if all(n % m for m in range(2, n)))

@@ -12,30 +12,30 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import flatten_parameters
 
-from ..ssv import Value, parameter_set
-from ..xml_parts import serialized
+from ..ssv import ParameterValue, format_parameter_set
+from ..xml_parts import serialize_xml
 from . import standard
 from .experiments import ReferenceExperiment
-from .reference import DIGITS
-from .series import text
-from .standard import FLOOR, SOLVER
+from .reference import SIGNIFICANT_DIGITS
+from .series import format_csv
+from .standard import MIN_SCALE_RATIO, SOLVER_TOLERANCE_RATIO
 
-TOLERANCE = 1e-5
+REFERENCE_TOLERANCE = 1e-5
 """Relative tolerance of reference results [1].
 
 An importer that prints six digits rounds by 5e-6. The difference between the package and the compiled law,
 including the rounding of the files, is 1e-8 at boundary values of parameters and 1e-9 elsewhere (measured).
 Platforms differ by 1e-12; a solver adds 4e-10 to models with states.
 """
-TEXT = "documentation/fmi-ls-ref.txt"
+TEXT_PATH = "documentation/fmi-ls-ref.txt"
 """Path in an FMU of the text that explains its experiments."""
-_INTERFACES = {
+_RUN_INSTRUCTIONS = {
     standard.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
-    standard.MODEL_EXCHANGE: f"a solver with {SOLVER:g} times the tolerance of the experiment as its own; "
-    "a completed integrator step at each row of inputs and results",
+    standard.MODEL_EXCHANGE: f"a solver with {SOLVER_TOLERANCE_RATIO:g} times the tolerance of the "
+    "experiment as its own; a completed integrator step at each row of inputs and results",
 }
 """{interface type: how an experiment is run}."""
-_TITLES = {
+_PURPOSE_TITLES = {
     "smoke-test": "Smoke test",
     "validation": "Load ramp, loop, shipped models, neighbours of refusals",
     "uncertainty-analysis": "Samples of all real parameters",
@@ -45,20 +45,20 @@ _TITLES = {
 class RelatedFile(NamedTuple):
     """File listed in the manifest; experiments have `labels` {interface type: how they are run}."""
 
-    source: str
-    type: str
+    file_path: str
+    mime_type: str
     role: str
     doc: str
     labels: Mapping[str, str] = {}
 
 
-def archive(
+def make_reference_files(
     model: Model,
     parameters: ParameterFile,
     models: Sequence[tuple[ParameterFile, Mapping[str, object]]],
     experiments: Sequence[ReferenceExperiment],
     study: Mapping[str, str],
-    native: bool,
+    is_native: bool,
 ) -> dict[str, bytes]:
     """Make the files of FMI-LS-REF inside an FMU: {path: content}.
 
@@ -68,20 +68,20 @@ def archive(
     """
     members: dict[str, bytes] = {}
     related: list[RelatedFile] = []
-    interfaces = dict(list(_INTERFACES.items())[: 2 if native else 1])
+    interfaces = dict(list(_RUN_INSTRUCTIONS.items())[: 2 if is_native else 1])
 
-    def add(source: str, kind: str, role: str, doc: str, content: bytes) -> None:
-        members[source] = content
-        labels = interfaces if kind == standard.EXPERIMENTS else {}
-        related.append(RelatedFile(source, kind, role, doc, labels))
+    def add_file(file_path: str, mime_type: str, role: str, doc: str, content: bytes) -> None:
+        members[file_path] = content
+        labels = interfaces if mime_type == standard.EXPERIMENTS_TYPE else {}
+        related.append(RelatedFile(file_path, mime_type, role, doc, labels))
 
-    file_stem, exposed = slug(parameters.name), model.parameter_fields()
-    if native:
+    file_stem, exposed = make_slug(parameters.name), model.parameter_fields()
+    if is_native:
         address = "../../documentation/index.html"
         related.append(
             RelatedFile(address, "text/html", "requirement", "what the FMU takes, gives and refuses")
         )
-    add(
+    add_file(
         f"parameters/{file_stem}.toml",
         "application/toml",
         "requirement",
@@ -89,109 +89,135 @@ def archive(
         format_parameter_file(parameters).encode(),
     )
     doc = "what the experiments are, and their tolerance"
-    related.append(RelatedFile(f"../../{TEXT}", "text/plain", "document", doc))
+    related.append(RelatedFile(f"../../{TEXT_PATH}", "text/plain", "document", doc))
     for file, _ in models:
         values = {name: value for name, value in flatten_parameters(file.values).items() if name in exposed}
-        content = _parameter_set(model, file.name, values)
-        add(f"parameters/{slug(file.name)}.ssv", standard.SSV, "parameter", file.name, content)
+        content = _format_parameter_set(model, file.name, values)
+        add_file(f"parameters/{make_slug(file.name)}.ssv", standard.SSV_TYPE, "parameter", file.name, content)
     if study:
         lines = [f"{json.dumps(name)} = {json.dumps(law)}" for name, law in study.items()]
         content = "\n".join(["schema = 1", "", "[parameters]", *lines, ""]).encode()
         doc = "distributions of the uncertainty experiment"
-        add("parameters/study.toml", "application/toml", "method", doc, content)
+        add_file("parameters/study.toml", "application/toml", "method", doc, content)
     for purpose in dict.fromkeys(experiment.purpose for experiment in experiments):
         numbered = [
             (i, experiment) for i, experiment in enumerate(experiments) if experiment.purpose == purpose
         ]
-        root = Element("Experiments", name=_TITLES[purpose], description=model.doc)
+        root = Element("Experiments", name=_PURPOSE_TITLES[purpose], description=model.doc)
         series: dict[str, bytes] = {}
         for i, experiment in numbered:
-            series |= _experiment(model, root, f"{i:02d}", experiment, members | series)
-        content = serialized(root)
-        add(f"{purpose}.exp", standard.EXPERIMENTS, f"experiment/{purpose}", _TITLES[purpose], content)
+            series |= _declare_experiment(model, root, f"{i:02d}", experiment, members | series)
+        content = serialize_xml(root)
+        add_file(
+            f"{purpose}.exp",
+            standard.EXPERIMENTS_TYPE,
+            f"experiment/{purpose}",
+            _PURPOSE_TITLES[purpose],
+            content,
+        )
         members |= series
         for path in series:
             if path.endswith("_ref.csv"):
-                related.append(RelatedFile(path, standard.CSV, "result", "reference result of the package"))
-    return proof_members(members, related, _text(file_stem, experiments, native))
+                related.append(
+                    RelatedFile(path, standard.CSV_TYPE, "result", "reference result of the package")
+                )
+    return proof_members(members, related, _format_text(file_stem, experiments, is_native))
 
 
 def proof_members(
     members: Mapping[str, bytes], related: Sequence[RelatedFile], page: str
 ) -> dict[str, bytes]:
     """Place reference files, their manifest and the explaining page: {path in the FMU: content}."""
-    files = {**members, "fmi-ls-manifest.xml": _manifest(related)}
-    return {f"{standard.FOLDER}/{path}": content for path, content in files.items()} | {TEXT: page.encode()}
+    files = {**members, "fmi-ls-manifest.xml": _format_manifest(related)}
+    return {f"{standard.REFERENCE_FOLDER}/{path}": content for path, content in files.items()} | {
+        TEXT_PATH: page.encode()
+    }
 
 
-def slug(name: str) -> str:
+def make_slug(name: str) -> str:
     """Convert a name to lower case letters, digits and _, for file names; at most 40 characters."""
     return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:40].strip("_") or "parameters"
 
 
-def _experiment(
+def _declare_experiment(
     model: Model, root: Element, number: str, experiment: ReferenceExperiment, members: Mapping[str, bytes]
 ) -> dict[str, bytes]:
     """Declare an experiment below `root`, and return its new files {path: content}.
 
     members : files of other experiments; equal inputs are not stored twice
     """
-    stem = f"experiments/{number}_{slug(experiment.name)}"
-    stimuli = text(experiment.drive.stimuli).encode()
+    stem = f"experiments/{number}_{make_slug(experiment.name)}"
+    stimuli = format_csv(experiment.stimulus.stimuli).encode()
     equal_inputs = (
         path for path, content in members.items() if path.endswith("_in.csv") and content == stimuli
     )
     files = {"Stimuli": next(equal_inputs, f"{stem}_in.csv"), "References": f"{stem}_ref.csv"}
-    contents = {files["Stimuli"]: stimuli, files["References"]: text(experiment.results, DIGITS).encode()}
+    contents = {
+        files["Stimuli"]: stimuli,
+        files["References"]: format_csv(experiment.results, SIGNIFICANT_DIGITS).encode(),
+    }
     if experiment.settings:
         files = {"Parameters": f"{stem}.ssv", **files}
-        contents[files["Parameters"]] = _parameter_set(model, experiment.name, experiment.settings)
+        contents[files["Parameters"]] = _format_parameter_set(model, experiment.name, experiment.settings)
     node = SubElement(
-        root, "Experiment", name=experiment.name, description=experiment.doc, tolerance=repr(TOLERANCE)
+        root,
+        "Experiment",
+        name=experiment.name,
+        description=experiment.doc,
+        tolerance=repr(REFERENCE_TOLERANCE),
     )
     times = {
         "startTime": 0.0,
-        "stopTime": float(experiment.drive.instants[-1]),
-        "stepSize": 0.5 * experiment.drive.interval,
+        "stopTime": float(experiment.stimulus.instants[-1]),
+        "stepSize": 0.5 * experiment.stimulus.interval,
     }
-    SubElement(node, standard.TRANSIENT, {name: repr(time) for name, time in times.items()})
+    SubElement(node, standard.TRANSIENT_ELEMENT, {name: repr(time) for name, time in times.items()})
     for tag, path in files.items():
         SubElement(node, tag, source=path)
     return {path: content for path, content in contents.items() if path not in members}
 
 
-def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> bytes:
+def _format_parameter_set(model: Model, name: str, values: Mapping[str, object]) -> bytes:
     """Content of an SSV file with values of parameters and inputs of a model."""
     units = {v.name: v.unit for v in model.inputs}
     units |= {n: item.metadata.get("unit", "") for n, item in model.parameter_fields().items()}
-    return parameter_set(name, {n: Value(value, units[n]) for n, value in values.items()})
+    return format_parameter_set(name, {n: ParameterValue(value, units[n]) for n, value in values.items()})
 
 
-def _manifest(related: Sequence[RelatedFile]) -> bytes:
+def _format_manifest(related: Sequence[RelatedFile]) -> bytes:
     """Content of the manifest of FMI-LS-REF."""
-    head = {"name": standard.NAME, "version": standard.VERSION, "description": standard.DESCRIPTION}
-    root = Element("fmiReferences", {"xmlns:fmi-ls": standard.ATTRIBUTES})
+    head = {
+        "name": standard.STANDARD_NAME,
+        "version": standard.STANDARD_VERSION,
+        "description": standard.DESCRIPTION,
+    }
+    root = Element("fmiReferences", {"xmlns:fmi-ls": standard.ATTRIBUTE_NAMESPACE})
     root.attrib |= {f"fmi-ls:fmi-ls-{name}": value for name, value in head.items()}
     for file in related:
-        attributes = {"type": file.type, "source": file.source, "role": file.role, "description": file.doc}
+        attributes = {
+            "type": file.mime_type,
+            "source": file.file_path,
+            "role": file.role,
+            "description": file.doc,
+        }
         node = SubElement(root, "Related", attributes)
         for interface, doc in file.labels.items():
-            SubElement(node, "Label", name=standard.LABELS[interface], description=doc)
-    return serialized(root)
+            SubElement(node, "Label", name=standard.INTERFACE_LABELS[interface], description=doc)
+    return serialize_xml(root)
 
 
-def _text(name: str, experiments: Sequence[ReferenceExperiment], native: bool) -> str:
+def _format_text(file_stem: str, experiments: Sequence[ReferenceExperiment], is_native: bool) -> str:
     """Text that explains the experiments of an FMU."""
     counts = {p: sum(experiment.purpose == p for experiment in experiments) for p in standard.PURPOSES}
     page = Path(__file__).with_name("page.txt").read_text(encoding="utf-8")
     return page.format(
-        standard=standard.NAME,
-        version=standard.VERSION,
+        standard=standard.STANDARD_NAME,
+        version=standard.STANDARD_VERSION,
         own=__version__,
         counts="\n".join(f"{count:4d} {purpose}" for purpose, count in counts.items() if count),
-        tolerance=TOLERANCE,
-        solver=SOLVER * TOLERANCE,
-        floor=FLOOR,
-        page="documentation/index.html" if native else "modelDescription.xml",
-        file=name,
+        tolerance=REFERENCE_TOLERANCE,
+        solver=SOLVER_TOLERANCE_RATIO * REFERENCE_TOLERANCE,
+        floor=MIN_SCALE_RATIO,
+        page="documentation/index.html" if is_native else "modelDescription.xml",
+        file=file_stem,
     )

@@ -15,7 +15,7 @@ from jointfmu.quantity import Array
 
 from .series import TimeSeries
 
-DIGITS = 10
+SIGNIFICANT_DIGITS = 10
 """Significant digits of a reference result [1]: the rounding is far below the tolerance."""
 
 
@@ -28,7 +28,7 @@ class Stimulus:
     interval   : time between two sampling instants [s]
     """
 
-    input: str
+    input_name: str
     levels: Array
     interval: float
 
@@ -42,35 +42,39 @@ class Stimulus:
         """Time series of the driven input."""
         values = np.repeat(self.levels, 2)[1:]
         times = [float(f"{0.5 * i * self.interval:.12g}") for i in range(values.size)]
-        return TimeSeries(np.array(times), {self.input: values})
+        return TimeSeries(np.array(times), {self.input_name: values})
 
 
-def results(model: Model, values: object, start: Mapping[str, float], drive: Stimulus) -> TimeSeries:
+def compute_results(
+    model: Model, parameter_set: object, start_values: Mapping[str, float], stimulus: Stimulus
+) -> TimeSeries:
     """Compute the outputs of a model at the sampling instants, starting from rest.
 
-    values   : parameter set
-    start    : {input: start value}
-    stimulus : levels of the driven input
+    parameter_set : parameter set
+    start_values  : {input: start value}
+    stimulus      : levels of the driven input
 
     Raises ValueError or RuntimeError as the joint does, and RuntimeError for an output that is not finite.
     """
     with np.errstate(all="ignore"):
-        rows = _rows(model, model.tabulate(values), dict(start), drive)
+        rows = _evaluate_instants(model, model.tabulate(parameter_set), dict(start_values), stimulus)
     outputs = {v.name: np.array([float(row[v.name]) for row in rows]) for v in model.outputs}
     for name, column in outputs.items():
         if not np.all(np.isfinite(column)):
             raise RuntimeError(f"{model.name}: {name} is not finite")
-    return TimeSeries(drive.instants, outputs)
+    return TimeSeries(stimulus.instants, outputs)
 
 
-def _rows(model: Model, spring: TabulatedJoint, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
+def _evaluate_instants(
+    model: Model, spring: TabulatedJoint, inputs: dict[str, float], stimulus: Stimulus
+) -> list[Outputs]:
     """Outputs of a model at the sampling instants, one dictionary each."""
     if model.state_count:
-        return _moving(model, spring, inputs, drive)
+        return _integrate(model, spring, inputs, stimulus)
     history = None if model.initial_history is None else model.initial_history(spring)
     rows = []
-    for time, level in zip(drive.instants, drive.levels, strict=True):
-        inputs[drive.input] = float(level)
+    for time, level in zip(stimulus.instants, stimulus.levels, strict=True):
+        inputs[stimulus.input_name] = float(level)
         if model.advance is None or history is None:
             rows.append(
                 model.evaluate(spring, {**inputs, "time": float(time)} if model.is_time_dependent else inputs)
@@ -81,22 +85,24 @@ def _rows(model: Model, spring: TabulatedJoint, inputs: dict[str, float], drive:
     return rows
 
 
-def _moving(model: Model, spring: TabulatedJoint, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
+def _integrate(
+    model: Model, spring: TabulatedJoint, inputs: dict[str, float], stimulus: Stimulus
+) -> list[Outputs]:
     """Outputs of a model with states under constant inputs, integrated with a relative tolerance of 1e-12."""
     from scipy.integrate import solve_ivp
 
     names = [v.name for v in model.outputs]
-    inputs = {**inputs, drive.input: float(drive.levels[0])}
+    inputs = {**inputs, stimulus.input_name: float(stimulus.levels[0])}
 
-    def outputs(time: float, x: Array) -> Outputs:
-        states = dict(zip(names[: model.state_count], map(float, x), strict=True))
+    def outputs(time: float, state_values: Array) -> Outputs:
+        states = dict(zip(names[: model.state_count], map(float, state_values), strict=True))
         return model.evaluate(spring, {**inputs, **states, "time": time})
 
-    def rates(time: float, x: Array) -> list[float]:
-        values = outputs(time, x)
+    def rates(time: float, state_values: Array) -> list[float]:
+        values = outputs(time, state_values)
         return [values[name] for name in names[1 : model.state_count + 1]]
 
-    times, initial = drive.instants, np.zeros(model.state_count)
+    times, initial = stimulus.instants, np.zeros(model.state_count)
     if times.size == 1:
         return [outputs(0.0, initial)]
     solution = solve_ivp(rates, (0.0, times[-1]), initial, "DOP853", times, rtol=1e-12, atol=1e-30)
@@ -105,11 +111,11 @@ def _moving(model: Model, spring: TabulatedJoint, inputs: dict[str, float], driv
     return [outputs(time, x) for time, x in zip(times, solution.y.T, strict=True)]
 
 
-def rounded(value: float, digits: int = 9) -> float:
+def round_to_digits(value: float, digits: int = 9) -> float:
     """Round a number to so few significant digits that a file shows it in full."""
     return float(f"{value:.{digits}g}")
 
 
-def start_of(model: Model, parameters: ParameterFile) -> dict[str, float]:
+def list_start_values(model: Model, parameters: ParameterFile) -> dict[str, float]:
     """{input: start value} of a model."""
     return {v.name: parameters.start_value(v.name) for v in model.inputs}

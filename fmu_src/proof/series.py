@@ -9,7 +9,7 @@ import numpy as np
 
 from jointfmu.quantity import Array
 
-TIME = "time"
+TIME_COLUMN = "time"
 """Name of the first column."""
 
 
@@ -20,33 +20,33 @@ class TimeSeries:
     time: Array
     columns: Mapping[str, Array]
 
-    def interpolate(self, name: str, times: Array) -> Array:
+    def interpolate(self, column_name: str, times: Array) -> Array:
         """Interpolate a column linearly at times (m) [s]; constant beyond the ends.
 
         A repeated time is a jump: there the result is the value after the jump.
         """
-        return np.asarray(np.interp(times, self.time, self.columns[name]))
+        return np.asarray(np.interp(times, self.time, self.columns[column_name]))
 
-    def interpolate_left(self, name: str, times: Array) -> Array:
+    def interpolate_left(self, column_name: str, times: Array) -> Array:
         """Interpolate a column as `interpolate`, but take the value before a jump."""
-        return np.asarray(np.interp(-times, -self.time[::-1], self.columns[name][::-1]))
+        return np.asarray(np.interp(-times, -self.time[::-1], self.columns[column_name][::-1]))
 
-    def hold(self, name: str, times: Array) -> Array:
+    def hold(self, column_name: str, times: Array) -> Array:
         """Values of a column at times (m) [s], constant from each row to the next."""
         rows = np.searchsorted(self.time, times, side="right") - 1
-        return self.columns[name][np.maximum(rows, 0)]
+        return self.columns[column_name][np.maximum(rows, 0)]
 
 
-def text(series: TimeSeries, digits: int | None = None) -> str:
+def format_csv(series: TimeSeries, digits: int | None = None) -> str:
     """Format a time series as CSV; `digits` are the significant digits of the columns, None: exact."""
-    head = ",".join(f'"{name}"' for name in (TIME, *series.columns))
+    head = ",".join(f'"{name}"' for name in (TIME_COLUMN, *series.columns))
     number_format = "%r" if digits is None else f"%.{digits}g"
     rows = zip(*(column.tolist() for column in (series.time, *series.columns.values())), strict=True)
     lines = (",".join([repr(time), *(number_format % (value + 0.0) for value in row)]) for time, *row in rows)
     return "\n".join([head, *lines, ""])
 
 
-def parse(content: str, location: str) -> TimeSeries:
+def parse_csv(content: str, location: str) -> TimeSeries:
     """Read a time series from CSV text.
 
     location : name of the file for errors
@@ -55,9 +55,9 @@ def parse(content: str, location: str) -> TimeSeries:
     """
     rows = [row for row in csv.reader(io.StringIO(content)) if row]
     head = [name.strip() for name in rows[0]] if rows else []
-    if not head or head[0].lower() != TIME or len(rows) < 2:
+    if not head or head[0].lower() != TIME_COLUMN or len(rows) < 2:
         raise ValueError(
-            f"{location}: begins with {','.join(head)[:60]!r}; expected {TIME!r} first, and rows"
+            f"{location}: begins with {','.join(head)[:60]!r}; expected {TIME_COLUMN!r} first, and rows"
         )
     if len(set(head)) < len(head):
         raise ValueError(f"{location}: a column is given twice, allowed is once")

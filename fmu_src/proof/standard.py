@@ -1,26 +1,29 @@
 """Names, types and tolerances of FMI-LS-REF, as jointfmu writes and reads them."""
 
-NAME = "org.fmi-standard.fmi-ls-ref"
+STANDARD_NAME = "org.fmi-standard.fmi-ls-ref"
 """Name of the layered standard."""
-VERSION = "1.0.0-alpha.1"
+STANDARD_VERSION = "1.0.0-alpha.1"
+"""Version of the layered standard."""
 DESCRIPTION = "Layered Standard providing information on related files included in an FMU."
-FOLDER = f"extra/{NAME}"
-MANIFEST = f"{FOLDER}/fmi-ls-manifest.xml"
-ATTRIBUTES = "http://fmi-standard.org/fmi-ls-manifest"
+REFERENCE_FOLDER = f"extra/{STANDARD_NAME}"
+MANIFEST_PATH = f"{REFERENCE_FOLDER}/fmi-ls-manifest.xml"
+ATTRIBUTE_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
 """XML namespace of the attributes of the manifest."""
-EXPERIMENTS, SSV, CSV = "application/x-ma-hs-experiments", "application/x-ssp-parameter-set", "text/csv"
+EXPERIMENTS_TYPE = "application/x-ma-hs-experiments"
+SSV_TYPE = "application/x-ssp-parameter-set"
+CSV_TYPE = "text/csv"
 """MIME types of the related files that are read."""
-TRANSIENT = "TransientSimulation"
+TRANSIENT_ELEMENT = "TransientSimulation"
 CO_SIMULATION, MODEL_EXCHANGE = INTERFACES = ("co-simulation", "model exchange")
 """Interface types of FMUs."""
-LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACES}
+INTERFACE_LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACES}
 """{interface type: label of experiments for it}; experiments without such a label are for all types."""
-SCALES = "org.jointfmu.scales"
+SCALES_TYPE = "org.jointfmu.scales"
 """Type of the annotation that gives for each output the scale to which its tolerance is relative."""
 PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
 """Purposes of experiments; the first is the default of a manifest."""
-FLOOR = 1e-6
+MIN_SCALE_RATIO = 1e-6
 """Smallest scale of an output over its nominal value [1]: smaller values are dominated by round-off."""
-SOLVER = 1e-3
+SOLVER_TOLERANCE_RATIO = 1e-3
 """Relative tolerance of the solver over the tolerance of the experiment [1]: solver errors accumulate, and a
 large value can be small after an event."""

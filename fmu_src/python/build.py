@@ -10,23 +10,23 @@ from importlib.metadata import distribution
 from pathlib import Path
 from types import ModuleType
 
-from jointfmu_fmu_src.archive import pack, workshop
-from jointfmu_fmu_src.licence import licence
-from jointfmu_fmu_src.proof.members import proof
-from jointfmu_fmu_src.python.imports import imported
+from jointfmu_fmu_src.archive import staging_folder, write_archive
+from jointfmu_fmu_src.licence import read_licence
+from jointfmu_fmu_src.proof.members import make_proof_files
+from jointfmu_fmu_src.python.imports import find_imported_modules
 from jointfmu_fmu_src.xml_parts import VARIABILITIES
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
-_PRIVATE = "PRIVATE_PACKAGE"
+_PACKAGE_PLACEHOLDER = "PRIVATE_PACKAGE"
 """Placeholder for the name of the private package, which contains a digest of all sources."""
-_ENTRY = Path(__file__).with_name("entry.txt")
+_ENTRY_TEMPLATE = Path(__file__).with_name("entry.txt")
 """Template of the Python module that pythonfmu loads."""
 
 
-def runtime_sources(kind: JointKind) -> dict[str, str]:
+def collect_runtime_sources(kind: JointKind) -> dict[str, str]:
     """{path inside the private package: text} of the Python code inside an FMU; it requires only numpy.
 
     The code is the slave, the joints and all modules that they import. Imports of the public packages are
@@ -34,34 +34,38 @@ def runtime_sources(kind: JointKind) -> dict[str, str]:
     """
     builtin_packages = [joint.package for joint in KINDS.values() if joint.is_builtin]
     roots = {"jointfmu", "jointfmu_fmu_src", kind.package.partition(".")[0]}
-    files = imported(["jointfmu_fmu_src.python.slave", *builtin_packages, kind.package], roots)
+    files = find_imported_modules(["jointfmu_fmu_src.python.slave", *builtin_packages, kind.package], roots)
     sources = {}
     for name, path in files.items():
-        path_inside = _inside(name).replace(".", "/")
+        path_inside = _private_module_name(name).replace(".", "/")
         file = (
             "/".join(filter(None, (path_inside, "__init__.py")))
             if path.name == "__init__.py"
             else f"{path_inside}.py"
         )
-        sources[file] = _private(path.read_text(encoding="utf-8"), roots)
+        sources[file] = _rewrite_imports(path.read_text(encoding="utf-8"), roots)
     return dict(sorted(sources.items()))
 
 
-def _inside(module: str) -> str:
+def _private_module_name(module: str) -> str:
     """Name of a public module inside the private package; empty for the package `jointfmu` itself."""
     return re.sub(r"^jointfmu\b\.?", "", re.sub(r"^jointfmu_fmu_src\b", "fmus", module))
 
 
-def _private(text: str, roots: Collection[str]) -> str:
+def _rewrite_imports(text: str, root_packages: Collection[str]) -> str:
     """Rewrite the imports of public packages in a module text to the private package."""
-    for root in roots:
-        package = f"{_PRIVATE}.{_inside(root)}".rstrip(".")
+    for root in root_packages:
+        package = f"{_PACKAGE_PLACEHOLDER}.{_private_module_name(root)}".rstrip(".")
         text = re.sub(rf"^from {root}\b", f"from {package}", text, flags=re.MULTILINE)
     return text
 
 
 def build(
-    name: str, parameters: ParameterFile, out: Path, variability: str = VARIABILITIES[0], alias: str = ""
+    name: str,
+    parameters: ParameterFile,
+    output_folder: Path,
+    variability: str = VARIABILITIES[0],
+    alias: str = "",
 ) -> Path:
     """Write `out/NAME.fmu`, or `out/ALIAS.fmu` if an alias is given; an existing file is replaced atomically.
 
@@ -75,34 +79,35 @@ def build(
     kind = KINDS[MODELS[name].joint]
     model = MODELS[name].with_parameters(parameters.joint, parameters.values)
     title = replace(model, alias=alias).title
-    sources = runtime_sources(kind) | {"parameters.toml": format_parameter_file(parameters)}
+    sources = collect_runtime_sources(kind) | {"parameters.toml": format_parameter_file(parameters)}
     content = [f"{k}\0{v}" for k, v in sources.items()] + [variability]
     digest = sha256("\0".join(content).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"
-    target = out / f"{title}.fmu"
-    with workshop(target) as work:
+    target = output_folder / f"{title}.fmu"
+    with staging_folder(target) as work:
         script = work / "src" / f"{title}_{digest}.py"
-        entry = {"package": package, "kind": _inside(kind.package), "digest": digest}
+        entry = {"package": package, "kind": _private_module_name(kind.package), "digest": digest}
         entry["variability"] = variability
-        _write(script, _ENTRY.read_text(encoding="utf-8").format(name=title, fmu=name, **entry))
+        _write(script, _ENTRY_TEMPLATE.read_text(encoding="utf-8").format(name=title, fmu=name, **entry))
         for path, text in sources.items():
             root = work / "src" if path == "parameters.toml" else work / "src" / package
-            _write(root / path, text.replace(_PRIVATE, package) if path.endswith(".py") else text)
-        built = _pythonfmu(script, package, work / "out")
+            _write(root / path, text.replace(_PACKAGE_PLACEHOLDER, package) if path.endswith(".py") else text)
+        built = _run_pythonfmu(script, package, work / "out")
         with zipfile.ZipFile(built) as archive:
             members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
         if not any(name.startswith("binaries/") for name in members):
             raise RuntimeError(
-                f"{title}: pythonfmu in {_installed()} has no libraries for an FMU; expected them below "
+                f"{title}: pythonfmu in {_find_pythonfmu_folder()} has no libraries for an FMU; "
+                "expected them below "
                 "pythonfmu/resources/binaries: install it again"
             )
-        licences = {"license.txt": licence().encode(), "pythonfmu.txt": _pythonfmu_licence()}
+        licences = {"license.txt": read_licence().encode(), "pythonfmu.txt": _pythonfmu_licence()}
         members |= {f"documentation/licenses/{file}": text for file, text in licences.items()}
-        pack(members | proof(model, parameters, native=False), work / target.name)
+        write_archive(members | make_proof_files(model, parameters, is_native=False), work / target.name)
     return target
 
 
-def _pythonfmu(script: Path, package: str, out: Path) -> Path:
+def _run_pythonfmu(script: Path, package: str, output_folder: Path) -> Path:
     """Build an FMU with the installed pythonfmu, and restore sys.path and sys.modules afterwards.
 
     An FMU that runs in this process may have imported its own copy of pythonfmu, which has no libraries, in
@@ -110,16 +115,16 @@ def _pythonfmu(script: Path, package: str, out: Path) -> Path:
     """
     import pythonfmu
 
-    copied = Path(pythonfmu.__file__).parent != Path(_installed(), "pythonfmu")
+    copied = Path(pythonfmu.__file__).parent != Path(_find_pythonfmu_folder(), "pythonfmu")
     names = (package, script.stem, *(["pythonfmu"] if copied else []))
-    path, removed_modules = list(sys.path), _taken_out(names)
-    sys.path.insert(0, _installed())
+    path, removed_modules = list(sys.path), _remove_modules(names)
+    sys.path.insert(0, _find_pythonfmu_folder())
     try:
         from pythonfmu import FmuBuilder
 
         built: Path = FmuBuilder.build_FMU(
             script,
-            dest=out,
+            dest=output_folder,
             project_files=[script.parent / package, script.parent / "parameters.toml"],
             needsExecutionTool=False,
             canGetAndSetFMUstate=True,
@@ -127,7 +132,7 @@ def _pythonfmu(script: Path, package: str, out: Path) -> Path:
         )
     finally:
         sys.path[:] = path
-        _taken_out(names)
+        _remove_modules(names)
         sys.modules.update(removed_modules)
     return built
 
@@ -136,18 +141,18 @@ def _pythonfmu_licence() -> bytes:
     """Licence text of pythonfmu, whose code the FMU contains; RuntimeError if the file is missing."""
     files = [file for file in distribution("pythonfmu").files or () if file.name == "LICENSE"]
     if not files:
-        raise RuntimeError(f"pythonfmu in {_installed()} has no file LICENSE; install it again")
+        raise RuntimeError(f"pythonfmu in {_find_pythonfmu_folder()} has no file LICENSE; install it again")
     return Path(str(files[0].locate())).read_bytes()
 
 
-def _installed() -> str:
+def _find_pythonfmu_folder() -> str:
     """Folder in which pythonfmu is installed."""
     return str(distribution("pythonfmu").locate_file(""))
 
 
-def _taken_out(names: Collection[str]) -> dict[str, ModuleType]:
+def _remove_modules(package_names: Collection[str]) -> dict[str, ModuleType]:
     """Remove the modules of packages from sys.modules and return them; the next import loads them again."""
-    loaded = [name for name in sys.modules if name.partition(".")[0] in names]
+    loaded = [name for name in sys.modules if name.partition(".")[0] in package_names]
     return {name: sys.modules.pop(name) for name in loaded}
 
 

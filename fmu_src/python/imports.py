@@ -7,16 +7,16 @@ from importlib.util import find_spec
 from pathlib import Path
 
 
-def imported(start: Sequence[str], roots: Collection[str]) -> dict[str, Path]:
+def find_imported_modules(start_modules: Sequence[str], root_packages: Collection[str]) -> dict[str, Path]:
     """Find {name: file} of modules and of all modules that they import at top level, in `root_packages`.
 
     Parent packages of a module are included. Imports inside functions are not: they are optional at run time.
     """
     files: dict[str, Path] = {}
-    pending = list(start)
+    pending = list(start_modules)
     while pending:
         name = pending.pop()
-        if name.partition(".")[0] not in roots or name in files:
+        if name.partition(".")[0] not in root_packages or name in files:
             continue
         try:
             spec = find_spec(name)
@@ -28,13 +28,13 @@ def imported(start: Sequence[str], roots: Collection[str]) -> dict[str, Path]:
         parts = name.split(".")
         pending += [".".join(parts[:k]) for k in range(1, len(parts))]
         package = name if spec.submodule_search_locations else name.rpartition(".")[0]
-        pending += _imports(files[name].read_text(encoding="utf-8"), package)
+        pending += _list_imports(files[name].read_text(encoding="utf-8"), package)
     return files
 
 
-def _imports(text: str, package: str) -> Iterator[str]:
+def _list_imports(text: str, package: str) -> Iterator[str]:
     """Yield the module names imported at top level; for `from A import B` A and A.B, as B may be a module."""
-    for node in _parsed(text).body:
+    for node in _parse_module(text).body:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -45,6 +45,6 @@ def _imports(text: str, package: str) -> Iterator[str]:
 
 
 @cache
-def _parsed(text: str) -> ast.Module:
+def _parse_module(text: str) -> ast.Module:
     """Syntax tree of a module text; cached, as other FMUs contain mostly the same modules."""
     return ast.parse(text)

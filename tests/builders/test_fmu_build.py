@@ -10,14 +10,15 @@ import subprocess
 import sys
 import time
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
 from contextlib import redirect_stdout, suppress
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
-from shutil import copytree, ignore_patterns
+from shutil import copy, copytree, ignore_patterns
 from subprocess import PIPE
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 import pythonfmu
@@ -77,7 +78,7 @@ def test_fixed_parameters_run_as_tunable_ones(tmp_path: Path, capsys: Capture) -
             assert validate_fmu(str(path)) == []
             variables = read_model_description(str(path)).modelVariables
             assert {v.variability for v in variables if v.causality == "parameter"} == {said}
-            found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).csv()
+            found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).format_csv()
     assert len({found[said, "fmi2"] for said in ("fixed", "tunable")}) == 1
     for version in FLAVOURS:
         assert found["fixed", version] == found["tunable", version]
@@ -288,7 +289,7 @@ def test_a_python_fmu_without_its_libraries_is_refused(
 ) -> None:
     copy = tmp_path / "broken"
     copytree(Path(pythonfmu.__file__).parent, copy / "pythonfmu", ignore=ignore_patterns("binaries"))
-    monkeypatch.setattr(python_build, "_installed", lambda: str(copy))
+    monkeypatch.setattr(python_build, "_find_pythonfmu_folder", lambda: str(copy))
     assert cli.main(["build", "GearContact", "--flavour", "python", "--out", str(tmp_path / "out")]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert f"pythonfmu in {copy} has no libraries" in line
@@ -303,7 +304,7 @@ def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pyt
             signal.raise_signal(signal.SIGINT)
         return {}
 
-    monkeypatch.setattr(generate, "code", swallowing)
+    monkeypatch.setattr(generate, "generate_code", swallowing)
     with pytest.raises(KeyboardInterrupt):
         build(["GearContact"], ["fmi3"], None, tmp_path / "new")
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
@@ -392,15 +393,35 @@ class Job(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def job(tmp_path_factory: pytest.TempPathFactory) -> Job:
-    """The one main job of these tests."""
+def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, system_files: Path) -> Job:
+    """The one main job of these tests. It builds all FMUs and systems, as the fixtures of all tests have: it
+    gets copies of theirs."""
     folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run_job
+
+    def copied(sources: Iterable[Path], out: Path) -> list[Path]:
+        files = [(path, out / path.parent.name / path.name) for path in sources]
+        new = [(path, target) for path, target in files if not target.exists()]
+        for path, target in new:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            copy(path, target)
+        return [target for _, target in new]
+
+    def built(names: Sequence[str], flavours: Sequence[str], file: object, out: Path, pool: Executor) -> Any:
+        assert (names, flavours, file) == ([], [*FLAVOURS], None)
+        folders = {"python": fmus} | {version: native / version for version in VERSIONS}
+        return copied((folders[f] / f"{name}.fmu" for f in flavours for name in NAMES), out)
+
+    def built_systems(out: Path, build_joints: bool, pool: Executor) -> list[Path]:
+        assert not build_joints
+        return [made for suffix in ("fmu", "ssp") for made in copied(system_files.glob(f"*/*.{suffix}"), out)]
 
     def watched(out: Path) -> pipeline.JobResult:
         found.append(run(out))
         return found[0]
 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as out:
+        patch.setattr(pipeline, "build", built)
+        patch.setattr(pipeline, "build_systems", built_systems)
         patch.setattr(pipeline, "run_job", watched)
         assert pipeline.main(folder) == 0, out.getvalue()
     return Job(folder, out.getvalue(), found[0])
@@ -415,10 +436,10 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert int(proved[1]) > 3 * len(NAMES)  # those of systems, too
     assert int(proved[2]) > 15 * 5 * len(NAMES)  # of two flavours in both interfaces, of one in one
     for flavour in ("fmi2", "fmi3", "python"):
-        own = [f"six_axis_robot_{drive}" for drive in systems.system("six_axis_robot").joints]
+        own = [f"six_axis_robot_{drive}" for drive in systems.load_system("six_axis_robot").joints]
         partners = [] if flavour == "python" else [*PARTNERS, *own]
         assert {p.stem for p in (folder / flavour).iterdir()} == {*NAMES, *partners}
-    archives = {f"{name}{suffix}" for name in systems.names() for suffix in ("", "_in_turn")}
+    archives = {f"{name}{suffix}" for name in systems.list_system_names() for suffix in ("", "_in_turn")}
     for ssp in ("ssp", "ssp2"):
         assert {p.stem for p in (folder / ssp).iterdir()} == archives
     report = folder / "report"
@@ -431,10 +452,10 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
         with (report / f"{name}.csv").open(newline="") as file:
             header, *rows = csv.reader(file)
         model = MODELS[name]
-        assert header[0].split(" [")[0] == model.ramp.input
+        assert header[0].split(" [")[0] == model.ramp.input_name
         assert [h.split(" [")[0] for h in header[1:]] == [v.name for v in model.outputs]
-        assert len(rows) == round(model.ramp.end / model.ramp.step) + 1
-        assert float(rows[-1][0]) == pytest.approx(model.ramp.end, rel=1e-12)
+        assert len(rows) == round(model.ramp.end_value / model.ramp.value_step) + 1
+        assert float(rows[-1][0]) == pytest.approx(model.ramp.end_value, rel=1e-12)
     page = (report / "index.html").read_text(encoding="utf-8")
     links = Links()
     links.feed(page)
@@ -443,7 +464,8 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert not re.findall(r"@import|url\(\s*[\"']?(?:https?:)?//", page)
     assert [x for x in links.loaded if not x.startswith(("#", "data:"))] == []
     assert [name for name in NAMES if name not in page] == []
-    counted = validation.summary(validation.validate())  # the command, the job and the page count alike
+    # the command, the job and the page count alike
+    counted = validation.format_summary(validation.validate())
     assert f"compared: {counted}; " in out
     assert f"<p>{counted}.</p>" in page
 
@@ -495,8 +517,8 @@ def test_the_main_job_proves_every_fmu(job: Job) -> None:
 
 def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> None:
     """Near the formulas, or it had missed; frequencies rise with the load, damping with the amplitude."""
-    found = job.outcome.ringing
-    assert len(checks.check_ringing(found)) == 3  # the column has no dashpot
+    found = job.outcome.free_vibrations
+    assert len(checks.check_free_vibrations(found)) == 3  # the column has no dashpot
     for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):
         frequencies = [r.frequency for r in found[name]]
         assert frequencies == sorted(frequencies)
@@ -522,7 +544,7 @@ def test_the_main_job_fails_when_a_check_or_a_proof_misses(
         return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
 
     changed_copy(job.folder / "fmi2" / f"{name}.fmu", path, change)
-    problems, proof = pipeline._examine(path)
+    problems, proof = pipeline._validate_and_prove(path)
     monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
     found = [
         c for n, r in job.outcome.ramps.items() for c in checks.check_ramp(n, job.outcome.fmi2_folder, r)

@@ -209,9 +209,9 @@ def test_the_default_experiment_is_the_load_ramp_one_step_per_second(fmus: Path,
     ramp, steps = MODELS[name].ramp, CASES[name].description.steps
     assert float(experiment.startTime) == 0.0
     assert float(experiment.stepSize) == 1.0
-    assert float(experiment.stopTime) == pytest.approx(ramp.end / ramp.step, rel=1e-12)
+    assert float(experiment.stopTime) == pytest.approx(ramp.end_value / ramp.value_step, rel=1e-12)
     assert steps is None or float(experiment.stopTime) == steps
-    assert ramp.input in CASES[name].description.inputs
+    assert ramp.input_name in CASES[name].description.inputs
 
 
 def test_what_the_fmu_can_do(root: Any, name: str) -> None:

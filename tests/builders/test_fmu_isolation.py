@@ -27,7 +27,7 @@ NAMES = list(MODELS)
 
 def trace(instance: Fmu, name: str, points: int = 10) -> list[dict[str, float]]:
     """Outputs along a load ramp, with steps."""
-    driven, end = MODELS[name].ramp.input, MODELS[name].ramp.end
+    driven, end = MODELS[name].ramp.input_name, MODELS[name].ramp.end_value
     found = []
     for value in np.linspace(0.1, 1.0, points) * end:
         found.append(instance.at({driven: float(value)}))
@@ -44,7 +44,7 @@ def test_two_instances_do_not_see_each_other(fmu: Host, name: str) -> None:
     a, b = fmu(name, instance_name="a"), fmu(name, instance_name="b")
     a.start({"surface.gamma": 1.4})
     b.start({"surface.gamma": 1.6})
-    driven, end = MODELS[name].ramp.input, MODELS[name].ramp.end
+    driven, end = MODELS[name].ramp.input_name, MODELS[name].ramp.end_value
     for i, value in enumerate(np.linspace(0.1, 1.0, 10) * end):
         a.set_values({driven: float(value)})
         b.set_values({driven: float(value)})
@@ -143,16 +143,14 @@ def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def doubled_sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """FMUs of a package whose gear contact is twice as stiff."""
-    out, sources = (
-        tmp_path_factory.mktemp("doubled_sources"),
-        python_build.runtime_sources(KINDS["gear_contact"]),
-    )
+    out = tmp_path_factory.mktemp("doubled_sources")
+    sources = python_build.collect_runtime_sources(KINDS["gear_contact"])
     sources["joints/gear_contact/spring.py"] += """
 _single = GearContactSpring.evaluate
 GearContactSpring.evaluate = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}
 """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(python_build, "runtime_sources", lambda kind: sources)
+        patch.setattr(python_build, "collect_runtime_sources", lambda kind: sources)
         build(["GearContact", "BoltedJoint"], ["python"], None, out)
     return out / "python"
 
@@ -286,7 +284,7 @@ def only_numpy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_host_with_only_numpy_gets_the_numbers(fmu: Host, fmus: Path, only_numpy: Path, name: str) -> None:
-    driven, value = MODELS[name].ramp.input, MODELS[name].ramp.end
+    driven, value = MODELS[name].ramp.input_name, MODELS[name].ramp.end_value
     _, _, seen = c_like_host(fmus / f"{name}.fmu", only_numpy, driven, value)
     assert seen["log"] == []
     assert seen["status"] == [0] * 7
@@ -307,7 +305,7 @@ def test_a_host_ends_cleanly(fmus: Path, only_numpy: Path) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_host_without_numpy_is_told_so(fmus: Path, name: str) -> None:
     r = MODELS[name].ramp
-    status, errors, seen = c_like_host(fmus / f"{name}.fmu", None, r.input, r.end)
+    status, errors, seen = c_like_host(fmus / f"{name}.fmu", None, r.input_name, r.end_value)
     assert (status, errors) == (3, "")
     text = " ".join(message for _, message in seen["log"])
     assert f"{name} needs the Python package numpy" in text

@@ -108,7 +108,9 @@ def test_outputs_do_not_depend_on_the_way_there(fmu: Host, name: str) -> None:
 
 def test_ten_times_larger_steps_meet_the_same_points(fmus: Path, name: str) -> None:
     path, r = fmus / f"{name}.fmu", MODELS[name].ramp
-    fine, coarse = (ramp.run_ramp(path, r.input, r.end, r.step * factor) for factor in (1.0, 10.0))
+    fine, coarse = (
+        ramp.run_ramp(path, r.input_name, r.end_value, r.value_step * factor) for factor in (1.0, 10.0)
+    )
     assert not fine.messages
     for column, values in coarse.columns.items():
         # nothing depends on the way there; only the points differ by round-off
@@ -136,7 +138,7 @@ def test_a_ramp_takes_settings_of_parameters_and_inputs(fmus: Path) -> None:
 
 def test_csv_holds_every_output_with_its_unit_to_the_last_bit(fmus: Path) -> None:
     result = ramp.run_ramp(fmus / "GearContact.fmu", "f", 100.0, 30.0)
-    header, *rows = csv.reader(io.StringIO(result.csv()))
+    header, *rows = csv.reader(io.StringIO(result.format_csv()))
     assert header == ["f [N]", "s_rel [m]", "K_N [N/m]", "A_r [m2]", "elastic_fraction [1]"]
     assert len(rows) == 5
     columns = np.array(rows, dtype=float).T
@@ -146,11 +148,11 @@ def test_csv_holds_every_output_with_its_unit_to_the_last_bit(fmus: Path) -> Non
 
 def test_fmpy_simulates_the_load_ramp(fmus: Path, name: str) -> None:
     r = MODELS[name].ramp
-    stop = r.end / r.step
-    signal = np.array([(0.0, 0.0), (stop, r.end)], dtype=[("time", float), (r.input, float)])
+    stop = r.end_value / r.value_step
+    signal = np.array([(0.0, 0.0), (stop, r.end_value)], dtype=[("time", float), (r.input_name, float)])
     found = simulate_fmu(str(fmus / f"{name}.fmu"), input=signal, stop_time=stop, output_interval=stop / 10)
     assert len(found) == 11
-    at_end = ramp.run_ramp(fmus / f"{name}.fmu", r.input, r.end * 0.9, r.end * 0.9).columns
+    at_end = ramp.run_ramp(fmus / f"{name}.fmu", r.input_name, r.end_value * 0.9, r.end_value * 0.9).columns
     for output in (v.name for v in MODELS[name].outputs):
         # fmpy holds an input during a step: what it reports at the end was set one step before
         assert found[output][-1] == pytest.approx(at_end[output][-1], rel=1e-9)

@@ -11,7 +11,7 @@ import pytest
 from conftest import Fmu, here_alone, made_once
 from fmpy.fmi2 import fmi2EventInfo
 from jointfmu_fmu_src.native.build import build
-from jointfmu_fmu_src.partners import parameters
+from jointfmu_fmu_src.partners import load_partner_parameters
 from jointfmu_fmu_src.partners.laws import ForceProfile
 from numpy.typing import NDArray
 from scipy.integrate import BDF
@@ -32,7 +32,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         with here_alone():
             for name in ("ForceProfile", "TorqueProfile", "TranslationalMass"):
                 for version in "23":
-                    build(name, parameters(name), out / f"fmi{version}", version)
+                    build(name, load_partner_parameters(name), out / f"fmi{version}", version)
 
     return made_once(tmp_path_factory, "events", make)
 
@@ -63,7 +63,7 @@ def next_event(fmu: Fmu) -> float:
 
 def corners(name: str, changes: dict[str, float]) -> list[float]:
     """Ends of the pieces over which a load is one polynomial each, found in its course."""
-    given = flatten_parameters(parameters(name).values) | changes
+    given = flatten_parameters(load_partner_parameters(name).values) | changes
     times = {given["ramp_start"], given["ramp_start"] + given["ramp_duration"]}
     edge = given["pulse_start"]
     for way in (0.0, given["pulse_rise"], given["pulse_hold"], given["pulse_rise"]):
@@ -144,13 +144,13 @@ def test_a_solver_at_rest_meets_the_pulse(exchange: Make) -> None:
 
 def test_corners_are_where_a_course_changes_its_polynomial() -> None:
     """The third derivative of a quintic edge jumps at its ends and nowhere else."""
-    given = flatten_parameters(parameters("ForceProfile").values) | PULSE
+    given = flatten_parameters(load_partner_parameters("ForceProfile").values) | PULSE
     given |= {"ramp_height": 1.0, "ramp_start": 0.25, "ramp_duration": 0.5}
     given |= {"pulse_rise": 0.25, "pulse_hold": 0.25}
     load = ForceProfile(**given)
-    ends = sorted(float(t) for t in load.corners())
+    ends = sorted(float(t) for t in load.find_corner_times())
     assert ends == corners("ForceProfile", given)
     for begin, end in pairwise([0.0, *ends, 2.5]):
         t = np.linspace(begin, end, 13)
-        y = np.array([load.outputs({"time": x, "f_in": 0.0})["f"] for x in t])
+        y = np.array([load.evaluate_outputs({"time": x, "f_in": 0.0})["f"] for x in t])
         np.testing.assert_allclose(np.polyval(np.polyfit(t - begin, y, 5), t - begin), y, atol=1e-9)

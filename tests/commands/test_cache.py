@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from clients import needs
 from conftest import refused_line
-from jointfmu_fmu_src.native.compiled import cache, compiler, kept
-from jointfmu_fmu_src.native.data import split
+from jointfmu_fmu_src.native.compiled import cache, compiled_models, compiler
+from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_tools.cli import main
 
 from jointfmu.joints import MODELS
@@ -37,9 +37,10 @@ MODEL = MODELS["GearContact"]
 POSIX = needs("Linux or macOS")
 
 
-def part() -> kept.CompiledModel:
-    return kept.CompiledModel(
-        {"law.c": "int x;\n"}, {v: dict.fromkeys(compiler.TARGETS, b"library") for v in kept.VERSIONS}
+def part() -> compiled_models.CompiledModel:
+    return compiled_models.CompiledModel(
+        {"law.c": "int x;\n"},
+        {v: dict.fromkeys(compiler.TARGETS, b"library") for v in compiled_models.FMI_VERSIONS},
     )
 
 
@@ -48,18 +49,20 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The part of a joint in a cache; to compile it anew fails the test."""
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
-    monkeypatch.setenv(cache.CACHE, str(tmp_path / "cache"))
-    monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
-    place = kept._places(kept.shipped_name(model, split(model, file)))[-1]
-    kept._keep(place, kept.pack_model(part()))
-    monkeypatch.setattr(kept, "compile_model", lambda *_: pytest.fail("is compiled"))
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setattr(compiled_models, "SHIPPED_FOLDER", tmp_path / "none")
+    place = compiled_models._candidate_paths(
+        compiled_models.compiled_model_name(model, split_parameters(model, file))
+    )[-1]
+    compiled_models._write_cached(place, compiled_models.pack_model(part()))
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: pytest.fail("is compiled"))
     return place
 
 
-def found() -> kept.CompiledModel:
+def found() -> compiled_models.CompiledModel:
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
-    return kept.compiled_model(model, file, split(model, file))
+    return compiled_models.get_compiled_model(model, file, split_parameters(model, file))
 
 
 def levels(cached: Path) -> list[Path]:
@@ -104,21 +107,21 @@ def test_a_cache_of_another_user_is_refused(
 
 
 @POSIX
-@pytest.mark.parametrize("variable", [cache.CACHE, cache.COMPILER])
+@pytest.mark.parametrize("variable", [cache.CACHE_VARIABLE, cache.COMPILER_CACHE_VARIABLE])
 def test_what_the_compiler_keeps_is_checked_too(
     variable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.delenv(cache.COMPILER, raising=False)
+    monkeypatch.delenv(cache.COMPILER_CACHE_VARIABLE, raising=False)
     monkeypatch.setenv(variable, str(tmp_path))
     tmp_path.chmod(0o777)
     with pytest.raises(ValueError, match="every user may write to it"):
-        compiler.libraries("x", {"x.c": "int x;"}, ["x.c"], ["x86_64-linux"])
+        compiler.compile_libraries("x", {"x.c": "int x;"}, ["x.c"], ["x86_64-linux"])
 
 
 def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(cache.CACHE, str(tmp_path / "none"))
-    monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
-    monkeypatch.setattr(kept, "compile_model", lambda *_: part())
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "none"))
+    monkeypatch.setattr(compiled_models, "SHIPPED_FOLDER", tmp_path / "none")
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: part())
     assert cache.count_files() == (0, 0)
     assert found() == part()
 
@@ -127,8 +130,8 @@ def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     "name", ["sources/../../x.c", "sources/a/b.c", "sources//x", "2/../../x", "/x", "other/x"]
 )
 def test_a_member_that_leaves_the_fmu_is_refused(name: str) -> None:
-    buffer = io.BytesIO(lzma.decompress(kept.pack_model(part())))
+    buffer = io.BytesIO(lzma.decompress(compiled_models.pack_model(part())))
     with tarfile.open(fileobj=buffer, mode="a") as archive:
         archive.addfile(tarfile.TarInfo(name))
     with pytest.raises(ValueError, match="no part"):
-        kept.unpack_model(lzma.compress(buffer.getvalue()))
+        compiled_models.unpack_model(lzma.compress(buffer.getvalue()))

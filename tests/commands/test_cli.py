@@ -16,7 +16,7 @@ from jointfmu_tools.laws import default_joint as _first
 from jointfmu_tools.published import computed, reference, validation
 
 from jointfmu import __version__
-from jointfmu.contact.interface import at_largest_spot, at_pressure
+from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
 from jointfmu.joints import KINDS
 from jointfmu.parameters import format_parameter_file, load_default
 from jointfmu.quantity import flatten_parameters
@@ -100,7 +100,7 @@ def test_law_by_pressure(law_json, law):
     parameters = build_law_parameters(law, None, {})
     assert found["parameters"] == flatten_parameters(parameters)
     assert set(SETTABLE[law]) <= set(found["parameters"])
-    expected = at_pressure(parameters, np.array(pressures))
+    expected = evaluate_at_pressure(parameters, np.array(pressures))
     assert len(found["rows"]) == 3
     for i, row in enumerate(found["rows"]):
         assert (
@@ -125,7 +125,7 @@ def test_law_by_largest_spot(law_json, law):
     parameters = build_law_parameters(law, None, {})
     for row, area in zip(found, areas, strict=True):
         assert row["largest_spot"] == pytest.approx(area, rel=1e-13)  # exp of log
-        alone = float(at_largest_spot(parameters, area)["K_N"])
+        alone = float(evaluate_at_largest_spot(parameters, area)["K_N"])
         assert row["K_N"] == pytest.approx(alone, rel=1e-14)  # order of a sum
         (back,) = law_json(law, "--pressure", repr(row["pressure"]))["rows"]
         # 1e-12 of the load, a power of the area below 2.5
@@ -266,7 +266,7 @@ def test_law_as_text(run, law):
     assert len(lines) == 2 + (law in ("zhao2018", "roughness"))
     values = dict(zip(head, lines[1], strict=True))
     assert {name for name in LAW_COLUMNS if values[name] == "-"} == UNDEFINED[law]
-    expected = at_pressure(build_law_parameters(law, None, {}), 2e6)
+    expected = evaluate_at_pressure(build_law_parameters(law, None, {}), 2e6)
     assert float(values["K_N"]) == pytest.approx(float(expected["K_N"]), rel=5e-6)  # six digits are printed
     assert float(values["pressure"]) == 2e6
 
@@ -284,7 +284,7 @@ def test_validate_as_text(run):
     status, out, err = run("validate")
     assert (status, err) == (0, "")
     *lines, last = out.splitlines()
-    papers = [paper for kind in KINDS.values() for paper in computed.published_numbers(kind).papers]
+    papers = [paper for kind in KINDS.values() for paper in computed.load_published_numbers(kind).papers]
     points = [p for paper in papers for p in reference.read_points(paper)]
     assert len(lines) == len(points) + 1
     for word in (
@@ -310,7 +310,7 @@ def test_validate_as_json(run):
     assert (status, err) == (0, "")
     found = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
     assert found["missed"] == 0
-    assert found["counts"] == asdict(validation.counts(validation.validate()))
+    assert found["counts"] == asdict(validation.count_points(validation.validate()))
     assert {row["verdict"] for row in found["rows"]} == {"pass"}
     for row in found["rows"]:
         assert {"paper", "id", "unit", "value", "computed", "error", "tolerance", "role"} <= set(row)
@@ -343,7 +343,7 @@ def test_a_missed_calibration_point_is_shown(run, monkeypatch):
     assert (status, err) == (0, "")
     assert "MISS" in out
     assert "missed: none" in out
-    assert len([r for r in validation.validate() if not r.passed]) == 1
+    assert len([r for r in validation.validate() if not r.has_passed]) == 1
 
 
 # ramp

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.native.compiled.cache import CACHE
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.native.compiled.cache import CACHE_VARIABLE
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.command_line.examples import EXAMPLES
 from jointfmu_tools.parser import build_parser
@@ -115,9 +115,11 @@ def test_an_example_runs(
 ) -> None:
     """But for that of a plate, which tests/drawing/test_new.py runs."""
     monkeypatch.chdir(folder)
-    monkeypatch.setenv(CACHE, str(folder / "parts"))  # a user's may be large
+    monkeypatch.setenv(CACHE_VARIABLE, str(folder / "parts"))  # a user's may be large
     if line.startswith("robot"):
-        monkeypatch.setattr("jointfmu_tools.robots.pictures.POINTS", 7)  # few poses are drawn as many are
+        monkeypatch.setattr(
+            "jointfmu_tools.robots.pictures.GRID_ANGLES", 7
+        )  # few poses are drawn as many are
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out
 

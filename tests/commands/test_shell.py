@@ -12,7 +12,7 @@ import pytest
 from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.parser import COMMAND_GROUPS, COMMANDS, SHELLS, build_parser
+from jointfmu_tools.parser import COMMAND_GROUPS, COMMANDS, COMPLETION_SHELLS, build_parser
 
 from jointfmu import progress
 
@@ -48,7 +48,7 @@ def test_long_work_says_what_it_does_on_a_terminal(
         assert capsys.readouterr().out == "done\n"
 
 
-@pytest.mark.parametrize("shell", SHELLS)
+@pytest.mark.parametrize("shell", COMPLETION_SHELLS)
 def test_a_shell_has_its_script(shell: str, capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit) as left:
         cli.main(["--completion", shell])

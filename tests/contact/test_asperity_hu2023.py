@@ -109,7 +109,7 @@ def test_totals_are_sums_over_spots(case):
         "area": paper.total(lambda a: a, s_l, power=1.0),
         "elastic_area": paper.total(lambda a: a, s_l, paper.s_ec, power=1.0),
     }
-    assert set(s.terms) == set(expected)
+    assert set(s.regime_terms) == set(expected)
     for name, value in expected.items():
         assert s.total(name, u) == pytest.approx(value, rel=QUAD), name
     state = law.state(u)
@@ -180,7 +180,7 @@ def test_traction_over_friction():
     tau = HU.sigma_y / sqrt(3)
     for area, ratio in ((1.0, 3.59), (7.1197, 1.93), (205.3827, 1.39)):
         t = edge + log(area) - 1e-6  # just inside the regime below
-        load = sum(float(term.spot_value(t)) for term in s.terms["load"])
+        load = sum(float(term.spot_value(t)) for term in s.regime_terms["load"])
         assert tau * HU.surface.s_min * exp(t) / (HU.mu * load) == pytest.approx(ratio, abs=5e-3)
 
 
@@ -202,24 +202,22 @@ def test_lower_bound_of_the_mean_pressure():
 
 def test_kogut_etsion_products():
     # errata: six and seven digits
-    first, second = (
-        kogut_etsion.eliminate_deformation(kogut_etsion.FIRST_STAGE),
-        kogut_etsion.eliminate_deformation(kogut_etsion.SECOND_STAGE),
-    )
-    coefficients = (first.A, second.A, first.B, second.B)
+    first = kogut_etsion.eliminate_deformation(kogut_etsion.FIRST_STAGE)
+    second = kogut_etsion.eliminate_deformation(kogut_etsion.SECOND_STAGE)
+    coefficients = (first.load_factor, second.load_factor, first.stiffness_factor, second.stiffness_factor)
     assert coefficients == pytest.approx((1.12816, 1.49880, 1.50815, 1.79349), abs=5e-6)
-    ends = (kogut_etsion.SECOND_STAGE_AREA, kogut_etsion.PLASTIC_AREA)
+    ends = (kogut_etsion.SECOND_STAGE_AREA_RATIO, kogut_etsion.PLASTIC_AREA_RATIO)
     assert ends == pytest.approx((7.1197, 205.3827), abs=5e-5)
     # the exponents of Eqs. 13, 14, 31, 32
-    assert (first.p, second.p) == pytest.approx((1.2544, 1.1021), abs=5e-5)
-    assert (first.q, second.q) == pytest.approx((0.3741, 0.2295), abs=5e-5)
+    assert (first.load_exponent, second.load_exponent) == pytest.approx((1.2544, 1.1021), abs=5e-5)
+    assert (first.stiffness_exponent, second.stiffness_exponent) == pytest.approx((0.3741, 0.2295), abs=5e-5)
 
 
 def test_mean_pressure_at_the_onset_of_full_plasticity():
     law = changed(HU, {"side1.nu": 0.3})
     edge = log(hu2023.critical_area(law) / law.surface.s_min)
-    t = edge + log(kogut_etsion.PLASTIC_AREA) - 1e-9
-    load = sum(float(term.spot_value(t)) for term in law.spots().terms["load"])
+    t = edge + log(kogut_etsion.PLASTIC_AREA_RATIO) - 1e-9
+    load = sum(float(term.spot_value(t)) for term in law.spots().regime_terms["load"])
     mean = load / (law.surface.s_min * exp(t))
     assert mean / law.hardness == pytest.approx(0.993, abs=5e-4)  # three digits
 
@@ -309,19 +307,19 @@ def test_closed_forms(D):
     paper, s = Paper(law), law.spots()
     s_l = 1e4 * paper.s_ec
     m, u = 0.5 * D - 0.5, log(s_l / law.surface.s_min)
-    common = m * s.weight * exp(m * u)
+    common = m * s.size_prefactor * exp(m * u)
     for name, regimes in closed_forms(paper, s_l).items():
         if name == "area":
             assert s.total(name, u) == pytest.approx(sum(regimes), rel=1e-11)  # nothing is rounded here
             assert s.total("elastic_area", u) == pytest.approx(regimes[0], rel=1e-11)
             continue
-        for term, expected in zip(s.terms[name], regimes, strict=True):
+        for term, expected in zip(s.regime_terms[name], regimes, strict=True):
             # five printed digits of each coefficient and 5e-5 ln(205) of each exponent
             assert common * term.integral(m, u) == pytest.approx(expected, rel=5e-4)
         # the elastic and the plastic regime have no rounded coefficient
-        assert common * s.terms[name][0].integral(m, u) == pytest.approx(regimes[0], rel=1e-11)
+        assert common * s.regime_terms[name][0].integral(m, u) == pytest.approx(regimes[0], rel=1e-11)
     plastic = closed_forms(paper, s_l)["load"][3]
-    assert common * s.terms["load"][3].integral(m, u) == pytest.approx(plastic, rel=1e-11)
+    assert common * s.regime_terms["load"][3].integral(m, u) == pytest.approx(plastic, rel=1e-11)
 
 
 @pytest.mark.parametrize("k", range(2, 15))

@@ -96,8 +96,8 @@ def test_totals_are_sums_over_spots(law, u):
         "area": (lambda a: a, x),
         "plastic_work": (lambda a: paper.H * a * paper.delta(a), 2 - D),  # Eq. 15
     }
-    assert set(s.terms) == set(elastic) | set(plastic)
-    for name in s.terms:
+    assert set(s.regime_terms) == set(elastic) | set(plastic)
+    for name in s.regime_terms:
         expected = paper.elastic(elastic[name], largest) if name in elastic else 0.0
         if name in plastic:
             expected += paper.plastic(plastic[name][0], largest, plastic[name][1])
@@ -199,7 +199,7 @@ def test_one_spot(law, u):
     paper = Paper(law)
     a = paper.ac * np.exp(u)
     close = {"rel": 100 * EPS}  # some ten operations and powers
-    assert zhao2018.deformation(law, a) == pytest.approx(paper.delta(a), **close)
+    assert zhao2018.spot_deformation(law, a) == pytest.approx(paper.delta(a), **close)
     assert zhao2018.curvature_radius(law, a) == pytest.approx(paper.R(a), **close)
     assert zhao2018.elastic_load(law, a) == pytest.approx(paper.f_e(a), **close)
     assert zhao2018.normal_stiffness(law, a) == pytest.approx(paper.k_n(a), **close)
@@ -210,7 +210,7 @@ def test_one_spot(law, u):
 def test_family_stiffness_is_the_derivative_along_the_family():
     a, h = 1e-7, 1e-12
     force = zhao2018.elastic_load(ZHAO, a + h) - zhao2018.elastic_load(ZHAO, a - h)
-    path = zhao2018.deformation(ZHAO, a + h) - zhao2018.deformation(ZHAO, a - h)
+    path = zhao2018.spot_deformation(ZHAO, a + h) - zhao2018.spot_deformation(ZHAO, a - h)
     # h/a = 1e-5: truncation 1e-10, round-off eps/1e-5 = 2e-11
     assert zhao2018.normal_stiffness(ZHAO, a) == pytest.approx(force / path, rel=1e-9)
     hertz = changed(ZHAO, {"spot_stiffness": "hertz"})

@@ -11,8 +11,8 @@ from laws import HU, LAWS, RANDOM, YU, ZHAO, changed, decades
 
 from jointfmu.contact import interface
 from jointfmu.contact.interface import (
-    at_largest_spot,
-    at_pressure,
+    evaluate_at_largest_spot,
+    evaluate_at_pressure,
     newton_step,
     solve_largest_spot,
     stiffness_curve,
@@ -51,10 +51,10 @@ def test_newton_step(kind, data, v):
         return spots.log_total("load", v)[0]
 
     h = 1e-4
-    ends = {end for term in spots.terms["load"] for end in (term.lower, term.upper)} - {None}
+    ends = {end for term in spots.regime_terms["load"] for end in (term.lower, term.upper)} - {None}
     assume(all(abs(v - end) > 2 * h for end in ends))
     slope = (log_load(v + h) - log_load(v - h)) / (2 * h)
-    assert 0.5 * spots.m < slope < 2.5
+    assert 0.5 * spots.size_exponent < slope < 2.5
     aim = log_load(v) + 1e-3
     step, lower, upper, residual = newton_step(spots, v, aim)
     assert residual == pytest.approx(1e-3, rel=1e-9)  # a difference of logarithms of order 100
@@ -82,7 +82,7 @@ def test_shapes(law):
     assert u.ravel() == pytest.approx(alone, rel=RESIDUAL, abs=RESIDUAL)
     assert solve_largest_spot(law, 1e6).shape == ()
     assert solve_largest_spot(law, []).shape == (0,)
-    state = at_pressure(law, pressure)
+    state = evaluate_at_pressure(law, pressure)
     assert {np.shape(value) for value in state.values()} == {(3, 1, 4)}
 
 
@@ -122,9 +122,9 @@ array_cases = pytest.mark.parametrize(
 def test_array_parameters(kind, name):
     values = np.geomspace(*ARRAYS[kind][name], 7)
     pressure = np.geomspace(1e3, 1e8, 5)[:, None]
-    batch = at_pressure(changed(LAWS[kind], {name: values}), pressure)
+    batch = evaluate_at_pressure(changed(LAWS[kind], {name: values}), pressure)
     for i, value in enumerate(values):
-        single = at_pressure(changed(LAWS[kind], {name: float(value)}), pressure[:, 0])
+        single = evaluate_at_pressure(changed(LAWS[kind], {name: float(value)}), pressure[:, 0])
         for symbol in ("F", "K_N", "A_r"):
             # two solutions within the residual, and growth exponents of at most 2.5
             assert np.broadcast_to(batch[symbol], (5, 7))[:, i] == pytest.approx(
@@ -153,14 +153,14 @@ def test_array_parameters_with_more_points_than_a_block(kind, name, monkeypatch)
 def test_replace_takes_arrays():
     G, A_0 = np.geomspace(1e-10, 1e-8, 4), np.geomspace(1e-3, 1.0, 4)
     law = replace(ZHAO, surface=replace(ZHAO.surface, G=G), A_0=A_0)
-    state = at_pressure(law, 1e6)
+    state = evaluate_at_pressure(law, 1e6)
     assert state["F"] == pytest.approx(1e6 * A_0, rel=RESIDUAL)
     assert state["K_N"].shape == (4,)
 
 
 @each_law
 def test_zero_pressure(law):
-    state = at_pressure(law, np.array([0.0, 1e6]))
+    state = evaluate_at_pressure(law, np.array([0.0, 1e6]))
     for symbol in ("F", "K_N", "A_r", "pressure"):
         assert state[symbol][0] == 0.0, symbol
         assert state[symbol][1] > 0.0, symbol
@@ -185,7 +185,7 @@ def test_largest_spot_at_zero_pressure(law):
 )
 def test_impossible_pressures_are_refused(law, pressure, text):
     with pytest.raises(ValueError, match=r"is outside \[0, inf\)") as error:
-        at_pressure(law, pressure)
+        evaluate_at_pressure(law, pressure)
     assert text in str(error.value)
     assert "\n" not in str(error.value)
 
@@ -194,7 +194,7 @@ def test_impossible_pressures_are_refused(law, pressure, text):
 @pytest.mark.parametrize("area", [0.0, -1e-12, np.nan, np.inf])
 def test_impossible_spots_are_refused(law, area):
     with pytest.raises(ValueError, match=rf"largest spot = {area:g} m2 is outside \("):
-        at_largest_spot(law, area)
+        evaluate_at_largest_spot(law, area)
 
 
 @pytest.mark.parametrize(
@@ -214,7 +214,7 @@ def test_dimensions_without_a_representable_area_are_refused(law, values):
 
 def test_spots_below_the_smallest_stiff_one():
     """They carry load (Eq. 23 from 0) and have no stiffness (Eqs. 30, 41 from s_min)."""
-    state = at_largest_spot(HU, [0.1 * HU.surface.s_min, 10.0 * HU.surface.s_min])
+    state = evaluate_at_largest_spot(HU, [0.1 * HU.surface.s_min, 10.0 * HU.surface.s_min])
     assert np.all(state["F"] > 0.0)
     assert (state["K_N"][0], state["K_T"][0]) == (0.0, 0.0)
     assert state["K_N"][1] > 0.0
@@ -226,11 +226,11 @@ def test_round_trip(kind, data):
     law = data.draw(RANDOM[kind])
     spots = law.spots()
     u = data.draw(st.floats(-20.0, 20.0))
-    area = spots.reference * np.exp(u)
-    there = at_largest_spot(law, area)
-    back = at_pressure(law, there["pressure"])
+    area = spots.reference_area * np.exp(u)
+    there = evaluate_at_largest_spot(law, area)
+    back = evaluate_at_pressure(law, there["pressure"])
     # the residual divided by the smallest slope d ln F/du = m (0.06 for Yu at e = 0.95), and eps ln(a)
-    assert back["largest_spot"] == pytest.approx(area, rel=RESIDUAL / spots.m + 100 * EPS)
+    assert back["largest_spot"] == pytest.approx(area, rel=RESIDUAL / spots.size_exponent + 100 * EPS)
     assert there["largest_spot"] == pytest.approx(area, rel=100 * EPS)
     assert back["F"] == pytest.approx(there["F"], rel=RESIDUAL)
     assert there["pressure"] == there["F"] / law.A_0
@@ -242,7 +242,7 @@ def test_round_trip(kind, data):
 def test_everything_grows_with_the_pressure(kind, data):
     law = data.draw(RANDOM[kind])
     pressure = np.geomspace(1e-3, 1e11, 400)
-    state = at_pressure(law, pressure)
+    state = evaluate_at_pressure(law, pressure)
     u = solve_largest_spot(law, pressure)
     assert np.all(np.diff(u) > 0)
     assert np.all(np.diff(state["F"]) > 0)
@@ -256,7 +256,11 @@ def test_everything_grows_with_the_pressure(kind, data):
 def test_no_jump_across_the_regimes(law):
     """The single spot may jump at an edge of the fits, the sum over all spots may not."""
     s = law.spots()
-    ends = {end for term in (*s.terms["load"], *s.terms["normal"]) for end in (term.lower, term.upper)}
+    ends = {
+        end
+        for term in (*s.regime_terms["load"], *s.regime_terms["normal"])
+        for end in (term.lower, term.upper)
+    }
     edges = np.array([end for end in ends if end is not None])
     assert edges.size
     h = 1e-9
@@ -299,7 +303,8 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
     }
     u = np.array([-20.0, -5.0, -0.5, 0.5, 3.0, 8.0, 20.0])
     pressure = law.spots().total("load", u) / law.A_0
-    before, after = at_pressure(law, pressure), at_pressure(changed(law, scaled), pressure * stress)
+    before = evaluate_at_pressure(law, pressure)
+    after = evaluate_at_pressure(changed(law, scaled), pressure * stress)
     assert before.keys() <= UNITS.keys()
     for symbol, value in before.items():
         expected = value * factor[UNITS[symbol]]
@@ -401,19 +406,20 @@ def test_derivatives_with_respect_to_parameters(kind):
     law = LAWS[kind]
     clone, symbols = symbolic(law)
     u = 3.0 + (10.0 if law is HU else 0.0)
-    reference = law.spots().reference
+    reference = law.spots().reference_area
     for name in ("surface.gamma", "side1.E", "side1.nu"):
         symbol, value = symbols[name]
         # at one largest spot, not at one ratio to a reference area that moves with the parameter
         area = reference * np.exp(u)
         spots = clone.spots()
-        total = spots.total("load", np.log(area / spots.reference))
+        total = spots.total("load", np.log(area / spots.reference_area))
         inputs = [s for s, _ in symbols.values()]
         slope = casadi.Function("slope", inputs, [casadi.gradient(total, symbol)])
         exact = float(slope(*(v for _, v in symbols.values())))
         h = 1e-5
         up, down = (
-            at_largest_spot(changed(law, {name: value * (1 + sign * h)}), area)["F"] for sign in (1, -1)
+            evaluate_at_largest_spot(changed(law, {name: value * (1 + sign * h)}), area)["F"]
+            for sign in (1, -1)
         )
         # round-off eps/h = 2e-11 over a relative sensitivity of order 0.01 to 1, truncation h^2 times 100
         assert exact * value == pytest.approx((up - down) / (2 * h), rel=1e-6)

@@ -193,7 +193,7 @@ TERMS = {
     "singular": (PowerTerm(2.0, 0.71, -3.0, 2.0),),  # p = m
     "slip": (SlipTerm(3.0, 0.5, np.exp(0.5 * 0.7), 0.5, 0.0, 4.0),),
 }
-SPOTS = SpotDistribution(reference=1e-9, m=0.71, weight=1.3, terms=TERMS)
+SPOTS = SpotDistribution(reference_area=1e-9, size_exponent=0.71, size_prefactor=1.3, regime_terms=TERMS)
 EDGES = (-3.0, -1.0, 0.0, 0.7, 2.0, 4.0)
 away = st.floats(-8.0, 9.0).filter(lambda u: min(abs(u - edge) for edge in EDGES) > 1e-3)
 

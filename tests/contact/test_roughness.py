@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from jointfmu_tools.fields.joint_parameters import with_field
+from jointfmu_tools.fields.joint_parameters import insert_field
 from jointfmu_tools.fields.nodal_result import ContactField
 
 from jointfmu.contact import roughness
@@ -158,8 +158,8 @@ def test_a_field_keeps_it():
     file = load_default("bolted_joint")
     shape = pressure_distribution(file.values.pattern)
     pressure = preload_pressure(file.values, shape, 9e3, 0.0)
-    field = ContactField(shape.share * file.values.A_0, shape.position, pressure)
-    made, _ = with_field(file, field, 9e3, "test")
+    field = ContactField(shape.area_share * file.values.A_0, shape.position, pressure)
+    made, _ = insert_field(file, field, 9e3, "test")
     assert made.roughness == file.roughness
     assert made.sources["comparison.Ra1"] == file.sources["comparison.Ra1"]
 

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
 from jointfmu.contact.surface import (
-    Elastic,
+    ElasticConstants,
     complete_elliptic,
     contact_modulus,
     contact_shear_modulus,
@@ -113,7 +113,7 @@ nus, Es = st.floats(0.0, 0.5), st.floats(1e9, 1e12)
 
 @given(E1=Es, E2=Es, nu1=nus, nu2=nus)
 def test_moduli(E1, E2, nu1, nu2):
-    first, second = Elastic(E=E1, nu=nu1), Elastic(E=E2, nu=nu2)
+    first, second = ElasticConstants(E=E1, nu=nu1), ElasticConstants(E=E2, nu=nu2)
     star = contact_modulus(first, second)
     assert 1 / star == pytest.approx((1 - nu1**2) / E1 + (1 - nu2**2) / E2, rel=8 * EPS)
     G1, G2 = E1 / (2 * (1 + nu1)), E2 / (2 * (1 + nu2))
@@ -125,14 +125,14 @@ def test_moduli(E1, E2, nu1, nu2):
 def test_mindlin_ratio_of_equal_bodies():
     # k_t/k_n of a circular contact without slip is 8 G'/(2 E*) = 2 (1 - nu)/(2 - nu) (Mindlin 1949)
     nu = 0.28
-    body = Elastic(E=1.5e11, nu=nu)
+    body = ElasticConstants(E=1.5e11, nu=nu)
     ratio = 4 * contact_shear_modulus(body, body) / contact_modulus(body, body)
     assert ratio == pytest.approx(2 * (1 - nu) / (2 - nu), rel=8 * EPS)
 
 
 def test_a_rigid_second_body_leaves_the_first():
-    body = Elastic(E=2e11, nu=0.3)
-    rigid = Elastic(E=1e40, nu=0.3)
+    body = ElasticConstants(E=2e11, nu=0.3)
+    rigid = ElasticConstants(E=1e40, nu=0.3)
     assert contact_modulus(body, rigid) == pytest.approx(2e11 / 0.91, rel=8 * EPS)
 
 

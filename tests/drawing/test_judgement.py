@@ -9,13 +9,13 @@ from jointfmu_tools.drawing.tables import read_threads
 from jointfmu_tools.drawing.vdi2230 import proof_load, stress_area
 from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.judgement import MAX_RATIO, assess_law, find_height
+from jointfmu_tools.judgement import MAX_STIFFNESS_RATIO, assess_law, find_rms_height
 from jointfmu_tools.pressure import judge_file, nominal_pressure
 
-from jointfmu.contact.interface import at_pressure, find_validity_violations
-from jointfmu.contact.roughness import GAMMA, predicted_stiffness
+from jointfmu.contact.interface import evaluate_at_pressure, find_validity_violations
+from jointfmu.contact.roughness import PERSSON_GAMMA, predicted_stiffness
 from jointfmu.joints import KINDS
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 BOLTED = load_default("bolted_joint")
@@ -34,7 +34,7 @@ def test_the_ratio_is_that_of_the_joint():
     found = judge_file(BOLTED, [9e3, 15e3])
     for ratio, preload in zip(found.comparison.ratio, (9e3, 15e3), strict=True):
         K = BoltedJointSpring.of(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
-        assert ratio == pytest.approx(K * GAMMA * find_height(BOLTED) / (8 * preload), rel=0.1)
+        assert ratio == pytest.approx(K * PERSSON_GAMMA * find_rms_height(BOLTED) / (8 * preload), rel=0.1)
     assert found.warnings == ()
 
 
@@ -52,9 +52,9 @@ def test_a_height_that_is_no_roughness():
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_factor_of_three_either_way(side):
     p = 1e6
-    k = at_pressure(BOLTED.values, p)["K_N"] / BOLTED.values.A_0
-    for factor, doubtful in ((0.99 * MAX_RATIO, False), (1.01 * MAX_RATIO, True)):
-        h = factor**side * p / (GAMMA * k)
+    k = evaluate_at_pressure(BOLTED.values, p)["K_N"] / BOLTED.values.A_0
+    for factor, doubtful in ((0.99 * MAX_STIFFNESS_RATIO, False), (1.01 * MAX_STIFFNESS_RATIO, True)):
+        h = factor**side * p / (PERSSON_GAMMA * k)
         found = assess_law(BOLTED.values, [p], h)
         assert found.comparison.ratio == pytest.approx([factor**side], rel=1e-9)
         assert bool(found.warnings) == found.comparison.is_doubtful == doubtful
@@ -66,7 +66,7 @@ def test_what_is_not_known_is_not_judged():
     for joint in KINDS:
         file = load_default(joint)
         found = judge_file(file)
-        assert (found.comparison is None) == (find_height(file) is None)
+        assert (found.comparison is None) == (find_rms_height(file) is None)
         assert judge_file(file).to_json()["warnings"] == []
     assert assess_law(BOLTED.values, [0.0], 1e-6).comparison is None
 
@@ -80,7 +80,7 @@ def test_every_joint_is_judged_under_its_load(joint):
     assert found.comparison.pressure == pytest.approx([pressure])
     law = KINDS[joint].extract_law(file.values)
     expected = (
-        at_pressure(law, pressure)["K_N"]
+        evaluate_at_pressure(law, pressure)["K_N"]
         / law.A_0
         * how.stiffness_ratio(file.values, how.default_load(file.values))
     )
@@ -108,7 +108,9 @@ def test_beyond_the_hardness_and_the_nominal_area():
     assert f"{H:.4g} Pa" in hard
     limit = float(area.split(" at ")[-1].split()[0])
     assert limit == float(same.split(" at ")[-1].split()[0])
-    assert at_pressure(law, limit)["A_r"] == pytest.approx(law.A_0, rel=0.01)  # three digits are printed
+    assert evaluate_at_pressure(law, limit)["A_r"] == pytest.approx(
+        law.A_0, rel=0.01
+    )  # three digits are printed
 
 
 def test_the_law_roughness_is_proven_in_a_range():

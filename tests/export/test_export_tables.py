@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.export import keywords, tables, writing
-from jointfmu_tools.export.placing import SI, UNITS
+from jointfmu_tools.export.placing import SI_UNIT_SET, UNIT_SETS
 from jointfmu_tools.joints.bolted_joint.export import MAX_FORCE_RATIO, TightenedState, tabulate_normal_force
 from scipy.interpolate import PchipInterpolator
 
 import jointfmu
-from jointfmu.contact.interface import at_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.contact.interface import evaluate_at_pressure
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import load_default
 
-MM = UNITS["mm-N-MPa-t"]
+MM = UNIT_SETS["mm-N-MPa-t"]
 STATE = TightenedState(9e3, 0.0)
 
 
@@ -52,7 +52,7 @@ def test_law_table_keeps_to_the_law(joint, error, request):
     assert table.rows[0].tolist() == [0.0, 0.0, 0.0]
     assert p[1] == pytest.approx(curve.closing_end_load, rel=1e-9)
     assert p[-1] == pytest.approx(law.hardness, rel=1e-9)
-    state = at_pressure(law, p[1:])
+    state = evaluate_at_pressure(law, p[1:])
     np.testing.assert_allclose(k[1:], state["K_N"] / law.A_0, rtol=1e-7)  # the curve is within 1e-8
     some = np.geomspace(curve.closing_end_load, 0.999 * curve.end[1], 20001)
     at = curve.inverse(some) - curve.displacement[0]
@@ -134,10 +134,10 @@ def test_contact_text(bolted):
 
 def test_calculix_refuses_more_rows_than_it_holds():
     file = load_default("bolted_joint")
-    rows = writing.export_contact("abaqus", file, SI, 1e-4).facts["rows"]
+    rows = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-4).facts["rows"]
     assert rows > 200
     with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; allow a larger error"):
-        writing.export_contact("calculix", file, SI, 1e-4)
+        writing.export_contact("calculix", file, SI_UNIT_SET, 1e-4)
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_calculix_refuses_more_rows_than_it_holds():
     ],
 )
 def test_csv_is_read_by_numpy(joint, state, heads):
-    written = writing.export_curve("csv", load_default(joint), state, SI, 1e-3)
+    written = writing.export_curve("csv", load_default(joint), state, SI_UNIT_SET, 1e-3)
     lines = [line for line in written.text.splitlines() if not line.startswith("#")]
     assert lines[0] == heads
     rows = np.loadtxt(lines[1:], delimiter=",")
@@ -160,7 +160,7 @@ def test_csv_is_read_by_numpy(joint, state, heads):
 
 
 def test_units_of_a_curve():
-    metres = writing.export_curve("csv", load_default("gear_contact"), None, SI, 1e-2).text
+    metres = writing.export_curve("csv", load_default("gear_contact"), None, SI_UNIT_SET, 1e-2).text
     millimetres = writing.export_curve("csv", load_default("gear_contact"), None, MM, 1e-2).text
     one, other = (
         np.loadtxt(t.splitlines(), delimiter=",", comments=["#", "s"]) for t in (metres, millimetres)
@@ -171,7 +171,7 @@ def test_units_of_a_curve():
 
 def test_drive_has_no_contact_table():
     with pytest.raises(ValueError, match="export its curve"):
-        writing.export_contact("csv", load_default("harmonic_drive"), SI, 1e-3)
+        writing.export_contact("csv", load_default("harmonic_drive"), SI_UNIT_SET, 1e-3)
 
 
 # ---- Modelica: the text, and a CombiTable1D of its rows run by rumoca ----
@@ -234,11 +234,11 @@ def modelica_table(text):
     ("joint", "state"), [("harmonic_drive", None), ("gear_contact", None), ("bolted_joint", STATE)]
 )
 def test_modelica_text(joint, state):
-    written = writing.export_curve("modelica", load_default(joint), state, SI, 1e-3)
+    written = writing.export_curve("modelica", load_default(joint), state, SI_UNIT_SET, 1e-3)
     name, rows = modelica_table(written.text)
     assert name == written.facts["table"] == ("torque" if joint == "harmonic_drive" else "force")
     assert np.all(np.diff(rows[:, 0]) > 0.0)
-    csv = writing.export_curve("csv", load_default(joint), state, SI, 1e-3).text
+    csv = writing.export_curve("csv", load_default(joint), state, SI_UNIT_SET, 1e-3).text
     same = np.loadtxt([line for line in csv.splitlines() if line[0] in "-0123456789"], delimiter=",")
     np.testing.assert_array_equal(rows, same)
 
@@ -246,7 +246,7 @@ def test_modelica_text(joint, state):
 def test_rumoca_runs_a_combi_table_of_the_rows(drive):
     import rumoca
 
-    text = writing.export_curve("modelica", load_default("harmonic_drive"), None, SI, 1e-3).text
+    text = writing.export_curve("modelica", load_default("harmonic_drive"), None, SI_UNIT_SET, 1e-3).text
     rows = modelica_table(text)[1]
     matrix = "[" + "; ".join(", ".join(map(repr, row)) for row in rows.tolist()) + "]"
     span = 1.2 * float(rows[-1, 0])
@@ -272,7 +272,7 @@ def test_rumoca_runs_a_combi_table_of_the_rows(drive):
 def test_header_is_plain_text():
     file = load_default("gear_contact")
     odd = type(file)(file.joint, "Zähne *STEP", file.values, file.origins, file.sources)
-    text = writing.export_contact("abaqus", odd, SI, 1e-2).text
+    text = writing.export_contact("abaqus", odd, SI_UNIT_SET, 1e-2).text
     assert "** parameters: Z?hne *STEP (gear_contact)" in text
     assert text.isascii()
     assert tables.format_modelica_table(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"

@@ -42,7 +42,7 @@ def test_calculix_finds_the_same_contact(tmp_path):
     law, model = Linear(STIFFNESS), ContactModel(joint.bodies, joint.interface, Linear(STIFFNESS))
     force = np.array([4.8e3, 3.2e3])
     loads = [sign * head @ force for sign, head in zip((1.0, -1.0), joint.bolt_head_loads, strict=True)]
-    mean = force.sum() / joint.interface.area.sum()
+    mean = force.sum() / joint.interface.quadrature_area.sum()
     ours = model.solve(loads, mean)
     (tmp_path / "plates.inp").write_text("\n".join(deck(model, loads, mean / STIFFNESS)) + "\n")
     run = subprocess.run(["ccx", "plates"], cwd=tmp_path, capture_output=True, text=True, timeout=300)
@@ -51,7 +51,7 @@ def test_calculix_finds_the_same_contact(tmp_path):
     first = joint.bodies[0].basis.N
     flat = np.column_stack([*joint.interface.nodes, np.zeros(joint.interface.nodes.shape[1])])
     lower, upper = (cKDTree(body.nodes.T).query(flat)[1] for body in joint.bodies)
-    approach = ours.offset + moved[lower, 2] - moved[first + upper, 2]
+    approach = ours.approach_offset + moved[lower, 2] - moved[first + upper, 2]
     pressure, peak = law.derivatives(approach)[0], ours.node_pressure.max()
     assert ours.pressure.min() == 0.0  # it opens
     assert pressure.max() == pytest.approx(peak, rel=1e-3)  # 4e-5 measured

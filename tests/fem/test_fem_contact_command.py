@@ -13,11 +13,11 @@ from jointfmu_tools.fem.convergence import (
     RESULT_UNITS,
     MeshResult,
     observed_orders,
-    refinements,
+    refinement_series,
     relative_changes,
 )
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
@@ -173,12 +173,12 @@ def test_observed_orders():
     """Values that behave like 1 + h^2 have the order two; one that does not settle has none."""
     rows = [
         MeshResult(refinement, 1, 1, dict.fromkeys(RESULT_UNITS, 1.0 + 1e-4 / refinement**2))
-        for refinement in refinements(3)
+        for refinement in refinement_series(3)
     ]
     assert observed_orders(rows)["peak"] == pytest.approx(
         2.0, abs=1e-3
     )  # changes are relative to 1 + 1e-4 h^2
     assert [round(r.refinement, 3) for r in rows] == [0.707, 1.0, 1.414]
-    worse = [*rows[:2], replace(rows[2], values=dict.fromkeys(RESULT_UNITS, 2.0))]
+    worse = [*rows[:2], replace(rows[2], result_values=dict.fromkeys(RESULT_UNITS, 2.0))]
     assert math.isnan(observed_orders(worse)["peak"])
     assert relative_changes(rows)[0]["K_N"] < 0.0

@@ -21,7 +21,7 @@ def lap(length=0.1, width=0.04, thickness=2e-3, nu=0.0, hole=2e-3):
 
 def even(joint, tangential, normal):
     """Springs [N/m3] that are the same everywhere."""
-    return np.tile([tangential, tangential, normal], (joint.interface.area.size, 1))
+    return np.tile([tangential, tangential, normal], (joint.interface.quadrature_area.size, 1))
 
 
 def block(nu=0.0):
@@ -62,8 +62,8 @@ def test_bodies_without_compliance_leave_the_interface(attached):
     stiff = replace(assembly.side1, E=206e15)
     joint = JointFiniteElements.from_assembly(replace(assembly, side1=stiff, side2=stiff), attached)
     found = joint.compliances(even(joint, 1e12, 1e12), 0.0)
-    assert found.total == pytest.approx(found.interface_stiffness, rel=1e-4)
-    assert found.components[0] == pytest.approx(found.interface_stiffness, rel=1e-4)
+    assert found.total == pytest.approx(found.interface_compliance, rel=1e-4)
+    assert found.components[0] == pytest.approx(found.interface_compliance, rel=1e-4)
 
 
 @needs("gmsh")
@@ -86,12 +86,12 @@ def test_each_stiffer_part_makes_a_stiffer_joint():
 def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     """It is not solved for. A softer side is none, nor other heads, nor edges, held at opposite ends."""
     joint = JointFiniteElements.from_assembly(block(nu=0.3), "heads")
-    near = SimpleNamespace(shape=SimpleNamespace(position=joint.interface.centred_position[::40]))
+    near = SimpleNamespace(points=SimpleNamespace(position=joint.interface.centred_position[::40]))
     springs = even(joint, 1e12, 2e12)
 
     def moved():
-        cells = CellLoads.from_joint(joint, near, np.ones(joint.interface.area.size))
-        return cells.displacement, joint.linearize(springs, 1e8).displacement
+        cells = CellLoads.from_joint(joint, near, np.ones(joint.interface.quadrature_area.size))
+        return cells.unit_load_displacement, joint.linearize(springs, 1e8).unit_motion_displacement
 
     found = moved()
     soft = replace(joint, bodies=(joint.bodies[0], replace(joint.bodies[1], E=1e11)))

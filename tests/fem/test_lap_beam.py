@@ -27,7 +27,7 @@ BAR = replace(cases.beam(), lap=cases.beam().length, bolts=())
 def test_bars_on_each_other_have_the_frequency_of_timoshenko(shear, height):
     """Glued they are one bar, sliding two of half the height, which slide rigidly too; 0.05 %: the mesh."""
     structure = Structure.of(BAR, Fineness(far=12e-3, layers=2))
-    normal = np.full(structure.interface.area.size, brake_reuss.GLUED)
+    normal = np.full(structure.interface.quadrature_area.size, brake_reuss.GLUED)
     found, _ = spectrum(structure, np.column_stack([shear * np.ones_like(normal)] * 2 + [normal]))
     expected = cases.solid_bar(replace(BAR, side=height * BAR.side))
     assert found[found > 1.0][0] == pytest.approx(expected, rel=5e-4)
@@ -38,7 +38,7 @@ def joint():
     """The Brake-Reuss beam on a coarse mesh."""
     structure = Structure.of(cases.beam(), Fineness(near=6e-3, far=8e-3, layers=1))
     law = cases.laws()["roughness"]
-    curve, shear = tabulate_approach(law), float(law.shear_ratio())
+    curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
     part = reduced(structure, curve, cases.data()["beam"]["preload"], shear)
     return Joint(part, foundation(curve, shear, brake_reuss.FRICTION))
 

@@ -14,7 +14,7 @@ from jointfmu_tools.fem.reduction.patch_work import (
     stick_stiffness_matrix,
 )
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default
 
 RADIUS, COUNT, PATCHES = 0.02, 24, 10
@@ -24,7 +24,7 @@ LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
 @pytest.fixture(scope="module")
 def disc():
     """An evenly pressed disc of many points, whose middle lags behind by two modes, and patches of it."""
-    law = BoltedJointSpring.of(load_default("bolted_joint").values).foundation()
+    law = BoltedJointSpring.of(load_default("bolted_joint").values).friction.foundation()
     line = RADIUS * (np.arange(COUNT) + 0.5) / COUNT * 2.0 - RADIUS
     place = np.stack([each.ravel() for each in np.meshgrid(line, line)], axis=1)
     place = place[np.hypot(*place.T) < RADIUS]
@@ -58,7 +58,7 @@ LINEAR = ShearStates(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
 def tightened(disc) -> LinearContact:
     """A joint twice as stiff as its contact against shifts."""
     law, points, rows = disc[:3]
-    full = stick_stiffness_matrix(evaluate_friction(law, LINEAR, points, rows)[1], points.area)
+    full = stick_stiffness_matrix(evaluate_friction(law, LINEAR, points, rows)[1], points.point_area)
     return LinearContact(LINEAR, full, 2.0 * full.diagonal())
 
 
@@ -83,8 +83,8 @@ def test_patches_lose_and_resist_as_all_points(disc):
     fitted = fit(disc).fit(means)
     before, after = (compute_friction_work(law, shears, few, each) for each in (means, fitted))
     partial = np.arange(1, 7)  # along x
-    assert np.min(before.loss[partial] / aim.loss[partial]) < 0.97
-    np.testing.assert_allclose(after.loss[partial], aim.loss[partial], rtol=0.03)
+    assert np.min(before.cycle_loss[partial] / aim.cycle_loss[partial]) < 0.97
+    np.testing.assert_allclose(after.cycle_loss[partial], aim.cycle_loss[partial], rtol=0.03)
     size = np.linalg.norm(aim.forces[:7, :2], axis=1)
     missed = [np.max(np.linalg.norm((w.forces - aim.forces)[:7, :2], axis=1) / size) for w in (before, after)]
     assert missed[1] < max(0.5 * missed[0], 0.01)
@@ -96,7 +96,7 @@ def test_the_tightened_joint_stays_as_stiff(disc):
     working, full = fit(disc), tightened(disc).contact_stiffness
     fitted = working.fit(means)
     found = [
-        stick_stiffness_matrix(evaluate_friction(law, LINEAR, few, each)[1], few.area)
+        stick_stiffness_matrix(evaluate_friction(law, LINEAR, few, each)[1], few.point_area)
         for each in (means, fitted)
     ]
     missed = [np.max(np.abs(each - full)[:2]) / np.max(np.abs(full)) for each in found]

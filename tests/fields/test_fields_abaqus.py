@@ -130,9 +130,9 @@ def test_a_report_on_the_faces_of_a_deck(tmp_path):
     with pytest.raises(ValueError, match=r"has no coordinates, .*give the input deck \(.inp\)"):
         FieldReader(**UNITS).read_field(path)
     for side, factor in (("below", 1.0), ("above", 1.1)):
-        field, _ = FieldReader(**UNITS, companion_files=(mesh,), plane=ContactPlane(side=side)).read_field(
-            path
-        )
+        field, _ = FieldReader(
+            **UNITS, companion_files=(mesh,), contact_plane=ContactPlane(body_side=side)
+        ).read_field(path)
         assert field.area.sum() == pytest.approx(8e-6, rel=1e-13)
         np.testing.assert_allclose(field.pressure, factor * p * 1e6, rtol=DIGITS)
     part = 10  # of the nodes are listed: the others are no contact

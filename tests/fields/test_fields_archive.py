@@ -76,9 +76,9 @@ def test_solids_of_an_archive(tmp_path):
     text = pressures(np.concatenate([0 * p, p, 1.1 * p, 0 * p]), points[:, :2], bricks)
     path.write_text(text)
     for side, factor in (("below", 1.0), ("above", 1.1)):
-        field, _ = FieldReader(**UNITS, companion_files=(mesh,), plane=ContactPlane(side=side)).read_field(
-            path
-        )
+        field, _ = FieldReader(
+            **UNITS, companion_files=(mesh,), contact_plane=ContactPlane(body_side=side)
+        ).read_field(path)
         assert field.area.sum() == pytest.approx(8e-6, rel=1e-12)
         np.testing.assert_allclose(field.pressure, factor * p * 1e6, rtol=1e-5)  # five digits are printed
 

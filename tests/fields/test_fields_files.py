@@ -236,13 +236,15 @@ def test_volume_mesh_of_two_bodies(tmp_path):
     with pytest.raises(ValueError, match=r"state the point data .*; there are CPRESS, U \(3 components\)"):
         FieldReader(**UNITS).read_field(path)
     with pytest.raises(ValueError, match=r"has no point data 'PRES'; there are CPRESS"):
-        FieldReader(**UNITS, data="PRES").read_field(path)
+        FieldReader(**UNITS, point_data_name="PRES").read_field(path)
     with pytest.raises(ValueError, match=r"'U' is no component of U; expected U:1 to U:3"):
-        FieldReader(**UNITS, data="U").read_field(path)
+        FieldReader(**UNITS, point_data_name="U").read_field(path)
     with pytest.raises(ValueError, match=r"node \d+: is at the same place as node \d+"):
-        FieldReader(**UNITS, data="CPRESS").read_field(path)
+        FieldReader(**UNITS, point_data_name="CPRESS").read_field(path)
     for side, factor in (("below", 1.0), ("above", 1.1)):
-        field, _ = FieldReader(**UNITS, data="CPRESS", plane=ContactPlane(side=side)).read_field(path)
+        field, _ = FieldReader(
+            **UNITS, point_data_name="CPRESS", contact_plane=ContactPlane(body_side=side)
+        ).read_field(path)
         assert field.area.sum() == pytest.approx(8e-6, rel=1e-13)
         np.testing.assert_allclose(np.sort(field.pressure), np.sort(factor * p) * 1e6, rtol=1e-14)
 
@@ -256,13 +258,17 @@ def test_surface_mesh_in_another_plane(tmp_path, suffix, monkeypatch):
     p = 1.0 + points[:, 0]
     path = tmp_path / f"a{suffix}"
     meshio.write(path, meshio.Mesh(place, {"quad": cells}, {"p": p}))
-    field, _ = FieldReader(**UNITS, data="p", plane=ContactPlane("x"), format="mesh").read_field(path)
+    field, _ = FieldReader(
+        **UNITS, point_data_name="p", contact_plane=ContactPlane("x"), format="mesh"
+    ).read_field(path)
     np.testing.assert_allclose(1e3 * field.position, points, rtol=1e-12, atol=1e-15)
-    turned, _ = FieldReader(**UNITS, data="p", plane=ContactPlane("x", "z"), format="mesh").read_field(path)
+    turned, _ = FieldReader(
+        **UNITS, point_data_name="p", contact_plane=ContactPlane("x", "z"), format="mesh"
+    ).read_field(path)
     np.testing.assert_allclose(turned.position[:, 0], field.position[:, 1])
     np.testing.assert_allclose(turned.position[:, 1], -field.position[:, 0])
     with pytest.raises(ValueError, match=r"node \d+: lies .* off the plane z = "):
-        FieldReader(**UNITS, data="p", format="mesh").read_field(path)
+        FieldReader(**UNITS, point_data_name="p", format="mesh").read_field(path)
 
 
 @pytest.mark.parametrize("normal", ["y", "z"])
@@ -272,7 +278,9 @@ def test_a_result_of_two_dimensions_is_refused_by_a_line_that_says_so(tmp_path, 
     p = np.where(points[:, 1] == 0.0, 5.0, np.nan)
     path = tmp_path / "plane.vtu"
     meshio.write(path, meshio.Mesh(place, {"quad": quads}, {"p": p}))
-    reading = FieldReader(length_unit="mm", pressure_unit="MPa", data="p", plane=ContactPlane(normal))
+    reading = FieldReader(
+        length_unit="mm", pressure_unit="MPa", point_data_name="p", contact_plane=ContactPlane(normal)
+    )
     with pytest.raises(ValueError, match="lie on one line, as in a two-dimensional or axisymmetric model"):
         reading.read_field(path)
 
@@ -281,7 +289,7 @@ def test_unreadable_mesh_is_one_line(tmp_path):
     path = tmp_path / "a.vtu"
     path.write_text("no mesh\nat all")
     with pytest.raises(ValueError, match="meshio cannot read it") as error:
-        FieldReader(**UNITS, data="p").read_field(path)
+        FieldReader(**UNITS, point_data_name="p").read_field(path)
     assert "\n" not in str(error.value)
 
 

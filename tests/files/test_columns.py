@@ -44,7 +44,7 @@ def test_round_trip_to_the_last_bit(tmp_path_factory, values):
     found = read_columns(path, SPEC, 1)
     np.testing.assert_array_equal(found.columns["load"], load)
     np.testing.assert_array_equal(found.columns["angle"], angle)
-    assert found.lines == list(range(2, 2 + load.size))
+    assert found.line_numbers == list(range(2, 2 + load.size))
 
 
 def test_what_is_written():
@@ -75,7 +75,7 @@ def test_separators_order_and_strangers(tmp_path, mark, encoding):
     found = read_columns(saved(tmp_path, "\n".join(lines), encoding), SPEC, 2)
     np.testing.assert_array_equal(found.columns["load"], [2e3, 4e3])
     np.testing.assert_allclose(found.columns["angle"], np.radians([1.0, 3.0]), rtol=4e-16)
-    assert found.lines == [5, 6]
+    assert found.line_numbers == [5, 6]
 
 
 def test_cells_in_quotes(tmp_path):

@@ -11,19 +11,19 @@ from typing import Any
 
 import pytest
 from conftest import RELEASED, refused_line
-from jointfmu_fmu_src.joint_parts.c_text import comment, string
-from jointfmu_fmu_src.native.data import block
-from jointfmu_fmu_src.native.page import documentation
-from jointfmu_fmu_src.ssv import Value, parameter_set
-from jointfmu_fmu_src.xml_parts import comment as xml_comment
+from jointfmu_fmu_src.joint_parts.c_text import escape_comment, format_string
+from jointfmu_fmu_src.native.data import make_data_block
+from jointfmu_fmu_src.native.page import make_documentation
+from jointfmu_fmu_src.ssv import ParameterValue, format_parameter_set
+from jointfmu_fmu_src.xml_parts import format_xml_comment as xml_comment
 from jointfmu_tools.export import writing
-from jointfmu_tools.export.placing import SI
+from jointfmu_tools.export.placing import SI_UNIT_SET
 from jointfmu_tools.joint_parts import load_tool_module
 from jointfmu_tools.modelica.library import render_library, render_system
 from jointfmu_tools.report.joint import write_joint_report
 from jointfmu_tools.robots import urdf
-from jointfmu_tools.robots.names import identifier
-from jointfmu_tools.robots.transmission import transmission
+from jointfmu_tools.robots.names import make_identifier
+from jointfmu_tools.robots.transmission import make_transmission
 from jointfmu_tools.systems.system import read_system
 
 from jointfmu.files.text import MAX_NAME_LENGTH, MAX_TEXT_LENGTH
@@ -78,12 +78,14 @@ class Tags(HTMLParser):
 
 
 def test_c_compiles_without_warning_and_runs_nothing(tmp_path: Path) -> None:
-    data = block("Name", "token", [0.0])
-    heads = [data.source(f" from the parameters {text!r}").split("\n")[0] for text in TEXTS]
-    heads += [data.source(f" from {text}{end}*/ int x;").split("\n")[0] for text in TEXTS for end in "\0\n\\"]
+    data = make_data_block("Name", "token", [0.0])
+    heads = [data.make_source(f" from the parameters {text!r}").split("\n")[0] for text in TEXTS]
+    heads += [
+        data.make_source(f" from {text}{end}*/ int x;").split("\n")[0] for text in TEXTS for end in "\0\n\\"
+    ]
     bytes_of = ["{" + ", ".join(f"0x{byte:02x}" for byte in text.encode()) + ", 0}" for text in TEXTS]
     checks = [
-        f"{{ const unsigned char meant[] = {meant}; const char written[] = {string(text)};\n"
+        f"{{ const unsigned char meant[] = {meant}; const char written[] = {format_string(text)};\n"
         '_Static_assert(sizeof meant == sizeof written, "length");\n'
         "if (memcmp(meant, written, sizeof meant)) return 1; }"
         for text, meant in zip(TEXTS, bytes_of, strict=True)
@@ -98,7 +100,7 @@ def test_c_compiles_without_warning_and_runs_nothing(tmp_path: Path) -> None:
         "",
     ]
     (tmp_path / "main.c").write_text("\n".join(lines), encoding="utf-8")
-    (tmp_path / "data.h").write_text(data.header())
+    (tmp_path / "data.h").write_text(data.make_header())
     options = ["-std=c11", "-Wall", "-Wextra", "-Werror", "-Wtrigraphs", "-Wcomment", "main.c", "-o", "main"]
     command = [sys.executable, "-m", "ziglang", "cc", *RELEASED, *options]
     subprocess.run(command, cwd=tmp_path, check=True, timeout=300)
@@ -108,9 +110,9 @@ def test_c_compiles_without_warning_and_runs_nothing(tmp_path: Path) -> None:
 
 def test_a_comment_of_c_neither_ends_nor_begins() -> None:
     for text in (*TEXTS, "*//**/*/", "//**//"):
-        assert "*/" not in comment(text)
-        assert "/*" not in comment(text)
-        assert "??" not in comment(text)
+        assert "*/" not in escape_comment(text)
+        assert "/*" not in escape_comment(text)
+        assert "??" not in escape_comment(text)
 
 
 @pytest.mark.parametrize("text", TEXTS)
@@ -123,7 +125,7 @@ def test_toml_gives_the_text_back(text: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("text", TEXTS)
 def test_xml_is_well_formed_and_holds_the_text(text: str) -> None:
-    root = ElementTree.fromstring(parameter_set(text, {"a": Value(1.0, "m", text)}))
+    root = ElementTree.fromstring(format_parameter_set(text, {"a": ParameterValue(1.0, "m", text)}))
     assert root.get("name") == text
     assert root[0][0].get("description") == text
     lines = [text, f"{text}-", "---"]
@@ -133,7 +135,7 @@ def test_xml_is_well_formed_and_holds_the_text(text: str) -> None:
 @pytest.mark.parametrize("first", range(0, len(TEXTS), 4))
 def test_a_robot_in_urdf_has_any_name(first: int) -> None:
     text = " ".join(TEXTS[first : first + 4])
-    robot, _, _ = urdf.text(transmission(hostile(text)), 10.0)
+    robot, _, _ = urdf.format_urdf(make_transmission(hostile(text)), 10.0)
     assert ElementTree.fromstring(robot).get("name") == text
 
 
@@ -144,7 +146,7 @@ def test_documentation_pages_have_the_elements_of_any_name(joint: str) -> None:
     def elements(text: str) -> Any:
         file = hostile(text, joint)
         return Tags(
-            documentation(model.with_parameters(joint, file.values), file)["index.html"].decode()
+            make_documentation(model.with_parameters(joint, file.values), file)["index.html"].decode()
         ).found
 
     assert elements(" ".join(TEXTS[5:9])) == elements("plain")
@@ -198,7 +200,7 @@ def test_a_system_in_modelica_reads_the_text_as_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("form", "mark"), [("csv", "#"), ("modelica", "#")])
 def test_decks_keep_the_text_in_their_comment(text: str, form: str, mark: str) -> None:
     one, other = (
-        writing.export_curve(form, hostile(name), None, SI, 1e-3).text.splitlines()
+        writing.export_curve(form, hostile(name), None, SI_UNIT_SET, 1e-3).text.splitlines()
         for name in (text, "plain")
     )
     assert len(one) == len(other)
@@ -280,7 +282,7 @@ def test_reserved_words_name_neither_fmus_nor_components(
 
 @pytest.mark.parametrize("name", ["CON", "nul", "end", "int"])
 def test_files_of_drives_and_classes_are_never_named_by_reserved_words(name: str) -> None:
-    assert identifier(name) == f"_{name}"
+    assert make_identifier(name) == f"_{name}"
     written = render_library(hostile(name))
     assert f"Data/Joint_{name}.mo" in written
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.naming import LONGEST, checked_name
+from jointfmu_fmu_src.naming import MAX_NAME_LENGTH, check_name
 
 from jointfmu.joints import MODELS
 
@@ -12,9 +12,9 @@ NAME = next(iter(MODELS))
 ALLOWED = "allowed are at most 63 letters, digits and _, no digit first, no word of C, Python or Modelica"
 
 
-@pytest.mark.parametrize("name", ["A", "_", "ShoulderDrive", "drive_2", "x" * LONGEST])
+@pytest.mark.parametrize("name", ["A", "_", "ShoulderDrive", "drive_2", "x" * MAX_NAME_LENGTH])
 def test_identifiers_are_names(name: str) -> None:
-    assert checked_name(name) == name
+    assert check_name(name) == name
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from jointfmu_fmu_src.partners import PARTNERS, models, parameters
+from jointfmu_fmu_src.partners import PARTNERS, load_partner_parameters, models
 
 from jointfmu.parameters import ORIGINS
 from jointfmu.quantity import flatten_parameters
@@ -17,7 +17,7 @@ def test_every_partner_has_one_file() -> None:
 
 @pytest.mark.parametrize("name", PARTNERS)
 def test_a_file_gives_every_parameter_with_its_source(name: str) -> None:
-    file = parameters(name)
+    file = load_partner_parameters(name)
     assert isinstance(file.values, PARTNERS[name].parameters)
     assert set(flatten_parameters(file.values)) == set(file.origins) == set(file.sources)
     assert set(file.origins.values()) <= set(ORIGINS)
@@ -48,7 +48,7 @@ def test_a_wrong_file_is_refused(
     path.write_text(text.replace(old, new), encoding="utf-8")
     monkeypatch.setattr(models, "files", lambda package: tmp_path)
     with pytest.raises(ValueError, match=r"TranslationalMass\.toml: ") as error:
-        parameters("TranslationalMass")
+        load_partner_parameters("TranslationalMass")
     assert str(error.value).startswith(f"{path}: ")
     assert words in str(error.value)
     assert "\n" not in str(error.value)

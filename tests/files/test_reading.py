@@ -87,7 +87,7 @@ def test_an_archive_is_refused_before_anything_is_unpacked(
     assert [*own.iterdir()] == []
 
 
-@pytest.mark.parametrize("size", [archives.MAX_SIZE + 1, archives.MAX_TEXT_SIZE + 1])
+@pytest.mark.parametrize("size", [archives.MAX_UNPACKED_SIZE + 1, archives.MAX_TEXT_SIZE + 1])
 def test_a_declared_size_is_refused(size: int, tmp_path: Path) -> None:
     noise = np.random.default_rng(0).bytes(1 << 21)
     path = larger(archive(tmp_path / "large.fmu", {"extra/large.xml": noise}), "extra/large.xml", size)

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli, columns
+from jointfmu_tools.fitting.backbone import find_backbone
 from jointfmu_tools.fitting.least_squares import Unknown, solve
-from jointfmu_tools.fitting.loop import find_backbone
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
@@ -138,7 +138,7 @@ def test_single_open_loop_has_no_drift():
 def test_what_is_not_determined_is_said_by_name(loops):
     """drive_scale and mean_over_peak act only as a product."""
     found = torque_angle.fit(loops, fitted_names=[*torque_angle.FITTED_PARAMETERS, "mean_over_peak"])
-    rows = {row["name"]: row["determined"] for row in found.rows()}
+    rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
     assert rows == {
         "K_FTS0": True,
         "drive_scale": False,
@@ -206,7 +206,7 @@ def test_area_has_no_effect(stiffness):
     """The law knows loads, no pressures: a start elsewhere stays there."""
     start = load_default("bolted_joint").with_values({"A_0": 0.05}, "user", "test")
     found = preload.fit(stiffness, start, ["surface.D", "surface.G", "A_0"])
-    rows = {row["name"]: row["determined"] for row in found.rows()}
+    rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
     assert rows == {"surface.D": True, "surface.G": True, "A_0": False}
     assert found.solution.values["A_0"] == pytest.approx(0.05, rel=0.01)  # held by the ridge
 

@@ -17,7 +17,7 @@ from jointfmu_tools.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity.units import unit_sizes
 
@@ -41,7 +41,7 @@ def test_first_loading_is_the_normal_curve_once_more():
         return spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
 
     rest = state(0.0)
-    kappa = float(joint.shear_ratio())
+    kappa = float(joint.shear_stiffness_ratio())
     motion = np.array([1e-8, 1e-7, 1e-6, 5e-6, 9e-6])
     expected = [-joint.mu * state(kappa * u / joint.mu)["f_z"] for u in motion]
     np.testing.assert_allclose(law.friction(motion), expected, rtol=3e-6)  # the table of 48 steps
@@ -82,7 +82,7 @@ def test_decay_of_a_parabola():
 
 def test_decay_of_a_viscous_spring():
     """No friction: sqrt(K/M), and the decrement pi d/(2 sqrt(K M)) of half a period."""
-    law = HysteresisLaw(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous=200.0)
+    law = HysteresisLaw(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous_damping=200.0)
     omega, decrement = law.decay(AMPLITUDES, 5.0)
     np.testing.assert_allclose(omega, np.sqrt(K / 5.0), rtol=1e-9)
     np.testing.assert_allclose(decrement, 0.5 * np.pi * 200.0 / np.sqrt(K * 5.0), rtol=1e-5)  # second order
@@ -93,9 +93,9 @@ def test_free_vibration_agrees_with_integration_in_time():
     found = decay.analyse_decay(*measurements.joint_decay())
     law, mass = measurements.joint_law(), measurements.MASS
     frequency, damping = Oscillator(law, mass).free_vibration(found.amplitude)
-    assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_spread + 2e-4)
-    assert np.all(np.abs(found.damping / damping - 1.0) < found.damping_spread / damping + 5e-3)
-    assert found.damping[0] > 2.0 * found.damping[-1]
+    assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_deviation + 2e-4)
+    assert np.all(np.abs(found.damping_ratio / damping - 1.0) < found.damping_deviation / damping + 5e-3)
+    assert found.damping_ratio[0] > 2.0 * found.damping_ratio[-1]
 
 
 def test_response_agrees_with_integration_in_time():
@@ -119,12 +119,12 @@ def test_branches_follow_their_law():
     run, motion, force = joint_loops()
     parts = [("", motion[run == k], force[run == k]) for k in (1.0, 2.0)]
     found = branches.cut_branches(parts)
-    assert found.start.size == 6  # three turning points inside each run of two periods
+    assert found.start_motion.size == 6  # three turning points inside each run of two periods
     law = measurements.joint_law()
     _, start, rest = found.fit_turning_points(law, np.full(found.motion.size, 30.0))
     # the noise is 0.3 % of the force, and 0.1 % of the motion
-    assert np.std(rest[found.run == 1]) < 6e-3 * force.max()
-    np.testing.assert_allclose(np.abs(start[found.start > 3e-6]), 6e-6, rtol=5e-3)
+    assert np.std(rest[found.run_index == 1]) < 6e-3 * force.max()
+    np.testing.assert_allclose(np.abs(start[found.start_motion > 3e-6]), 6e-6, rtol=5e-3)
 
 
 def test_a_branch_ends_where_it_passes_the_turning_point_before():
@@ -132,7 +132,10 @@ def test_a_branch_ends_where_it_passes_the_turning_point_before():
     turns = np.array([0.0, 1.0, -1.5, 2.0, -2.0])
     motion = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in pairwise(turns)])
     found = branches.cut_branches([("", motion, motion)])
-    ends = [(found.motion[found.branch == k].min(), found.motion[found.branch == k].max()) for k in range(3)]
+    ends = [
+        (found.motion[found.branch_index == k].min(), found.motion[found.branch_index == k].max())
+        for k in range(3)
+    ]
     assert ends[0][0] == pytest.approx(-1.5, abs=0.1)
     assert ends[1][1] == pytest.approx(1.0, abs=0.1)
     assert ends[2][0] == pytest.approx(-1.5, abs=0.1)
@@ -153,23 +156,23 @@ def swung(law, turns):
 def test_the_place_of_rest_is_found_in_loops(middle):
     """Of a spring that stiffens, wherever the motion has its zero, also where it is loaded to one side."""
     hardening = NonlinearSpring(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
-    law = replace(PARABOLA, elastic=hardening)
+    law = replace(PARABOLA, elastic_spring=hardening)
     motion, force = swung(law, [middle + a for a in (5e-6, -5e-6, 5e-6, -5e-6)])
     found = branches.cut_branches([("", motion + 3e-5, force - 7e3)])
-    rest = found.rest_position(law, found.scale)
+    rest = found.rest_position(law, found.residual_scale)
     assert rest == pytest.approx(3e-5, rel=1e-6)
     # steps of 50 nm: the turning points are the outermost samples
-    assert np.max(np.abs(found.fit_turning_points(law.shift_rest(rest), found.scale)[2])) < 1e-9 * np.ptp(
-        force
-    )
+    assert np.max(
+        np.abs(found.fit_turning_points(law.shift_rest(rest), found.residual_scale)[2])
+    ) < 1e-9 * np.ptp(force)
 
 
 def test_a_linear_spring_has_no_place_of_rest():
-    law = replace(PARABOLA, elastic=SPRING)
+    law = replace(PARABOLA, elastic_spring=SPRING)
     motion, force = swung(law, [5e-6, -5e-6, 5e-6, -5e-6])
     found = branches.cut_branches([("", motion + 3e-5, force - 7e3)])
-    assert found.rest_position(law, found.scale) in (0.0, pytest.approx(3e-5, rel=2e-3))
-    assert np.max(np.abs(found.residuals(law, found.scale))) < 1e-9
+    assert found.rest_position(law, found.residual_scale) in (0.0, pytest.approx(3e-5, rel=2e-3))
+    assert np.max(np.abs(found.residuals(law, found.residual_scale))) < 1e-9
 
 
 def test_noise_does_not_widen_the_loops():
@@ -177,7 +180,7 @@ def test_noise_does_not_widen_the_loops():
     rng = np.random.default_rng(1)
     motion = np.cos(np.linspace(1.0, 99.0, 98 * 300)) + 1e-3 * rng.standard_normal(98 * 300)
     turns = branches.find_turning_points(motion)
-    values = [abs(branches.turning_value(motion, k, branches.noise_deviation(motion))) for k in turns]
+    values = [abs(branches.refine_turning_point(motion, k, branches.noise_deviation(motion))) for k in turns]
     assert turns.size == 31
     assert np.mean(np.abs(motion[turns])) > 1.0 + 1.5e-3
     assert np.mean(values) == pytest.approx(1.0, abs=4e-4)
@@ -187,7 +190,7 @@ def test_motion_at_the_turning_points_is_part_of_the_doubt():
     """Coarse triangles miss their corners by up to half a step."""
     motion = np.abs((np.arange(200) * 0.07 + 0.03) % 4.0 - 2.0)
     found = branches.cut_branches([("", motion, 2.0 * motion)])
-    assert np.all(found.start_deviation > 0.02)
+    assert np.all(found.start_motion_deviation > 0.02)
 
 
 # Round trips
@@ -198,7 +201,7 @@ def test_motion_at_the_turning_points_is_part_of_the_doubt():
 def test_round_trip(case, tmp_path):
     """The benchmark's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
     found, true = measurements.CASES[case](np.random.default_rng(3), tmp_path / "measured.csv")
-    for name, deviation in found.solution.deviations.items():
+    for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
     assert found.solution.noise == pytest.approx(1.0, abs=0.35)  # the groups are weighted by their own
 
@@ -246,7 +249,7 @@ def test_law_of_a_roughness_has_a_level_and_no_exponent(tmp_path):
     found = loop.fit(path, file, preload=PRELOAD).solution
     assert found.values.keys() == {"mu", "h"}
     for name, true in (("mu", 0.3), ("h", 4e-6)):
-        assert abs(np.log(found.values[name] / true)) < 3.0 * found.deviations[name]
+        assert abs(np.log(found.values[name] / true)) < 3.0 * found.relative_deviations[name]
 
 
 # Files that are refused
@@ -393,7 +396,7 @@ def test_frequency_and_damping_over_the_amplitude(tmp_path):
         path, known, ["mu", "surface.G", "damping_ratio"], preload=PRELOAD, modal_mass=measurements.MASS
     )
     true = measurements.JOINT | {"damping_ratio": 0.004}
-    for name, deviation in found.solution.deviations.items():
+    for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
     assert len(found.pictures) == 2
 
@@ -424,7 +427,7 @@ def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
 
     stated, found, rigid = fitted(series_stiffness=series * joint), fitted("series_stiffness"), fitted()
     for one in (stated, found):
-        for name, deviation in one.solution.deviations.items():
+        for name, deviation in one.solution.relative_deviations.items():
             want = measurements.JOINT.get(name, series * joint)
             assert abs(np.log(one.solution.values[name] / want)) < 4.0 * deviation, name
         assert one.facts["shear_stiffness"][0] == pytest.approx(joint, rel=0.02)
@@ -438,7 +441,9 @@ def test_an_area_is_that_of_a_loop_that_closes(end, areas):
     """From a tip on; half a branch after the last whole one closes none."""
     t = np.linspace(0.25, end, 400)
     motion = np.sin(2.0 * np.pi * t)
-    found = branches.cut_branches([("", motion, motion + 0.1 * np.sign(np.cos(2.0 * np.pi * t)))]).areas
+    found = branches.cut_branches(
+        [("", motion, motion + 0.1 * np.sign(np.cos(2.0 * np.pi * t)))]
+    ).widest_loops
     assert [area for area, _ in found] == pytest.approx(areas, rel=0.02)
 
 
@@ -446,9 +451,9 @@ def test_runs_of_their_own_size_have_their_own_noise():
     run, motion, force = joint_loops()
     force[run == 2.0] += 1e3 * np.random.default_rng(2).standard_normal(np.count_nonzero(run == 2.0))
     found = branches.cut_branches([("", motion[run == k], force[run == k]) for k in (1.0, 2.0)])
-    rest = found.fit_turning_points(measurements.joint_law(), found.scale)[2]
-    assert np.std(rest[found.run == 1]) > 20.0 * np.std(rest[found.run == 0])
-    assert replace(found, areas=()).noise_groups is found.run
+    rest = found.fit_turning_points(measurements.joint_law(), found.residual_scale)[2]
+    assert np.std(rest[found.run_index == 1]) > 20.0 * np.std(rest[found.run_index == 0])
+    assert replace(found, widest_loops=()).noise_groups is found.run_index
 
 
 @pytest.mark.slow
@@ -463,12 +468,12 @@ def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(
     path = write(tmp_path, "displacement [um], frequency [Hz], damping [1]", 1e6 * a, frequency, damping)
     names = list(loop.FITTED_PARAMETERS["zhao2018"])
     found = loop.fit(path, fitted_names=names, preload=PRELOAD, modal_mass=measurements.MASS)
-    for name, deviation in found.solution.deviations.items():
+    for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / measurements.JOINT[name])) < 3.0 * deviation, name
     assert found.facts["shear_stiffness"][0] == pytest.approx(
         loop.rest_stiffness(measurements.file("bolted_joint", measurements.JOINT).values, PRELOAD), rel=1e-3
     )
-    assert found.solution.deviations["surface.G"] > 100.0 * 1e-4
+    assert found.solution.relative_deviations["surface.G"] > 100.0 * 1e-4
 
 
 @pytest.mark.parametrize(

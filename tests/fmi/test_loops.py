@@ -25,9 +25,9 @@ def drive(native):
     return loops.run_loops(fmu, "phi2", AMPLITUDES, FINE, settings=HYSTERESIS)
 
 
-@pytest.mark.parametrize("shape", loops.SHAPES)
+@pytest.mark.parametrize("shape", loops.WAVEFORMS)
 def test_first_loading_then_whole_cycles(shape):
-    points = loops.CyclicPath(centre=1.0, shape=shape, points=8, cycles=2).path(3.0)
+    points = loops.CyclicPath(centre=1.0, shape=shape, points=8, cycles=2).input_values(3.0)
     near = 1.5 if shape == "triangle" else 3.0 * np.sqrt(0.5)
     cycle = [0.0, near, 3.0, near, 0.0, -near, -3.0, -near]
     np.testing.assert_allclose(points, 1.0 + np.array([*cycle, *cycle, *cycle[:3]]), atol=1e-12)
@@ -36,19 +36,24 @@ def test_first_loading_then_whole_cycles(shape):
 @pytest.mark.parametrize("amplitude", range(2))
 def test_hysteresis_appears(drive, amplitude):
     """Area by Masing's rule, from the law and not from the FMU; trapezoids of 400 points, and the sliders."""
-    row = drive.rows()[amplitude]
+    row = drive.compute_rows()[amplitude]
     law = hysteresis.make_law(load_default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
     u = np.array([AMPLITUDES[amplitude]])
     assert row["loss"] == pytest.approx(float(law.loop_area(u)[0]), rel=1e-3)
     assert row["loss"] == pytest.approx(row["E_loss"], rel=1e-3)
-    force = law.friction(u) + law.elastic.force(u)
+    force = law.friction(u) + law.elastic_spring.force(u)
     assert row["secant_stiffness"] == pytest.approx(float(force[0] / u[0]), rel=1e-9)
     assert row["loss_factor"] == pytest.approx(row["loss"] / (np.pi * force[0] * u[0]), rel=1e-12)
 
 
 def test_force_acts_on_the_joint(drive):
     """tau2 is the torque on the flange, against the motion."""
-    assert (drive.motion, drive.force, drive.sign, drive.units) == ("phi2", "tau2", -1.0, ("rad", "N.m"))
+    assert (drive.motion_name, drive.force_name, drive.force_sign, drive.units) == (
+        "phi2",
+        "tau2",
+        -1.0,
+        ("rad", "N.m"),
+    )
     loop = drive.loops[1]
     np.testing.assert_array_equal(loop.force, -loop.result.columns["tau2"])
     assert loop.force[100] == loop.force.max() == pytest.approx(loop.force[-1], rel=1e-9)
@@ -59,10 +64,10 @@ def test_without_memory_nothing_is_lost(native, version):
     """A force drives, a motion answers; about a working point, as the contact takes no pull."""
     fmu = native / version / "GearContact.fmu"
     found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
-    assert (found.motion, found.force) == ("s_rel", "f")
-    assert [row["loss"] for row in found.rows()] == [0.0, 0.0]
-    assert found.rows()[1]["force"] == 300.0
-    assert "E_loss" not in found.rows()[0]
+    assert (found.motion_name, found.force_name) == ("s_rel", "f")
+    assert [row["loss"] for row in found.compute_rows()] == [0.0, 0.0]
+    assert found.compute_rows()[1]["force"] == 300.0
+    assert "E_loss" not in found.compute_rows()[0]
 
 
 @pytest.mark.parametrize(
@@ -80,7 +85,7 @@ def test_without_memory_nothing_is_lost(native, version):
 def test_conjugate_output(native, fmu, input_name, expected):
     with ramp.unpack_fmu(native / "fmi3" / f"{fmu}.fmu") as (_, description):
         assert (
-            loops.find_conjugate(*loops.input_and_output_units(description), input_name, None, fmu)
+            loops.find_conjugate_output(*loops.input_and_output_units(description), input_name, None, fmu)
             == expected
         )
 

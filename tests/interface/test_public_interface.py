@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import here_alone
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.new import computed
+from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
 import jointfmu
 
@@ -35,7 +35,11 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def plate(monkeypatch):
     """Makes a bolted joint of PLATE, without the finite elements beside it."""
-    monkeypatch.setattr(computed, "compute_facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
+    monkeypatch.setattr(
+        plate_finite_elements,
+        "compute_facts",
+        lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
+    )
     return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
 
 

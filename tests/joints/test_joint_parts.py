@@ -6,23 +6,23 @@ from pathlib import Path
 import jointfmu_fmu_src.joints as builders
 import jointfmu_tools as tools
 import pytest
-from jointfmu_fmu_src.folders import parts_of
+from jointfmu_fmu_src.folders import find_fmu_parts
 from jointfmu_tools.joint_parts import TOOL_NAMES, ToolParts, load_tool_module
 
 from jointfmu.joints import KINDS, MODELS
 
 
 def test_all_floors_know_the_same_joints() -> None:
-    assert set(KINDS) == set(builders.PARTS) == set(tools.PARTS)
+    assert set(KINDS) == set(builders.FMU_PARTS) == set(tools.PARTS)
 
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_every_part_can_be_loaded(joint: str) -> None:
     loaded = [tool for tool in TOOL_NAMES if load_tool_module(KINDS[joint], tool)]
     assert loaded == sorted(tools.PARTS[joint].modules)
-    load = builders.PARTS[joint].native
+    load = builders.FMU_PARTS[joint].native
     assert load is not None
-    assert load().shared
+    assert load().shared_files
 
 
 @pytest.fixture
@@ -76,6 +76,6 @@ def test_a_wrong_name_fails_at_import(package: str, names: tuple[str, ...], what
 
 
 def test_a_joint_without_parts_cannot_be_built(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(builders.PARTS, "gear_mesh")
+    monkeypatch.delitem(builders.FMU_PARTS, "gear_mesh")
     with pytest.raises(ValueError, match=r"joint 'gear_mesh' has no parts .* known of harmonic_drive"):
-        parts_of(MODELS["GearMesh"])
+        find_fmu_parts(MODELS["GearMesh"])

@@ -10,10 +10,10 @@ from laws import RANDOM, YU, ZHAO, changed, decades
 from numpy.polynomial import Polynomial, polynomial
 from scipy.integrate import quad
 
-from jointfmu.contact.interface import at_largest_spot, solve_largest_spot, stiffness_curve
+from jointfmu.contact.interface import evaluate_at_largest_spot, solve_largest_spot, stiffness_curve
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.mechanics.curve import (
-    CLOSING_RATIO,
+    CLOSING_AREA_RATIO,
     MAX_ERROR,
     Curve,
     assemble_curve,
@@ -116,10 +116,10 @@ def test_nodes_are_met(curves):
         right = curve.derivatives(x[:-1] + inner, 2)[2]
         left = curve.derivatives(x[1:] - inner, 2)[2]
         # 1e-9 of a segment away: the third derivative moves the bend by at most 1e-9 * 60 times its size
-        size = np.maximum(np.abs(curve.slope_start), np.abs(curve.slope_end))
+        size = np.maximum(np.abs(curve.stiffness_slope_start), np.abs(curve.stiffness_slope_end))
         size = size + curve.stiffness[1:] / np.diff(x)
-        assert np.all(np.abs(right - curve.slope_start) <= 1e-7 * size)
-        assert np.all(np.abs(left - curve.slope_end) <= 1e-7 * size)
+        assert np.all(np.abs(right - curve.stiffness_slope_start) <= 1e-7 * size)
+        assert np.all(np.abs(left - curve.stiffness_slope_end) <= 1e-7 * size)
 
 
 def test_load_and_stiffness_have_no_jump_at_nodes(curves):
@@ -132,7 +132,7 @@ def test_load_and_stiffness_have_no_jump_at_nodes(curves):
         # 10 + 15 + 6 times two loads, count k times in the stiffness, 3 10 + 4 15 + 5 6 times two, for each
         assert np.all(np.abs(high[0] - low[0]) <= high[1] * gap + 1.3e2 * EPS * high[0])
         h = np.minimum(np.diff(curve.displacement)[:-1], np.diff(curve.displacement)[1:])
-        bend = np.maximum(np.abs(curve.slope_end[:-1]), np.abs(curve.slope_start[1:]))
+        bend = np.maximum(np.abs(curve.stiffness_slope_end[:-1]), np.abs(curve.stiffness_slope_start[1:]))
         assert np.all(np.abs(high[1] - low[1]) <= bend * gap + 4.8e2 * EPS * (high[1] + high[0] / h))
 
 
@@ -197,7 +197,7 @@ def test_energy_of_the_closing():
     curve = tabulate_approach(ZHAO)
     p, length = curve.closing_end_load, -curve.displacement[0]
     i = int(np.searchsorted(curve.displacement, 0.0))
-    c = 0.5 * curve.slope_end[i - 1] * length**2 / p - 6.0
+    c = 0.5 * curve.stiffness_slope_end[i - 1] * length**2 / p - 6.0
     z = np.array([1e-3, 1e-2, 0.1, 0.5, 1.0])
     expected = p * length * z**4 * (c / 4.0 + (1.0 - 2.0 * c) * z / 5.0 + c * z**2 / 6.0)
     # x = (z - 1) L keeps 1e-16 of L, the load grows with z^3
@@ -255,7 +255,7 @@ def test_pieces_keep_their_bends():
     np.testing.assert_allclose(found[1], 2.0 + bend * x, rtol=1e-12)  # round-off over h = 1/8
     np.testing.assert_allclose(found[2], bend, rtol=1e-10)  # round-off over h^2
     assert curve.displacement.size == 9
-    assert curve.error < 1e-13  # nothing to interpolate
+    assert curve.interpolation_error < 1e-13  # nothing to interpolate
 
 
 SMOOTH = {
@@ -276,9 +276,9 @@ def test_measured_error_covers_the_true_error(name, segments):
     load, stiffness = curve.derivatives(dense, 1)
     true = max(np.max(np.abs(load / f(dense) - 1.0)), np.max(np.abs(stiffness / slope(dense) - 1.0)))
     noise = 1e2 * EPS * segments  # round-off of the stiffness over one segment
-    assert true <= curve.error + noise
+    assert true <= curve.interpolation_error + noise
     # measured with half the nodes: 2^6 times the error of the load, 2^5 of the stiffness, halved
-    assert curve.error <= 32.0 * true + noise
+    assert curve.interpolation_error <= 32.0 * true + noise
 
 
 @each_set
@@ -288,7 +288,7 @@ def test_approach_is_the_integral_of_dp_over_k(law):
     spots = law.spots()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     pressures = np.geomspace(start, 0.999 * law.hardness, 7)
-    ends = [end for end in spots.sorted_regime_ends if end > spots.stiffness_onset]
+    ends = [end for end in spots.sorted_regime_end_log_areas if end > spots.stiffness_onset_log_area]
     breaks = [float(spots.total("load", end)) / law.A_0 for end in ends]
 
     def per_decade(t):
@@ -321,12 +321,14 @@ def test_stiffness_is_the_laws(law):
 @given(data=st.data())
 def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
     law = data.draw(RANDOM[kind])
-    if law.spots().stiffness_onset + np.log(CLOSING_RATIO) >= solve_largest_spot(law, law.hardness):
+    if law.spots().stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO) >= solve_largest_spot(
+        law, law.hardness
+    ):
         with pytest.raises(ValueError, match="plastic"):
             tabulate_approach(law)
         return
     curve = tabulate_approach(law)
-    assert curve.error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_ERROR
     x = curve.displacement
     load, stiffness = curve.derivatives((x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel(), 1)
     assert np.all(np.diff(load) > 0.0)
@@ -336,18 +338,22 @@ def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
 @each_set
 def test_closing_begins_at_nothing_and_joins_smoothly(law):
     curve = tabulate_approach(law)
-    assert (curve.load[0], curve.stiffness[0], curve.slope_start[0]) == (0.0, 0.0, 0.0)
+    assert (curve.load[0], curve.stiffness[0], curve.stiffness_slope_start[0]) == (0.0, 0.0, 0.0)
     assert np.all(np.array(curve.derivatives(curve.displacement[0] - 1e-6, 3)) == 0.0)
     i = int(np.searchsorted(curve.displacement, 0.0))
     assert curve.displacement[i] == 0.0
     p, k = curve.load[i], curve.stiffness[i]
     assert curve.displacement[0] == pytest.approx(-4.0 * p / k, rel=1e-14)  # one multiplication
     # the closing takes over the very same numbers; its last polynomial sums three of them
-    assert curve.slope_end[i - 1] == pytest.approx(curve.slope_start[i], rel=1e-12)
-    state = at_largest_spot(law, law.spots().reference * np.exp(law.spots().stiffness_onset) * CLOSING_RATIO)
+    assert curve.stiffness_slope_end[i - 1] == pytest.approx(curve.stiffness_slope_start[i], rel=1e-12)
+    state = evaluate_at_largest_spot(
+        law, law.spots().reference_area * np.exp(law.spots().stiffness_onset_log_area) * CLOSING_AREA_RATIO
+    )
     assert p == pytest.approx(float(state["pressure"]), rel=1e-12)  # round-off of exp and log
     slope = stiffness_curve(law, p)[1]
-    assert curve.slope_start[i] == pytest.approx(float(k * slope), rel=1e-7)  # taken 1e-9 inside the regime
+    assert curve.stiffness_slope_start[i] == pytest.approx(
+        float(k * slope), rel=1e-7
+    )  # taken 1e-9 inside the regime
 
 
 @given(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from jointfmu.joints.bolted_joint.law import preload_pressure, row_forces
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, bolt_pressures, frame_cells, pressure_distribution
-from jointfmu.mechanics.footprint.shape import PRESSURE_DECIMALS
+from jointfmu.mechanics.footprint.distribution import PRESSURE_DECIMALS
 from jointfmu.parameters import load_default
 from jointfmu.quantity import flatten_parameters
 
@@ -43,10 +43,10 @@ def test_force_is_conserved(pattern):
     areas, points = frame_cells(pattern)
     np.testing.assert_allclose(bolt_pressures(pattern, areas, points, points) @ areas, 1.0, rtol=SUM)
     shape = pressure_distribution(pattern)
-    assert shape.share.sum() == pytest.approx(1.0, rel=SUM)
-    assert shape.share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
-    assert shape.share @ shape.moment_shape == pytest.approx(0.0, abs=SUM)
-    np.testing.assert_allclose(shape.share @ shape.position, 0.0, atol=SUM)  # m, about the centroid
+    assert shape.area_share.sum() == pytest.approx(1.0, rel=SUM)
+    assert shape.area_share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
+    assert shape.area_share @ shape.moment_shape == pytest.approx(0.0, abs=SUM)
+    np.testing.assert_allclose(shape.area_share @ shape.position, 0.0, atol=SUM)  # m, about the centroid
 
 
 def test_cells_fill_the_frame():
@@ -89,7 +89,11 @@ def mirrored(points, values, sign):
 def test_shapes_are_symmetric(pattern):
     shape = pressure_distribution(pattern)
     for sign, parity in (((-1, 1), 1.0), ((1, -1), -1.0)):
-        for values, factor in ((shape.preload_shape, 1.0), (shape.moment_shape, parity), (shape.share, 1.0)):
+        for values, factor in (
+            (shape.preload_shape, 1.0),
+            (shape.moment_shape, parity),
+            (shape.area_share, 1.0),
+        ):
             image = mirrored(shape.position, values, np.array(sign))
             # round-off of the positions over the decay length
             np.testing.assert_allclose(image, factor * values, rtol=1e-9, atol=1e-9 * np.max(np.abs(values)))
@@ -122,7 +126,7 @@ def test_pressures_are_those_of_the_bolt_forces(preload, moment):
     found = preload_pressure(JOINT, shape, preload, moment)
     np.testing.assert_allclose(found, expected, rtol=SUM)
     assert np.all(found > 0.0)
-    assert JOINT.A_0 * shape.share @ found == pytest.approx(8 * preload, rel=SUM)
+    assert JOINT.A_0 * shape.area_share @ found == pytest.approx(8 * preload, rel=SUM)
 
 
 def test_published_bolt_forces():
@@ -147,7 +151,7 @@ def test_pressures_of_many_load_cases():
     shape = pressure_distribution(JOINT.pattern)
     preload, moment = np.array([[5e3], [9e3]]), np.array([0.0, 1e3, 2e3])
     together = preload_pressure(JOINT, shape, preload, moment)
-    assert together.shape == (2, 3, shape.share.size)
+    assert together.shape == (2, 3, shape.area_share.size)
     # the same sum of two products
     np.testing.assert_allclose(together[1, 2], preload_pressure(JOINT, shape, 9e3, 2e3), rtol=4 * EPS)
 
@@ -234,21 +238,21 @@ def test_calibrated_values_are_marked():
 def test_merged_nodes_keep_the_sums(moment):
     """Area, pressure and second moments of area in total, and node by node those that only mirrors share."""
     shape = pressure_distribution(JOINT.pattern)
-    merged = shape.merge_nodes(with_moment=moment)
+    merged = shape.merge_nodes(keeps_moment=moment)
     mirrors = 2 if moment else 4  # the frame's axes; a moment tells its two rows apart
-    assert merged.share.size <= shape.share.size / mirrors + 4  # but for nodes on an axis
+    assert merged.area_share.size <= shape.area_share.size / mirrors + 4  # but for nodes on an axis
     x2, y2 = shape.position.T**2
     for found, expected in (
         (1.0, 1.0 + 0.0 * x2),
         (merged.preload_shape, shape.preload_shape),
         (merged.preload_shape**2, shape.preload_shape**2),
-        (merged.x2, x2),
-        (merged.y2 * merged.preload_shape, y2 * shape.preload_shape),
+        (merged.mean_square_x, x2),
+        (merged.mean_square_y * merged.preload_shape, y2 * shape.preload_shape),
         (merged.moment_shape**2, moment * shape.moment_shape**2),
     ):
         # equal is rounded to ALIKE decimals where nodes are compared
-        assert np.sum(merged.share * found) == pytest.approx(
-            shape.share @ expected, rel=10.0**-PRESSURE_DECIMALS
+        assert np.sum(merged.area_share * found) == pytest.approx(
+            shape.area_share @ expected, rel=10.0**-PRESSURE_DECIMALS
         )
     assert np.max(merged.preload_shape) == pytest.approx(
         np.max(shape.preload_shape), rel=10.0**-PRESSURE_DECIMALS

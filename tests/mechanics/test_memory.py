@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jointfmu.mechanics.memory import HistoryLayout
+from jointfmu.mechanics.history_layout import HistoryLayout
 
 LAYOUT = HistoryLayout({"state": (), "force": (2, 3)}) | HistoryLayout({"loss": ()})
 

@@ -6,13 +6,13 @@ import numpy as np
 import patch_reduction
 import pytest
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.distribution import FrictionPatches, PressureDistribution
 from jointfmu.mechanics.footprint.elimination import solve_linear
-from jointfmu.mechanics.footprint.friction import reduce_patches
-from jointfmu.mechanics.footprint.patches import reduce_points
+from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import FrictionPatches, PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import reduce_points
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, torsion_directions
 from jointfmu.parameters import load_default
 
@@ -55,7 +55,7 @@ def moved(name: str) -> FrictionPatches:
 
 def balance(shape: PressureDistribution) -> np.ndarray:
     """Sums that are exact, each over the sum of its sizes."""
-    (x, y), share, equal, tilt = shape.position.T, shape.share, shape.preload_shape, shape.moment_shape
+    (x, y), share, equal, tilt = shape.position.T, shape.area_share, shape.preload_shape, shape.moment_shape
     one, own = np.ones_like(x), 0.5 * shape.radius**2 if isinstance(shape, FrictionPatches) else 0.0
     rows = np.stack(
         [one, x, y, x * x + own, x * y, y * y + own, equal, equal * x, equal * y, tilt, tilt * x, tilt * y]
@@ -69,8 +69,8 @@ def test_few_points_keep_share_and_moments_to_rounding(name, count):
     """Area, centroid, second moments, force and moment of the preload and of the moment; shares positive."""
     shape = contact(name)
     points = reduced(name, count)
-    assert points.share.size <= count
-    assert np.min(points.share) > 0.0
+    assert points.area_share.size <= count
+    assert np.min(points.area_share) > 0.0
     there, size = balance(shape)
     np.testing.assert_allclose(balance(points)[0] / size, there / size, rtol=0.0, atol=1e-13)
 
@@ -79,8 +79,8 @@ def test_few_points_keep_share_and_moments_to_rounding(name, count):
 def test_patches_that_left_the_nodes_keep_the_same_sums(name):
     """As few as the friction has; pressed inside the contact."""
     shape, patches = contact(name), moved(name)
-    assert patches.share.size <= 22
-    assert np.min(patches.share) > 0.0
+    assert patches.area_share.size <= 22
+    assert np.min(patches.area_share) > 0.0
     assert np.min(patches.preload_shape) >= 0.0
     there, size = balance(shape)
     np.testing.assert_allclose(balance(patches)[0] / size, there / size, rtol=0.0, atol=1e-13)
@@ -100,8 +100,8 @@ def test_largest_pressure_is_that_of_all_nodes(name):
 
 def test_few_nodes_stay_as_they_are():
     shape = contact("frame")
-    assert reduce_points(shape, shape.share.size) is shape
-    few = reduce_patches(shape, shape.share.size)
+    assert reduce_points(shape, shape.area_share.size) is shape
+    few = reduce_patches(shape, shape.area_share.size)
     assert few.position is shape.position
     assert not np.any(few.radius)
 
@@ -149,7 +149,7 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
     pressure, where tilts change it across. Seen: 1.6 % and 2.9 %.
     """
     shape, patches, rng = contact(name), moved(name), np.random.default_rng(6)
-    gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
+    gyration = np.sqrt(shape.area_share @ np.sum(shape.position**2, axis=1))
     moment = 0.9 * patch_reduction.opening_moment(shape)
     reach = np.max(np.abs(shape.position), axis=0)
     mean = patch_reduction.mean_pressure(spring)
@@ -162,7 +162,7 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
         p = spring.curve.derivatives(start - largest * (points.position @ turn), 0)[0]
         places = points.position[:, None] + points.radius[:, None, None] * circle
         arm = np.mean(np.hypot(*np.moveaxis(places - pole, -1, 0)), axis=1)
-        return points.share @ (p * arm), points.share @ p
+        return points.area_share @ (p * arm), points.area_share @ p
 
     off = []
     for _ in range(400):

@@ -5,7 +5,9 @@ import patch_reduction
 import pytest
 from test_patches import CONTACTS, balance, contact
 
-from jointfmu.mechanics.footprint import friction, patches
+from jointfmu.mechanics.footprint import patch_reduction as reduction
+from jointfmu.mechanics.footprint import point_reduction
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.mechanics.footprint.reproducible import (
     binary_power,
     binary_root,
@@ -13,12 +15,11 @@ from jointfmu.mechanics.footprint.reproducible import (
     matrix_product,
     round_distribution,
 )
-from jointfmu.mechanics.footprint.shape import PressureDistribution
 
 TIMES = 20
 """Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
 AGREE = 1e-9
-NUMBERS = ("share", "position", "preload_shape", "moment_shape")
+NUMBERS = ("area_share", "position", "preload_shape", "moment_shape")
 
 
 def shape_of(name: str) -> PressureDistribution:
@@ -41,7 +42,7 @@ def content(value: object) -> bytes:
         return value.tobytes()
     if isinstance(value, PressureDistribution):
         return b"".join(getattr(value, name).tobytes() for name in NUMBERS)
-    return value.sums.tobytes() if hasattr(value, "sums") else str(value).encode()
+    return value.target_sums.tobytes() if hasattr(value, "target_sums") else str(value).encode()
 
 
 @pytest.fixture
@@ -58,8 +59,8 @@ def searched(monkeypatch):
 
         return known
 
-    monkeypatch.setattr(patches, "_select_groups", once(patches._select_groups))
-    monkeypatch.setattr(friction, "_fit_points", once(friction._fit_points))
+    monkeypatch.setattr(point_reduction, "_select_groups", once(point_reduction._select_groups))
+    monkeypatch.setattr(reduction, "_fit_points", once(reduction._fit_points))
     return done
 
 
@@ -68,15 +69,17 @@ def searched(monkeypatch):
 def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
     """All numbers within 1e-9, and the exact sums those of the perturbed contact."""
     shape, rng = shape_of(name), np.random.default_rng(4)
-    before = [patches.reduce_points(shape, 120), friction.reduce_patches(shape, 22)]
+    before = [point_reduction.reduce_points(shape, 120), reduction.reduce_patches(shape, 22)]
     searches = len(searched)
     for _ in range(TIMES):
         other = perturbed(shape, rng)
         there, size = balance(other)
         for one, few in zip(
-            before, (patches.reduce_points(other, 120), friction.reduce_patches(other, 22)), strict=True
+            before,
+            (point_reduction.reduce_points(other, 120), reduction.reduce_patches(other, 22)),
+            strict=True,
         ):
-            np.testing.assert_allclose(few.share, one.share, rtol=AGREE)
+            np.testing.assert_allclose(few.area_share, one.area_share, rtol=AGREE)
             for number in NUMBERS[1:]:
                 was, now = getattr(one, number), getattr(few, number)
                 np.testing.assert_allclose(now, was, rtol=AGREE, atol=AGREE * np.max(np.abs(was)))
@@ -93,12 +96,12 @@ def test_rounded_numbers_keep_their_place():
     )
     once = round_distribution(shape)
     assert content(round_distribution(once)) == content(once)
-    assert np.max(np.abs(once.share / shape.share - 1.0)) < 2.0**-19
+    assert np.max(np.abs(once.area_share / shape.area_share - 1.0)) < 2.0**-19
     assert np.max(np.abs(once.moment_shape - shape.moment_shape)) < 2.0**-19 * np.max(
         np.abs(shape.moment_shape)
     )
     mirrored = round_distribution(
-        PressureDistribution(shape.share, -shape.position, shape.preload_shape, -shape.moment_shape)
+        PressureDistribution(shape.area_share, -shape.position, shape.preload_shape, -shape.moment_shape)
     )
     assert np.array_equal(mirrored.position, -once.position)
     assert np.array_equal(mirrored.moment_shape, -once.moment_shape)

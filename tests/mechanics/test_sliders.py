@@ -211,7 +211,7 @@ def test_a_slipping_force_turns_towards_the_shift():
     far = return_map([np.cos(angle), np.sin(angle)], 1.0, 1.0, [1e7 * g, 0.0 * g], 1.0, 1.0, 1.0, 1.0)
     np.testing.assert_allclose(far.force[0], 1.0, rtol=1e-6)
     heat = np.log(np.cosh(g) + np.cos(angle) * np.sinh(g))
-    assert np.all(np.abs(slid.loss - heat) < 0.02 * g**3 + 1e-12)  # seen: 0.016
+    assert np.all(np.abs(slid.dissipated_energy - heat) < 0.02 * g**3 + 1e-12)  # seen: 0.016
 
 
 @pytest.mark.slow
@@ -247,8 +247,8 @@ def closed_paths(few: Foundation, count: int, steps: int) -> tuple[np.ndarray, .
         shift = np.stack([x[now + 1] - x[now], y[now + 1] - y[now]], axis=-1)
         moved = few.advance(force, approach[now], approach[now + 1], shift)
         work += 0.5 * np.sum((np.sum(force, axis=-1) + moved.traction) * shift, axis=-1)
-        lost += moved.loss
-        least, force = np.minimum(least, moved.loss), moved.force
+        lost += moved.dissipated_energy
+        least, force = np.minimum(least, moved.dissipated_energy), moved.force
     return least, work, lost, stored(few, force, approach[-1])
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointfmu.mechanics.steps import MAX_STEP, largest_stable_steps, mobility
+from jointfmu.mechanics.stable_steps import MAX_STABLE_STEP, largest_stable_steps, mobility
 
 
 def largest(zeta, late):
@@ -32,7 +32,7 @@ def test_stable_steps_are_those_of_the_eigenvalues(zeta):
 
 
 def test_what_is_held_or_open_takes_any_step():
-    assert largest_stable_steps(1e6, 10.0, mobility(0.0)) == (MAX_STEP, MAX_STEP)
+    assert largest_stable_steps(1e6, 10.0, mobility(0.0)) == (MAX_STABLE_STEP, MAX_STABLE_STEP)
     at_once, late = largest_stable_steps(np.array([0.0, -1.0]), np.zeros(2), mobility(1.0))
-    np.testing.assert_array_equal(at_once, MAX_STEP)
+    np.testing.assert_array_equal(at_once, MAX_STABLE_STEP)
     np.testing.assert_array_equal(late, 0.0)

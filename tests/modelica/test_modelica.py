@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.cli import main
 from jointfmu_tools.joint_parts import load_tool_module
 from jointfmu_tools.joints.bolted_joint import modelica as bolted_modelica
@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement, elastic_shear
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.contact import elastic_shear
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import format_parameter_file, load_default
@@ -199,7 +199,7 @@ def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.Fix
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
     joint = bolted_modelica.combine_nodes(bolted, 15e3, 4500.0)
-    total = records.to_curve(joint.table)
+    total = records.to_curve(joint.force_table)
     preload = 15e3 * bolted.joint.n_bolts
     rest = bolted.evaluate(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for s_z in (-5e-6, -1e-6, -1e-7, 0.0, 1e-7, 1e-6, 5e-6, 2e-5, 4e-5):
@@ -207,7 +207,7 @@ def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointS
         load, stiffness = (float(x) for x in total.derivatives(-s_z))
         assert load == pytest.approx(exact["f_z"], abs=EXACT * max(preload, abs(exact["f_z"])))
         assert stiffness == pytest.approx(exact["K_zz"], abs=EXACT * max(rest["K_zz"], exact["K_zz"]))
-        eta = np.interp(-s_z, *joint.damping.T)
+        eta = np.interp(-s_z, *joint.damping_table.T)
         assert eta == pytest.approx(exact["eta_n"], rel=2.0 * bolted_modelica.DAMPING_TOLERANCE)
 
 
@@ -432,13 +432,14 @@ def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: An
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 1e-2)
     total = bolted_modelica.combine_nodes(bolted, 9e3, 0.0)
-    limit, u = bolted.joint.mu * total.force, (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
+    limit = bolted.joint.mu * total.preload_contact_force
+    u = (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
     assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
     curve = [found[f"joint.{name}"] for name in ("G", "K_n", "bend")]
     x, y, *_, lifted, _ = elastic_shear(limit, total.shear_ratio, [*curve, 0.0 * u[0]], *u)
     for name, force in (("f[1]", x), ("f[2]", y)):
         np.testing.assert_allclose(found[f"joint.{name}"], -force, rtol=0.0, atol=EXACT * limit)
-    normal = found["joint.G"] - total.force + lifted
+    normal = found["joint.G"] - total.preload_contact_force + lifted
     np.testing.assert_allclose(found["joint.f[3]"], normal, rtol=0.0, atol=EXACT * limit)
 
 
@@ -465,8 +466,8 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
     memory, preload, rows = bolted.initial_history(), 9e3, []  # of the component's own record
     limit = bolted.joint.mu * preload * bolted.joint.n_bolts
     for x, y, z in zip(*(found[f"joint.s_rel[{i}]"][first] for i in (1, 2, 3)), strict=True):
-        place = RelativeDisplacement(np.array([x, y, z, 0.0, 0.0, 0.0]))
-        out, memory = bolted.advance(preload, 0.0, place, (0.0,) * 6, memory)
+        inputs = JointInputs(preload, 0.0, np.array([x, y, z, 0.0, 0.0, 0.0]))
+        out, memory = bolted.advance(inputs, memory)
         rows.append([out["f_x"], out["f_y"], out["f_z"], out["E_loss"]])
     exact = np.array(rows).T
     for i in (1, 2):

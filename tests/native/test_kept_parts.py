@@ -11,11 +11,17 @@ import pytest
 from conftest import RELEASED, Fmu, run_host
 from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.native.code.generate import sources
-from jointfmu_fmu_src.native.compiled import cache, kept
-from jointfmu_fmu_src.native.compiled.ahead import structures
+from jointfmu_fmu_src.native.code.generate import generate_sources
+from jointfmu_fmu_src.native.compiled import cache, compiled_models
 from jointfmu_fmu_src.native.compiled.binary import fill_library
-from jointfmu_fmu_src.native.data import PLACEHOLDER, block, data_of, placeholder, split
+from jointfmu_fmu_src.native.compiled.compile_ahead import list_structures
+from jointfmu_fmu_src.native.data import (
+    PLACEHOLDER,
+    make_data_block,
+    make_fmu_data,
+    make_placeholder,
+    split_parameters,
+)
 from natives import close
 from test_bare import EXTRAS
 from test_native_binaries import check_signature, images, members
@@ -34,7 +40,7 @@ def of(name: str, changes: dict[str, Any] | None = None) -> tuple[Model, Paramet
 
 
 def part_name(model: Model, file: ParameterFile) -> str:
-    return kept.shipped_name(model, split(model, file))
+    return compiled_models.compiled_model_name(model, split_parameters(model, file))
 
 
 # What a part is kept by
@@ -44,12 +50,12 @@ def part_name(model: Model, file: ParameterFile) -> str:
 def test_numbers_are_data_and_choices_are_code(name: str) -> None:
     """One part for all numbers, those that no tool may set too; another for each choice."""
     model, file = of(name)
-    given = split(model, file)
-    assert {*given.exposed} == {*model.parameter_fields()}
+    given = split_parameters(model, file)
+    assert {*given.variable_names} == {*model.parameter_fields()}
     numbers = {n: v for n, v in file.values_by_name.items() if type(v) is float and v and not v.is_integer()}
     changed = file.with_values({n: v * (1.0 + 1e-6) for n, v in numbers.items()}, "user", "test")
     assert part_name(model, changed) == part_name(model, file)
-    every = [part_name(*one) for one in structures(MODELS[name])]
+    every = [part_name(*one) for one in list_structures(MODELS[name])]
     assert part_name(model, file) in every
     assert len({*every}) == len(every)
 
@@ -58,69 +64,71 @@ def test_a_part_is_of_the_sources_it_was_made_of(tmp_path: Path, monkeypatch: py
     model, file = of(NAMES[0])
     before = part_name(model, file)
     (tmp_path / "law.py").write_text("K = 1\n")
-    own = kept.own_folder
-    monkeypatch.setattr(kept, "own_folder", lambda model: tmp_path)
+    own = compiled_models.find_source_folder
+    monkeypatch.setattr(compiled_models, "find_source_folder", lambda model: tmp_path)
     first = part_name(model, file)
-    kept._digest.cache_clear()
+    compiled_models._digest_folders.cache_clear()
     assert part_name(model, file) == first != before
     (tmp_path / "law.py").write_text("K = 2\n")
-    kept._digest.cache_clear()
+    compiled_models._digest_folders.cache_clear()
     assert part_name(model, file) not in (first, before)
-    monkeypatch.setattr(kept, "own_folder", own)
+    monkeypatch.setattr(compiled_models, "find_source_folder", own)
     assert part_name(model, file) == before
 
 
-def a_part() -> kept.CompiledModel:
-    libraries = {v: {"x86_64-linux": f"library {v}".encode() * 100} for v in kept.VERSIONS}
-    return kept.CompiledModel({"law.c": "int x;\n", "law.h": ""}, libraries)
+def a_part() -> compiled_models.CompiledModel:
+    libraries = {v: {"x86_64-linux": f"library {v}".encode() * 100} for v in compiled_models.FMI_VERSIONS}
+    return compiled_models.CompiledModel({"law.c": "int x;\n", "law.h": ""}, libraries)
 
 
 def test_a_part_is_read_as_it_was_written() -> None:
-    content = kept.pack_model(a_part())
-    assert kept.unpack_model(content) == a_part()
-    assert kept.pack_model(kept.unpack_model(content)) == content
+    content = compiled_models.pack_model(a_part())
+    assert compiled_models.unpack_model(content) == a_part()
+    assert compiled_models.pack_model(compiled_models.unpack_model(content)) == content
     for broken in (b"", content[:-40], content[:100], b"x" + content):
-        with pytest.raises((OSError, ValueError, EOFError, kept.lzma.LZMAError, kept.tarfile.TarError)):
-            kept.unpack_model(broken)
+        with pytest.raises(
+            (OSError, ValueError, EOFError, compiled_models.lzma.LZMAError, compiled_models.tarfile.TarError)
+        ):
+            compiled_models.unpack_model(broken)
 
 
 def test_it_is_compiled_once_and_again_where_the_file_is_broken(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compiled = []
-    monkeypatch.setenv(cache.CACHE, str(tmp_path))
-    monkeypatch.setattr(kept, "compile_model", lambda *_: compiled.append(1) or a_part())
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: compiled.append(1) or a_part())
     model, file = of(NAMES[0])
     for _ in range(3):
-        assert kept.compiled_model(model, file, split(model, file)) == a_part()
+        assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
     assert len(compiled) == 1
     (found,) = tmp_path.rglob("*.tar.xz")
     found.write_bytes(found.read_bytes()[:-40])
-    assert kept.compiled_model(model, file, split(model, file)) == a_part()
+    assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
     assert len(compiled) == 2
     assert [p for p in tmp_path.rglob("*") if p.is_file()] == [found]
 
 
 def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("mine")
-    monkeypatch.setenv(cache.CACHE, str(tmp_path / "file" / "below"))
-    monkeypatch.setattr(kept, "compile_model", lambda *_: a_part())
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "file" / "below"))
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: a_part())
     model, file = of(NAMES[0])
-    assert kept.compiled_model(model, file, split(model, file)) == a_part()
+    assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
 
 
 def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Old ones go, and nobody reads half a file."""
-    monkeypatch.setattr(kept, "MOST_KEPT", 3)
-    place, content = tmp_path / "new.tar.xz", kept.pack_model(a_part())
+    monkeypatch.setattr(compiled_models, "MAX_CACHED_FILES", 3)
+    place, content = tmp_path / "new.tar.xz", compiled_models.pack_model(a_part())
     for i in range(6):
         old = tmp_path / f"{i}.tar.xz"
         old.write_bytes(b"")
         os.utime(old, (i, i))
 
-    def keep_and_read(_: int) -> kept.CompiledModel:
-        kept._keep(place, content)
-        return kept.unpack_model(place.read_bytes())
+    def keep_and_read(_: int) -> compiled_models.CompiledModel:
+        compiled_models._write_cached(place, content)
+        return compiled_models.unpack_model(place.read_bytes())
 
     with ThreadPoolExecutor(8) as pool:
         assert set(map(str, pool.map(keep_and_read, range(64)))) == {str(a_part())}
@@ -131,7 +139,7 @@ def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest
 
 
 def test_a_library_of_other_data_is_refused() -> None:
-    before, after = block(PLACEHOLDER, "", [0.0] * 3), block("Mine", "{1}", [1.0] * 3)
+    before, after = make_data_block(PLACEHOLDER, "", [0.0] * 3), make_data_block("Mine", "{1}", [1.0] * 3)
     library = b"head" + before.content + b"tail"
     assert fill_library(library, before, after, "Mine") == b"head" + after.content + b"tail"
     for other in (b"head", library + before.content):
@@ -155,9 +163,9 @@ int main(void)
 def test_the_table_in_c_has_the_bytes_of_the_binaries(name: str, native: Path, tmp_path: Path) -> None:
     """As the compiler lays the struct out; and the placeholders are gone."""
     model, file = of(name)
-    files = sources(name, file)
-    given = split(model, file)
-    data = data_of(model, file, given, {k: v for k, v in files.items() if k != "data.c"})
+    files = generate_sources(name, file)
+    given = split_parameters(model, file)
+    data = make_fmu_data(model, file, given, {k: v for k, v in files.items() if k != "data.c"})
     for part, text in {**files, "print.c": PRINTED}.items():
         (tmp_path / part).write_text(text)
     command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", *RELEASED)
@@ -169,7 +177,7 @@ def test_the_table_in_c_has_the_bytes_of_the_binaries(name: str, native: Path, t
                 copies = len([*images(content)])
                 assert (content.count(data.content), copies) == (copies, copies), path
                 assert PLACEHOLDER.encode() not in content
-                assert placeholder(model, given).content not in content
+                assert make_placeholder(model, given).content not in content
 
 
 @pytest.mark.slow
@@ -217,7 +225,11 @@ def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) ->
     tuned = ({n: v} for n, v in CASES[name].tuning.tuned.items())
     alone = [one for one in tuned if not list(kind.find_contradictions(of(name, one)[1].values))]
     model, file = of(name, alone[0])
-    fixed = {n: 0.99 * file.values_by_name[n] for n in split(model, file).fixed if n in file.values_by_name}
+    fixed = {
+        n: 0.99 * file.values_by_name[n]
+        for n in split_parameters(model, file).data_values
+        if n in file.values_by_name
+    }
     changed = file.with_values(fixed, "user", "test")
     (tmp_path / "variant.toml").write_text(format_parameter_file(changed))
     begin = os.times()

@@ -114,7 +114,7 @@ def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path:
     (tmp_path / "run.c").write_text(source)
     own = Path(compiler.__file__).with_name("windows.c")
     (tmp_path / own.name).write_bytes(own.read_bytes())
-    options = [option for option in compiler._options(platform, "run") if option != "-s"]
+    options = [option for option in compiler._compiler_options(platform, "run") if option != "-s"]
     command = [sys.executable, "-m", "ziglang", "cc", *options, "run.c", "-v", "-o", "run.bin"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=300)
     linked = [x for x in done.stderr.splitlines() if re.match(r"(zig ld|ld\.lld|lld-link) ", x)]
@@ -122,7 +122,7 @@ def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path:
         x for x in linked if "run.bin" in x
     ]  # with an empty cache, zig also links stubs of the C library
     inputs = {re.split(r"[/\\]", word)[-1] for word in line.split() if re.search(r"^[^-].*\.(a|lib)$", word)}
-    stubs = {f"api-ms-win-crt-{part}-l1-1-0.lib" for part in compiler._UCRT}
+    stubs = {f"api-ms-win-crt-{part}-l1-1-0.lib" for part in compiler._UCRT_LIBRARIES}
     assert inputs <= stubs | {"libc_nonshared.a"}
     if platform.endswith("-linux"):  # the one archive with code, of which nothing is taken
         import lief
@@ -272,7 +272,7 @@ SOURCES = {"good.c": "int good(void);\nint good(void) { return 1; }\n"}
 def test_what_does_not_compile_is_named_in_one_line(text: str, part: str) -> None:
     text = text.replace("void f(", '__attribute__((visibility("default"))) void f(')
     with pytest.raises(RuntimeError, match=r"^Bad for [a-z0-9_-]+: [^\n]*$") as raised:
-        compiler.libraries("Bad", SOURCES | {"bad.c": text}, ["good.c", "bad.c"])
+        compiler.compile_libraries("Bad", SOURCES | {"bad.c": text}, ["good.c", "bad.c"])
     assert part in str(raised.value)
 
 
@@ -296,7 +296,7 @@ def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.Monk
     def fail(*arguments: object) -> None:
         raise RuntimeError("law.c:1:1: error: no")
 
-    monkeypatch.setattr("jointfmu_fmu_src.native.build.compiled_model", fail)
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.get_compiled_model", fail)
     with pytest.raises(RuntimeError, match=r"law\.c:1:1"):
         build(["GearContact"], ["fmi3"], None, tmp_path)
     assert sorted(tmp_path.rglob("*")) == [built.parent, built]
@@ -308,7 +308,7 @@ def test_an_unwritable_place_is_refused_before_anything_is_compiled(
 ) -> None:
     (tmp_path / "file").write_text("mine")
     monkeypatch.setattr(
-        "jointfmu_fmu_src.native.build.compiled_model", lambda *arguments: pytest.fail("compiled")
+        "jointfmu_fmu_src.native.build.get_compiled_model", lambda *arguments: pytest.fail("compiled")
     )
     with pytest.raises(ValueError, match="cannot be written") as raised:
         build(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")
@@ -320,6 +320,6 @@ def test_an_unwritable_cache_is_refused_by_name(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "file").write_text("mine")
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "file" / "below"))
     with pytest.raises(ValueError, match="ZIG_GLOBAL_CACHE_DIR to a writable folder") as raised:
-        compiler.libraries("Good", SOURCES, ["good.c"])
+        compiler.compile_libraries("Good", SOURCES, ["good.c"])
     assert str(tmp_path) in str(raised.value)
     assert "\n" not in str(raised.value)

@@ -22,13 +22,19 @@ import pytest
 from clients import needs
 from conftest import RELEASED
 from joint_cases import JOINTS
-from jointfmu_fmu_src.native.code.generate import RUNTIME, runtime, sources, token
+from jointfmu_fmu_src.native.code.generate import (
+    RUNTIME_FOLDER,
+    generate_sources,
+    list_runtime_files,
+    read_token,
+)
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
+from jointfmu_fmu_src.native.compiled.compiler import _write_source_folder as source_folder
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.partners import parameters as partner_parameters
-from jointfmu_tools.systems.fmu.assembly import assembly
-from jointfmu_tools.systems.fmu.build import all_sources
-from jointfmu_tools.systems.system import system
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
+from jointfmu_tools.systems.fmu.assembly import assemble_system
+from jointfmu_tools.systems.fmu.build import make_sources
+from jointfmu_tools.systems.system import load_system
 from natives import SAID
 
 from jointfmu.joints import MODELS
@@ -111,7 +117,7 @@ class Sources(NamedTuple):
     @property
     def arguments(self) -> tuple[str, ...]:
         """Token and layout on the command line of a host."""
-        return (token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
+        return (read_token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
 
 
 ELASTIC_FILES: list[ParameterFile] = []
@@ -124,16 +130,22 @@ def c_of(name: str) -> Sources:
     if name == ELASTIC:
         (file,) = ELASTIC_FILES
         model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
-        files = sources(model.name, file)
+        files = generate_sources(model.name, file)
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if model := (MODELS | PARTNERS).get(name):
-        files = sources(name, partner_parameters(name) if name in PARTNERS else load_default(model.joint))
+        files = generate_sources(
+            name, partner_parameters(name) if name in PARTNERS else load_default(model.joint)
+        )
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if name == SYSTEM:
-        parts = assembly(system(name))
-        counts = len(parts.inputs), len(parts.outputs), sum(len(p.exposed) for p in parts.components)
-        return Sources(all_sources(parts)[0], *counts)
-    files = {p.name: p.read_text() for p in [*runtime(), *(HOSTS / name).iterdir()]}
+        parts = assemble_system(load_system(name))
+        counts = (
+            len(parts.inputs),
+            len(parts.outputs),
+            sum(len(p.variable_parameters) for p in parts.components),
+        )
+        return Sources(make_sources(parts)[0], *counts)
+    files = {p.name: p.read_text() for p in [*list_runtime_files(), *(HOSTS / name).iterdir()]}
     return Sources(files, *ALONE[name])
 
 
@@ -151,17 +163,20 @@ class Builder:
         self.objects, self.host, self.program = map(cache, (self._objects, self._host, self._program))
 
     def _objects(self, compiler: str, name: str, *options: str) -> list[Path]:
-        """Object files of a joint, warnings being errors."""
-        folder = self.work / f"{compiler}-{name}-{abs(hash(options))}"
-        folder.mkdir()
+        """Object files of a joint, warnings being errors.
+
+        Zig keeps what it compiles without a warning, for later runs too, if equal sources have equal paths.
+        """
         files = c_of(name).files
-        for file, text in files.items():
-            (folder / file).write_text(text)
         units = [file for file in files if file.endswith(".c")]
         command = (*COMPILERS[compiler], *STRICT, *options, "-isystem", str(FMI_HEADERS))
+        folder = self.work / f"{compiler}-{name}-{abs(hash(options))}"
+        folder.mkdir()
         if compiler == "zig":  # which compiles several files at a time into one only
-            self.call(folder, *command, "-r", *units, "-o", "merged.o")
+            self.call(source_folder(files), *command, "-r", *units, "-o", str(folder / "merged.o"))
             return [folder / "merged.o"]
+        for file, text in files.items():
+            (folder / file).write_text(text)
         self.call(folder, *command, "-c", *units)
         return [folder / f"{Path(unit).stem}.o" for unit in units]
 
@@ -215,7 +230,9 @@ def ramp_points(name: str, count: int = 40) -> str:
     for i in range(1, count):
         other = 1e-7 * math.sin(i)
         row = (
-            model.ramp.end * i / count if v.name == model.ramp.input else v.start + (v.start == 0.0) * other
+            model.ramp.end_value * i / count
+            if v.name == model.ramp.input_name
+            else v.start + (v.start == 0.0) * other
             for v in model.inputs
         )
         rows.append(" ".join(repr(x) for x in row))
@@ -244,7 +261,7 @@ def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
 def test_files_use_each_other_in_one_direction() -> None:
     """A .c file with its header is one; joint_model.h only names the joint's header."""
     uses: dict[str, set[str]] = {}
-    for path in RUNTIME.rglob("*.[ch]"):
+    for path in RUNTIME_FOLDER.rglob("*.[ch]"):
         found = set(re.findall(r'#include "(\w+)\.h"', path.read_text(encoding="utf-8")))
         uses.setdefault(path.stem, set()).update(found - {path.stem, "joint_model"})
     assert uses["fmi3"]

@@ -23,10 +23,15 @@ from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES
 from jointfmu_fmu_src import licence as licence_module
-from jointfmu_fmu_src.licence import licence
-from jointfmu_fmu_src.native.description import LOG_CATEGORIES, build_description, fmi2_xml, fmi3_xml
-from jointfmu_fmu_src.native.page import documentation
-from jointfmu_fmu_src.native.terminals import terminals_and_icons
+from jointfmu_fmu_src.licence import read_licence
+from jointfmu_fmu_src.native.description import (
+    LOG_CATEGORIES,
+    format_build_description,
+    format_fmi2_description,
+    format_fmi3_description,
+)
+from jointfmu_fmu_src.native.page import make_documentation
+from jointfmu_fmu_src.native.terminals import terminal_files
 from lxml import etree
 from PIL import Image
 from scipy.constants import zero_Celsius
@@ -60,18 +65,18 @@ def description(name: str, version: int) -> bytes:
     model = MODELS[name]
     parameters = load_default(model.joint)
     if version == 2:
-        return fmi2_xml(model, parameters, TOKEN, SOURCES)
-    return fmi3_xml(model, parameters, TOKEN)
+        return format_fmi2_description(model, parameters, TOKEN, SOURCES)
+    return format_fmi3_description(model, parameters, TOKEN)
 
 
 @cache
 def pages(name: str) -> dict[str, bytes]:
-    return documentation(MODELS[name], load_default(MODELS[name].joint))
+    return make_documentation(MODELS[name], load_default(MODELS[name].joint))
 
 
 @cache
 def pictures(name: str) -> dict[str, bytes]:
-    return terminals_and_icons(MODELS[name])
+    return terminal_files(MODELS[name])
 
 
 def fmu(path: Path, xml: bytes, **files: bytes) -> str:
@@ -130,7 +135,7 @@ def test_the_description_says_what_it_is(name: str, version: int) -> None:
     assert root.get("modelName") == name
     assert root.get("version") == __version__
     assert root.get("license") == "MIT"
-    assert root.get("copyright") in licence()
+    assert root.get("copyright") in read_licence()
     assert root.get("author")
     assert root.get("generationTool") == f"jointfmu {__version__}"
     assert root.get("variableNamingConvention") == "structured"
@@ -141,7 +146,7 @@ def test_the_description_says_what_it_is(name: str, version: int) -> None:
     ramp = MODELS[name].ramp
     assert float(experiment.get("startTime")) == 0.0
     assert float(experiment.get("stepSize")) == 1.0
-    assert float(experiment.get("stopTime")) == pytest.approx(ramp.end / ramp.step, rel=1e-12)
+    assert float(experiment.get("stopTime")) == pytest.approx(ramp.end_value / ramp.value_step, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -277,9 +282,9 @@ def test_bounds_are_those_of_the_parameters(name: str, version: int) -> None:
 def test_fixed_parameters_are_fixed_and_nothing_else_changes(name: str, version: int) -> None:
     model, file = MODELS[name], load_default(MODELS[name].joint)
     xml = (
-        fmi2_xml(model, file, TOKEN, SOURCES, "fixed")
+        format_fmi2_description(model, file, TOKEN, SOURCES, "fixed")
         if version == 2
-        else fmi3_xml(model, file, TOKEN, "fixed")
+        else format_fmi3_description(model, file, TOKEN, "fixed")
     )
     assert xml == description(name, version).replace(b"tunable", b"fixed")
     assert b'causality="parameter" variability="fixed"' in xml
@@ -288,7 +293,11 @@ def test_fixed_parameters_are_fixed_and_nothing_else_changes(name: str, version:
 def test_another_parameter_file_changes_the_start_values_only(version: int) -> None:
     model = MODELS["GearContact"]
     file = load_default(model.joint).with_values({"e": 0.125, "rigid_flat": False}, "user", "test")
-    xml = fmi2_xml(model, file, TOKEN, SOURCES) if version == 2 else fmi3_xml(model, file, TOKEN)
+    xml = (
+        format_fmi2_description(model, file, TOKEN, SOURCES)
+        if version == 2
+        else format_fmi3_description(model, file, TOKEN)
+    )
     changed = {
         ours.strip()
         for ours, theirs in zip(xml.splitlines(), description(model.name, version).splitlines(), strict=True)
@@ -355,7 +364,7 @@ def test_initial_unknowns_are_the_outputs_and_know_the_parameters_too(name: str,
 def samples(name: str, n: int) -> list[dict[str, float]]:
     """Inputs inside the law's range, some with shear, some without."""
     model, rng = MODELS[name], np.random.default_rng(7)
-    scale = {v.name: v.nominal for v in model.inputs} | {model.ramp.input: model.ramp.end}
+    scale = {v.name: v.nominal for v in model.inputs} | {model.ramp.input_name: model.ramp.end_value}
     scale |= {"phi1": 0.1, "phi2": 1e-3}
     return [
         {v.name: scale[v.name] * rng.uniform(0.0 if v.minimum == 0.0 else -1.0, 1.0) for v in model.inputs}
@@ -416,7 +425,7 @@ def test_fmi_2_names_the_sources_to_compile(name: str) -> None:
 
 
 def test_fmi_3_says_how_to_compile_the_sources(name: str, tmp_path: Path) -> None:
-    xml = build_description(MODELS[name], SOURCES)
+    xml = format_build_description(MODELS[name], SOURCES)
     etree.XMLSchema(etree.parse(SCHEMAS / "fmi3" / "fmi3BuildDescription.xsd")).assertValid(
         etree.fromstring(xml)
     )
@@ -453,16 +462,21 @@ def test_there_is_a_date_only_if_it_is_given(
 DIGEST = """
 import hashlib
 from jointfmu.parameters import load_default
-from jointfmu_fmu_src.native.description import build_description, fmi2_xml, fmi3_xml
-from jointfmu_fmu_src.native.page import documentation
-from jointfmu_fmu_src.native.terminals import terminals_and_icons
+from jointfmu_fmu_src.native.description import (
+    format_build_description,
+    format_fmi2_description,
+    format_fmi3_description,
+)
+from jointfmu_fmu_src.native.page import make_documentation
+from jointfmu_fmu_src.native.terminals import terminal_files
 from jointfmu.joints import MODELS
 
 for model in MODELS.values():
     file = load_default(model.joint)
-    files = documentation(model, file) | terminals_and_icons(model)
-    files |= {"2": fmi2_xml(model, file, "{}", ["a.c"]), "3": fmi3_xml(model, file, "{}")}
-    files |= {"build": build_description(model, ["a.c"])}
+    files = make_documentation(model, file) | terminal_files(model)
+    files |= {"2": format_fmi2_description(model, file, "{}", ["a.c"])}
+    files |= {"3": format_fmi3_description(model, file, "{}")}
+    files |= {"build": format_build_description(model, ["a.c"])}
     for text in files.values():
         print(hashlib.sha256(text).hexdigest())
 """
@@ -566,7 +580,7 @@ def test_icons_are_small_and_tell_the_joints_apart() -> None:
 def test_an_icon_that_is_missing_is_named() -> None:
     nameless = replace(MODELS["GearContact"], name="GearContact2")
     with pytest.raises(ValueError, match=r"^GearContact2: \S+GearContact2\.png is missing; expected"):
-        terminals_and_icons(nameless)
+        terminal_files(nameless)
 
 
 class Page(HTMLParser):
@@ -645,7 +659,7 @@ def test_the_page_shows_every_warning_and_typical_refusals(name: str) -> None:
     outside = MODELS[name].validity_limits
     assert len(warnings) == len(outside)
     for text, o in zip(warnings, outside, strict=True):
-        assert text.startswith(f"{o.variable} = ")
+        assert text.startswith(f"{o.variable_name} = ")
         assert text.endswith(o.doc)
     errors = [row[1] for row in rows if row[0] == "error"]
     assert any(text.startswith(f"{next(iter(MODELS[name].parameter_fields()))} = nan") for text in errors)
@@ -655,7 +669,8 @@ def test_the_page_shows_every_warning_and_typical_refusals(name: str) -> None:
 def test_the_page_draws_the_ramp_of_its_own_parameters() -> None:
     model = MODELS["GearContact"]
     file = load_default(model.joint).with_values({"lambda": 0.5}, "user", "my own")
-    usual, other = pages(model.name)["index.html"].decode(), documentation(model, file)["index.html"].decode()
+    usual = pages(model.name)["index.html"].decode()
+    other = make_documentation(model, file)["index.html"].decode()
 
     def figure(text: str) -> str:
         return re.findall(r'<script type="application/json">(.*?)</script>', text)[0]
@@ -701,7 +716,7 @@ def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> N
 def test_a_joint_may_say_nothing_of_flanges_and_plot() -> None:
     """Then the page has no terminals, and the plot shows the first output over the driven input."""
     model = MODELS["GearContact"]
-    text = documentation(replace(model, name="Other"), load_default(model.joint))["index.html"].decode()
+    text = make_documentation(replace(model, name="Other"), load_default(model.joint))["index.html"].decode()
     assert "<h3>Terminals</h3>" not in text
     assert "<h3>Terminals</h3>" in pages(model.name)["index.html"].decode()
     assert ("s_rel [um]" in text, "K_N [N/um]" in text) == (True, False)
@@ -718,4 +733,4 @@ def test_the_licence_is_that_of_the_repository(name: str, monkeypatch: pytest.Mo
         assert words in pages(name)[f"licenses/{file}.txt"].decode()
     monkeypatch.setattr(licence_module, "files", lambda package: [])
     with pytest.raises(ValueError, match="LICENSE: missing in the installed package jointfmu"):
-        licence()
+        read_licence()

@@ -8,9 +8,9 @@ from decimal import Decimal, localcontext
 import fmpy
 import numpy as np
 import pytest
-from jointfmu_fmu_src.native.code.elementary import tables
-from jointfmu_fmu_src.native.code.generate import RUNTIME
-from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
+from jointfmu_fmu_src.native.code.elementary import make_tables_header
+from jointfmu_fmu_src.native.code.generate import RUNTIME_FOLDER
+from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, library_file_name
 
 pytestmark = pytest.mark.slow
 
@@ -32,10 +32,10 @@ def functions(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Callable[..
         lines.append(
             f"{visible} double shown_{name}({given});\ndouble shown_{name}({given}) {{ return {call}; }}"
         )
-    files = {path.name: path.read_text() for path in RUNTIME.rglob("elementary.*")}
-    files |= {"elementary_tables.h": tables(), "shown.c": "\n".join(lines) + "\n"}
-    path = folder / file_name("Elementary", here)
-    path.write_bytes(libraries("Elementary", files, ["elementary.c", "shown.c"], [here])[here])
+    files = {path.name: path.read_text() for path in RUNTIME_FOLDER.rglob("elementary.*")}
+    files |= {"elementary_tables.h": make_tables_header(), "shown.c": "\n".join(lines) + "\n"}
+    path = folder / library_file_name("Elementary", here)
+    path.write_bytes(compile_libraries("Elementary", files, ["elementary.c", "shown.c"], [here])[here])
     library, found = ctypes.CDLL(str(path)), {}
     for name in NAMES:
         found[name] = getattr(library, f"shown_{name}")

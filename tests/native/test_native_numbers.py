@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 from jointfmu_fmu_src import joints
-from jointfmu_fmu_src.joint_parts.native import COUNTS, NUMBERS, Named
+from jointfmu_fmu_src.joint_parts.native import COUNT_NAMES, NUMBER_NAMES, Definitions, ModuleConstants
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.code import generate
 
@@ -24,22 +24,22 @@ pytestmark = pytest.mark.slow
 DRIVE, BOLTED, GEAR = "HarmonicDriveSpring", "BoltedJoint", "GearContact"
 
 
-def pairs(*given: Named) -> list[tuple[ModuleType, str]]:
+def pairs(*given: ModuleConstants) -> list[tuple[ModuleType, str]]:
     """(module, name) of each number."""
     return [(module, name) for one in given for module, names in one.items() for name in names]
 
 
-TABLES = pairs(NUMBERS, COUNTS)
+TABLES = pairs(NUMBER_NAMES, COUNT_NAMES)
 EVERY = {
-    DRIVE: (*TABLES, *pairs(drive_native.NUMBERS), (hysteresis, "MAX_LIMIT_ITERATIONS")),
-    GEAR: (*TABLES, (curve, "CLOSING_RATIO")),
+    DRIVE: (*TABLES, *pairs(drive_native.NUMBER_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
+    GEAR: (*TABLES, (curve, "CLOSING_AREA_RATIO")),
 }
 
 
 def c_of(name: str) -> dict[str, str]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(generate, "_laws", {})  # what is kept is of other numbers
-        return generate.sources(name, load_default(MODELS[name].joint))
+        patch.setattr(generate, "_law_texts", {})  # what is kept is of other numbers
+        return generate.generate_sources(name, load_default(MODELS[name].joint))
 
 
 @cache
@@ -56,6 +56,14 @@ def compiles(folder: Path, files: dict[str, str], text: str) -> bool:
     return subprocess.run(command, cwd=folder, capture_output=True).returncode == 0
 
 
+def test_one_name_of_a_constant_has_one_value() -> None:
+    first = Definitions({"MAX_ITERATIONS": 200}, {"TOLERANCE": 1e-9})
+    assert (first | Definitions({"MAX_ITERATIONS": 200})).counts == {"MAX_ITERATIONS": 200}
+    for other in (Definitions({"MAX_ITERATIONS": 16}), Definitions({}, {"MAX_ITERATIONS": 16.0})):
+        with pytest.raises(ValueError, match="C constant MAX_ITERATIONS has two values"):
+            _ = first | other
+
+
 @pytest.mark.parametrize("name", EVERY)
 def test_c_follows_the_numbers(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     before, expected = set(usual(name)["law.h"].splitlines()), set()
@@ -69,7 +77,7 @@ def test_c_follows_the_numbers(monkeypatch: pytest.MonkeyPatch, name: str) -> No
 
 def test_runtime_types_none_of_them_again() -> None:
     names = {constant for pairs in EVERY.values() for _, constant in pairs} | {"CURVE_NODES"}
-    folders = [generate.RUNTIME, *(parts.folder for parts in joints.PARTS.values())]
+    folders = [generate.RUNTIME_FOLDER, *(parts.folder for parts in joints.FMU_PARTS.values())]
     for path in (path for folder in folders for path in folder.rglob("*.[ch]")):
         typed = re.findall(r"\b(\w+) = [-0-9]|#define (\w+)", path.read_text(encoding="utf-8"))
         assert names.isdisjoint(name for pair in typed for name in pair), path.name
@@ -77,7 +85,7 @@ def test_runtime_types_none_of_them_again() -> None:
 
 @pytest.mark.parametrize(
     ("name", "module", "constant", "size"),
-    [(DRIVE, curve, "MAX_NODES", "CURVE_NODES"), (BOLTED, curve, "MAX_NODES", "CURVE_NODES")],
+    [(DRIVE, curve, "MAX_TABLE_NODES", "CURVE_NODES"), (BOLTED, curve, "MAX_TABLE_NODES", "CURVE_NODES")],
 )
 def test_arrays_follow_a_count(
     monkeypatch: pytest.MonkeyPatch,
@@ -98,7 +106,7 @@ def test_arrays_follow_a_count(
 @pytest.mark.parametrize(
     ("name", "source", "module", "constant", "value"),
     [
-        (GEAR, "curve.c", curve, "MAX_NODES", 70_000),  # buckets hold a segment's number in 16 bits
+        (GEAR, "curve.c", curve, "MAX_TABLE_NODES", 70_000),  # buckets hold a segment's number in 16 bits
         (GEAR, "approach.c", curve, "CLOSING_STEPS", 49),  # the error is measured on pairs of segments
     ],
 )
@@ -119,7 +127,7 @@ def test_build_refuses_what_does_not_fit(
 
 
 def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(curve, "MAX_NODES", 100)  # fewer than its first steps
+    monkeypatch.setattr(curve, "MAX_TABLE_NODES", 100)  # fewer than its first steps
     with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
         jointfmu.load(DRIVE).build(tmp_path)
     assert not list(tmp_path.iterdir())

@@ -21,7 +21,7 @@ import pytest
 import ziglang
 from clients import SYSROOT, needs, prepare_wine, qemu, unusable
 from fmpy import read_model_description
-from jointfmu_fmu_src.native.compiled.compiler import _COMPILED, TARGETS
+from jointfmu_fmu_src.native.compiled.compiler import _COMMON_OPTIONS, TARGETS
 from natives import SAID
 
 from jointfmu.joints import MODELS
@@ -34,7 +34,7 @@ HOSTS = Path(__file__).parent / "hosts"
 VERSIONS = ("fmi2", "fmi3")
 
 BARE = (
-    "-target", "aarch64-linux-musl", *_COMPILED, "-w", "-DLINKED", "-nostdlib", "-static",
+    "-target", "aarch64-linux-musl", *_COMMON_OPTIONS, "-w", "-DLINKED", "-nostdlib", "-static",
     "-fno-builtin-fprintf",
     *(
         f"-isystem{Path(ziglang.__file__).parent / 'lib' / 'libc' / 'include' / headers}"
@@ -211,8 +211,8 @@ def points(model: Model, write: Callable[[float], str] = repr) -> str:
     """
     rng = np.random.default_rng(3)
     columns = [
-        rng.uniform(0.0, model.ramp.end, POINTS)
-        if v.name == model.ramp.input
+        rng.uniform(0.0, model.ramp.end_value, POINTS)
+        if v.name == model.ramp.input_name
         else v.nominal * 10.0 ** rng.uniform(-4.0, 0.0, POINTS) * rng.choice([-1.0, 1.0], POINTS)
         if not v.start
         else v.start * rng.uniform(0.9, 1.2, POINTS)

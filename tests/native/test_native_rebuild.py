@@ -40,8 +40,10 @@ def test_fmpy_compiles_the_sources_to_the_same_fmu(
     assert done.returncode == 0, done.stdout + done.stderr
     assert "warning" not in done.stdout + done.stderr
     model = MODELS[name]
-    step = model.ramp.end / 20
-    first, second = (ramp.run_ramp(fmu, model.ramp.input, model.ramp.end, step) for fmu in (built, again))
+    step = model.ramp.end_value / 20
+    first, second = (
+        ramp.run_ramp(fmu, model.ramp.input_name, model.ramp.end_value, step) for fmu in (built, again)
+    )
     for column, values in first.columns.items():
         scale = np.abs(values).max()
         np.testing.assert_allclose(second.columns[column], values, rtol=0.0, atol=COMPILER_TOLERANCE * scale)

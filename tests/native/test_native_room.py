@@ -9,9 +9,9 @@ import pytest
 from clients import needs
 from joint_cases import CASES
 from jointfmu_fmu_src.native.compiled import compiler
-from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system
-from jointfmu_tools.systems.system import system
+from jointfmu_tools.systems.system import load_system
 
 from jointfmu.joints import MODELS
 
@@ -50,7 +50,9 @@ def counted(fmu, folder):
             files[name] = f"#include <stddef.h>\n{declared}void *counted_realloc(void *, size_t);\n{text}"
     files["counted.c"] = "#undef malloc\n#undef calloc\n#undef realloc\n" + COUNTED
     units = [name for name in files if name.endswith(".c") and name not in ("windows.c", "fmi3.c")]
-    (built,) = compiler.libraries(fmu.stem, files, units, [fmpy.platform_tuple], linked=OPTIONS).values()
+    (built,) = compiler.compile_libraries(
+        fmu.stem, files, units, [fmpy.platform_tuple], linker_options=OPTIONS
+    ).values()
     (library,) = (unzipped / "binaries" / fmpy.platform).glob("*.so")
     library.write_bytes(built)
     return unzipped
@@ -90,5 +92,7 @@ def test_a_joint_allocates_nothing_after_initialization(name, native, tmp_path):
 
 
 def test_a_system_allocates_nothing_after_initialization(tmp_path):
-    (fmu,) = build_system(assembly(system("robot_joint")), tmp_path, ("2",), (fmpy.platform_tuple,))
+    (fmu,) = build_system(
+        assemble_system(load_system("robot_joint")), tmp_path, ("2",), (fmpy.platform_tuple,)
+    )
     assert grown(counted(fmu, tmp_path / "unpacked"), {"load.tau_in": (-0.03, 0.03)}, 1e-2, 150) == 0

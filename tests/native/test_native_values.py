@@ -36,9 +36,9 @@ def name(request: pytest.FixtureRequest) -> str:
 def test_fmpy_simulates_the_default_experiment(native: Path, name: str, version: str, interface: str) -> None:
     path, model = str(native / version / f"{name}.fmu"), MODELS[name]
     assert validate_fmu(path) == []
-    stop, inputs = model.ramp.end / model.ramp.step, [v.name for v in model.inputs]
+    stop, inputs = model.ramp.end_value / model.ramp.value_step, [v.name for v in model.inputs]
     signal = np.zeros(2, dtype=[("time", float), *((i, float) for i in inputs)])
-    signal["time"][1], signal[model.ramp.input][1] = stop, model.ramp.end
+    signal["time"][1], signal[model.ramp.input_name][1] = stop, model.ramp.end_value
     outputs, interval = [v.name for v in model.outputs], stop / 20.0
     found = simulate_fmu(
         path,
@@ -50,7 +50,7 @@ def test_fmpy_simulates_the_default_experiment(native: Path, name: str, version:
     )
     assert found["time"] == close(np.arange(21) * interval)  # to the stop time of the default experiment
     lag = interval if interface == "CoSimulation" else 0.0  # there an input holds during a step
-    assert found[model.ramp.input] == close(np.maximum(found["time"] - lag, 0.0) * model.ramp.step)
+    assert found[model.ramp.input_name] == close(np.maximum(found["time"] - lag, 0.0) * model.ramp.value_step)
     expected = package(name)
     for row in found:
         assert {o: row[o] for o in outputs} == near(name, expected({i: row[i] for i in inputs}))
@@ -62,7 +62,7 @@ def test_all_flavours_and_interfaces_give_the_numbers_of_the_package(
     python, expected, r = fmu(name).start(), package(name).after(), MODELS[name].ramp
     natives = [host(name, v, exchange=kind).start() for v in VERSIONS for kind in (False, True)]
     rest = {n: max(low, 0.0) for n, (low, _) in RANGES[name].items()}  # no lubricant is at 0 K
-    ramp = [rest | {r.input: x} for x in np.linspace(0.0, r.end, 26)]
+    ramp = [rest | {r.input_name: x} for x in np.linspace(0.0, r.end_value, 26)]
     for inputs in (*ramp, *random_inputs(name, 40, seed=21)):
         found, *others = (one.at(inputs) for one in natives)
         assert others == [found] * 3

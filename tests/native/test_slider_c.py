@@ -8,14 +8,14 @@ import casadi as ca
 import numpy as np
 import pytest
 from jointfmu_fmu_src.joint_parts.graph import Graph
-from jointfmu_fmu_src.joint_parts.sliders import add_sliders
+from jointfmu_fmu_src.joint_parts.sliders import add_slider_functions
 from jointfmu_fmu_src.native.code import elementary
-from jointfmu_fmu_src.native.code.emit import HELPERS, function
-from jointfmu_fmu_src.native.code.generate import RUNTIME
+from jointfmu_fmu_src.native.code.emit import C_HELPERS, format_function
+from jointfmu_fmu_src.native.code.generate import RUNTIME_FOLDER
 from jointfmu_fmu_src.native.compiled import compiler
 
 from jointfmu.mechanics.jenkins import Sliders, elastic_predictor, limit_function, return_map, yield_function
-from jointfmu.mechanics.sliders import resultant, torsion_directions
+from jointfmu.mechanics.sliders import sum_slider_forces, torsion_directions
 
 pytestmark = pytest.mark.slow
 
@@ -73,21 +73,29 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
     before = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
-        add_sliders(g)
+        add_slider_functions(g)
     finally:
         ca.GlobalOptions.setNumpyMode(before)
     none = ca.SX.sym("none", 0)
     texts = [
-        function(f.name, f.doc, ca.vertcat(*f.x), none, f.y, f.name.endswith("_seed")) for f in g.functions
+        format_function(
+            f.name,
+            f.doc,
+            ca.vertcat(*f.argument_symbols),
+            none,
+            f.result_expressions,
+            f.name.endswith("_seed"),
+        )
+        for f in g.functions
     ]
     law = "\n".join(text.replace("\nvoid ", "\nstatic inline void ", 1) for text in texts)
     names = ("jenkins.c", "jenkins.h", "simd.h", "elementary.c", "elementary.h")
-    files = {name: (RUNTIME / "law" / name).read_text(encoding="utf-8") for name in names}
-    files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{HELPERS}\n{law}'}
-    files |= {"elementary_tables.h": elementary.tables()}
+    files = {name: (RUNTIME_FOLDER / "law" / name).read_text(encoding="utf-8") for name in names}
+    files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{C_HELPERS}\n{law}'}
+    files |= {"elementary_tables.h": elementary.make_tables_header()}
     visible = "#pragma GCC visibility push(default)\n"
     files["jenkins.c"] = visible + files["jenkins.c"]
-    made = compiler.libraries("sliders", files, ["jenkins.c", "elementary.c"], ["x86_64-linux"])
+    made = compiler.compile_libraries("sliders", files, ["jenkins.c", "elementary.c"], ["x86_64-linux"])
     path = tmp_path_factory.mktemp("sliders") / "sliders.so"
     path.write_bytes(made["x86_64-linux"])
     found = CDLL(str(path))
@@ -150,7 +158,9 @@ def test_along_one_direction(library: CDLL) -> None:
         expected = Sliders(K).advance_1d(force[0], u, before, after)
         size = 1.0 + abs(u) * float(np.sum(K))
         assert_close(moved, expected.force, size)
-        assert_close([total.force[0], total.loss], [expected.traction, expected.loss], SLIDERS * size**2)
+        assert_close(
+            [total.force[0], total.loss], [expected.traction, expected.dissipated_energy], SLIDERS * size**2
+        )
         assert total.tangent[0] == pytest.approx(float(expected.tangent), abs=ROUND_OFF * SLIDERS)
         tried = force[0] + K * u
         slips = np.abs(tried) > after
@@ -180,7 +190,7 @@ def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> n
     first = library.sliders_predict(AVX, SLIDERS, byref(s), out, sticks)
     at_limit = np.append(limit_function(list(tried), rows["limit_end"]) > 0.0, True)
     assert first == np.argmax(at_limit) // 2 * 2
-    sums = resultant(np.where(np.arange(SLIDERS) < first, tried, 0.0))
+    sums = sum_slider_forces(np.where(np.arange(SLIDERS) < first, tried, 0.0))
     assert_close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))
     found, fours, alone = np.empty((3, 7, SLIDERS))
     for slid, by_four, forces in ((found, False, False), (fours, AVX, False), (alone, AVX, True)):
@@ -188,7 +198,7 @@ def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> n
         library.sliders_return_map(by_four, 0, SLIDERS, byref(s), into, forces)
         total = SliderResultant()
         library.sliders_resultant(by_four, 0, SLIDERS, byref(s), into, byref(total))
-        assert_close(list(total.force), resultant(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
+        assert_close(list(total.force), sum_slider_forces(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
     np.testing.assert_array_equal(fours, found)
     assert_close(alone[:2], found[:2], 1.0 + np.max(np.abs(tried)))
     np.testing.assert_array_equal(found[:2, :first], tried[:, :first])
@@ -205,7 +215,7 @@ def test_in_a_plane(library: CDLL) -> None:
         slid = return_map(list(force), 1.0, K, list(of_each(shift)), before, after, K, rows["compliance"])
         size = 1.0 + float(np.linalg.norm(shift) * np.sum(K))
         assert_close(moved, slid.force, size)
-        assert_close(loss[0], slid.loss, size**2)
+        assert_close(loss[0], slid.dissipated_energy, size**2)
         assert_close(tangent, slid.tangent, SLIDERS)
         slips = yield_function(tried, after) > 0.0
         slipped += int(np.sum(slips))
@@ -233,7 +243,7 @@ def forces_together(
     after = rows["limit_end"] + motion[3] * rates[0]
     each = list(of_each(shift + motion[:3]) + motion[3] * rates[1:])
     slid = return_map(force, 1.0, K, each, rows["limit_start"], after, K, rows["compliance"])
-    return resultant(np.array(slid.force)), yield_function(
+    return sum_slider_forces(np.array(slid.force)), yield_function(
         elastic_predictor(force, 1.0, K, each), after
     ) > 0.0
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.proof.standard import FOLDER, MANIFEST
+from jointfmu_fmu_src.proof.standard import MANIFEST_PATH, REFERENCE_FOLDER
 from jointfmu_tools.proof.checksum import ALGORITHMS
 from jointfmu_tools.proof.manifest import RelatedFiles
 
@@ -22,8 +22,8 @@ def fmu(path: Path, attributes: str) -> Path:
     related += 'role="parameter" checksum="00"/><Related source="http://a.b/c" role="other" checksum="00"/>'
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", "<fmiModelDescription/>")
-        archive.writestr(MANIFEST, f"<fmiReferences {HEAD}>{related}</fmiReferences>")
-        archive.writestr(f"{FOLDER}/smoke.exp", EXPERIMENTS)
+        archive.writestr(MANIFEST_PATH, f"<fmiReferences {HEAD}>{related}</fmiReferences>")
+        archive.writestr(f"{REFERENCE_FOLDER}/smoke.exp", EXPERIMENTS)
     return path
 
 
@@ -34,7 +34,7 @@ def test_a_file_with_its_checksum_is_read(tmp_path: Path, kind: str | None) -> N
     name = name.replace("-", "_") if name.startswith("sha3") else name.replace("-", "")
     digest = hashlib.new(name, EXPERIMENTS).hexdigest().upper()
     stated = f'checksum="{digest}"' + (f' checksumType="{kind}"' if kind else "")
-    assert [one.name for one in RelatedFiles(fmu(tmp_path / "a.fmu", stated)).experiments()] == ["rest"]
+    assert [one.name for one in RelatedFiles(fmu(tmp_path / "a.fmu", stated)).read_experiments()] == ["rest"]
 
 
 @pytest.mark.parametrize(

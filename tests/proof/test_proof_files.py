@@ -15,14 +15,14 @@ import numpy as np
 import pytest
 from joint_cases import NAMES, law, parameters
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, models, study
-from jointfmu_fmu_src.proof.files import TOLERANCE
-from jointfmu_fmu_src.proof.members import computed, proof
-from jointfmu_fmu_src.proof.reference import Stimulus, results
-from jointfmu_fmu_src.proof.series import TimeSeries, parse, text
+from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, list_shipped_variants, make_study
+from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
+from jointfmu_fmu_src.proof.members import get_experiments, make_proof_files
+from jointfmu_fmu_src.proof.reference import Stimulus, compute_results
+from jointfmu_fmu_src.proof.series import TimeSeries, format_csv, parse_csv
 from jointfmu_tools.proof import manifest
 from jointfmu_tools.uncertainty import study as study_files
 from lxml import etree
@@ -45,12 +45,12 @@ def given(name: str) -> tuple[Model, ParameterFile]:
 
 @cache
 def made(name: str) -> tuple[ReferenceExperiment, ...]:
-    return computed(*given(name))
+    return get_experiments(*given(name))
 
 
 @cache
 def members(name: str) -> dict[str, bytes]:
-    return proof(*given(name))
+    return make_proof_files(*given(name))
 
 
 class Local(etree.Resolver):
@@ -70,9 +70,9 @@ def schema(path: Path) -> etree.XMLSchema:
 @pytest.mark.parametrize("name", EVERY)
 def test_the_manifest_is_valid_and_all_that_it_names_is_there(name: str) -> None:
     own = Path(__file__).parent / "standards" / "fmi3LayeredStandardReferenceManifest.xsd"
-    data = members(name)[standard.MANIFEST]
+    data = members(name)[standard.MANIFEST_PATH]
     schema(own).assertValid(etree.fromstring(data))
-    below = {path.removeprefix(f"{standard.FOLDER}/") for path in members(name)}
+    below = {path.removeprefix(f"{standard.REFERENCE_FOLDER}/") for path in members(name)}
     named = [related.get("source", "") for related in ElementTree.fromstring(data)]
     outside = {"../../documentation/index.html", "../../documentation/fmi-ls-ref.txt"}
     assert set(named) - outside <= below
@@ -82,7 +82,7 @@ def test_the_manifest_is_valid_and_all_that_it_names_is_there(name: str) -> None
     used = {
         child.get("source")
         for path in experiments
-        for child in ElementTree.fromstring(members(name)[f"{standard.FOLDER}/{path}"]).iter()
+        for child in ElementTree.fromstring(members(name)[f"{standard.REFERENCE_FOLDER}/{path}"]).iter()
     }
     assert {path for path in below if path.startswith("experiments/")} <= used
 
@@ -103,10 +103,10 @@ def test_parameter_sets_are_valid_and_have_every_parameter(name: str) -> None:
 @pytest.mark.parametrize("name", EVERY)
 def test_every_experiment_states_times_and_tolerance(name: str) -> None:
     for purpose in standard.PURPOSES:
-        root = ElementTree.fromstring(members(name)[f"{standard.FOLDER}/{purpose}.exp"])
+        root = ElementTree.fromstring(members(name)[f"{standard.REFERENCE_FOLDER}/{purpose}.exp"])
         for one in root.iter("Experiment"):
             assert one[0].tag == "TransientSimulation"
-            assert float(one.get("tolerance", "nan")) == TOLERANCE
+            assert float(one.get("tolerance", "nan")) == REFERENCE_TOLERANCE
             assert {"startTime", "stopTime", "stepSize"} == one[0].attrib.keys()
 
 
@@ -117,10 +117,10 @@ def test_references_are_those_of_the_joint_itself(name: str) -> None:
     ramp = next(one for one in made(name) if one.name == "load ramp")
     joint = law(name, parameters(name))
     rest = {v.name: file.start_value(v.name) for v in model.inputs}
-    end = model.with_load_range(joint.spring, rest).ramp.end
-    assert ramp.drive.levels[-1] == pytest.approx(end, rel=1e-8)
+    end = model.with_load_range(joint.spring, rest).ramp.end_value
+    assert ramp.stimulus.levels[-1] == pytest.approx(end, rel=1e-8)
     for i in (5, 20):
-        expected = joint(rest | {model.ramp.input: float(ramp.drive.levels[i])})
+        expected = joint(rest | {model.ramp.input_name: float(ramp.stimulus.levels[i])})
         for output, value in expected.items():
             # memory takes the way in steps: friction is the same, its work is summed otherwise
             assert ramp.results.columns[output][i] == pytest.approx(value, rel=1e-9, abs=1e-15)
@@ -130,18 +130,18 @@ def test_references_are_those_of_the_joint_itself(name: str) -> None:
 def test_the_loop_shows_memory(name: str) -> None:
     """At the same input on the way up and down outputs differ, by far more than the tolerance."""
     loop = next(one for one in made(name) if one.name == "loop")
-    levels = loop.drive.levels
+    levels = loop.stimulus.levels
     first, second = (i for i in range(1, levels.size - 1) if levels[i] == levels[0])
     apart = [
         abs(column[first] - column[second]) / np.max(np.abs(column))
         for column in loop.results.columns.values()
         if np.any(column)
     ]
-    assert max(apart) > 1e3 * TOLERANCE
+    assert max(apart) > 1e3 * REFERENCE_TOLERANCE
 
 
 def test_every_joint_with_memory_has_a_loop() -> None:
-    assert [m.name for m in MODELS.values() if m.advance and not m.loop] == []
+    assert [m.name for m in MODELS.values() if m.advance and not m.load_cycle] == []
 
 
 @pytest.mark.parametrize("name", EVERY)
@@ -151,7 +151,10 @@ def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
     found = [one for one in made(name) if one.doc.startswith("inside ")]
     assert found or name in PARTNERS  # whose numbers may have no end
     for one in found:
-        usual = {model.ramp.input: model.ramp.end, **model.ramp.settings}  # what drives states, and a course
+        usual = {
+            model.ramp.input_name: model.ramp.end_value,
+            **model.ramp.settings,
+        }  # what drives states, and a course
         ((parameter, value),) = one.settings.items() - usual.items()
         interval = model.parameter_fields()[parameter].metadata["interval"]
         own = file.values_by_name[parameter]
@@ -163,18 +166,18 @@ def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
         if model.parameter_fields()[parameter].metadata["whole"]:
             further = value + math.copysign(1.0, end - own)
         with pytest.raises((ValueError, RuntimeError, ArithmeticError)):
-            results(
+            compute_results(
                 model,
                 replace_values(file.values, {parameter: further}),
                 {v.name: file.start_value(v.name) for v in model.inputs},
-                Stimulus(model.ramp.input, np.array([0.0, model.ramp.end]), 1.0),
+                Stimulus(model.ramp.input_name, np.array([0.0, model.ramp.end_value]), 1.0),
             )
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_shipped_models_of_the_same_structure_are_carried(name: str) -> None:
     model, file = given(name)
-    carried = models(model, file)
+    carried = list_shipped_variants(model, file)
     assert carried[0] == (file, {})
     folder = KINDS[model.joint].default_file().parent
     same = [
@@ -186,14 +189,14 @@ def test_shipped_models_of_the_same_structure_are_carried(name: str) -> None:
 
 
 def test_one_shipped_model_at_least_is_carried_by_the_fmu_of_another() -> None:
-    assert any(len(models(*given(name))) > 1 for name in NAMES)
+    assert any(len(list_shipped_variants(*given(name))) > 1 for name in NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_uncertainty_experiment_can_be_read_as_a_study(name: str, tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
-    path.write_bytes(members(name)[f"{standard.FOLDER}/parameters/study.toml"])
-    assert study_files.read_study(path) == study(*given(name))
+    path.write_bytes(members(name)[f"{standard.REFERENCE_FOLDER}/parameters/study.toml"])
+    assert study_files.read_study(path) == make_study(*given(name))
     samples = [one for one in made(name) if one.purpose == "uncertainty-analysis"]
     assert len(samples) == 6
     for one in samples:
@@ -225,7 +228,7 @@ def test_the_text_says_how_many_and_how_near(name: str) -> None:
     said = members(name)["documentation/fmi-ls-ref.txt"].decode()
     counts = re.findall(r"^ +(\d+) [a-z-]+$", said, re.MULTILINE)
     assert sum(map(int, counts)) == len(made(name))
-    assert f"{TOLERANCE:g} max(|reference|" in said
+    assert f"{REFERENCE_TOLERANCE:g} max(|reference|" in said
 
 
 @pytest.mark.parametrize("name", ["TorqueProfile", "ForceProfile", "AngleProfile"])
@@ -241,7 +244,7 @@ def test_a_course_over_time_shows_itself_in_its_proof_alone(name: str) -> None:
 def test_a_mass_under_a_constant_force_moves_as_newton_says() -> None:
     model, file = given("TranslationalMass")
     one = made("TranslationalMass")[1]
-    t, f = one.drive.instants, one.settings[model.ramp.input]
+    t, f = one.stimulus.instants, one.settings[model.ramp.input_name]
     a = f / file.values.m
     for output, expected in (("s", 0.5 * a * t**2), ("v", a * t), ("a", a + 0.0 * t)):
         assert one.results.columns[output] == pytest.approx(expected, rel=1e-11)
@@ -252,7 +255,7 @@ def test_a_weight_keeps_its_energy() -> None:
     model, file = given("RotationalInertia")
     values = replace_values(file.values, {"m": 2.0, "l": 0.3})
     drive = Stimulus("tau_a", np.full(21, 1.0), 0.05)
-    found = results(model, values, {v.name: 0.0 for v in model.inputs}, drive).columns
+    found = compute_results(model, values, {v.name: 0.0 for v in model.inputs}, drive).columns
     potential = 2.0 * GRAVITY * 0.3 * (1.0 - np.cos(found["phi"]))
     energy = 0.5 * file.values.J * found["w"] ** 2 + potential
     assert energy == pytest.approx(found["phi"], rel=1e-9, abs=1e-12)
@@ -266,18 +269,18 @@ def test_series_are_written_and_read_alike() -> None:
     series = TimeSeries(
         np.array([0.0, 0.5, 1.0]), {"a": np.array([0.0, -0.0, 1.0 / 3.0]), "b.c": np.arange(3.0)}
     )
-    written = text(series)
+    written = format_csv(series)
     assert written.splitlines()[0] == '"time","a","b.c"'
-    back = parse(written, "x")
+    back = parse_csv(written, "x")
     assert back.time.tolist() == [0.0, 0.5, 1.0]
     assert {name: column.tolist() for name, column in back.columns.items()} == {
         name: column.tolist() for name, column in series.columns.items()
     }
-    assert text(series, 3).splitlines()[-1] == "1.0,0.333,2"
+    assert format_csv(series, 3).splitlines()[-1] == "1.0,0.333,2"
 
 
 def test_a_jump_is_taken_where_it_stands() -> None:
-    series = parse("time,u\n0,0\n1,1\n1,5\n2,6\n", "x")
+    series = parse_csv("time,u\n0,0\n1,1\n1,5\n2,6\n", "x")
     times = np.array([0.5, 1.0, 1.5, 3.0])
     assert series.interpolate("u", times).tolist() == [0.5, 5.0, 5.5, 6.0]
     assert series.interpolate_left("u", times).tolist() == [0.5, 1.0, 5.5, 6.0]
@@ -299,4 +302,4 @@ def test_a_jump_is_taken_where_it_stands() -> None:
 )
 def test_a_broken_series_is_refused(content: str, said: str) -> None:
     with pytest.raises(ValueError, match=f"^x: .*{re.escape(said)}"):
-        parse(content, "x")
+        parse_csv(content, "x")

@@ -17,9 +17,9 @@ from conftest import here_alone, refused_line
 from fmpy.cross_check import validate_result
 from fmpy.util import read_csv, read_ref_opt_file
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.proof.files import TOLERANCE
-from jointfmu_fmu_src.proof.members import proof
-from jointfmu_fmu_src.proof.standard import FOLDER
+from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
+from jointfmu_fmu_src.proof.members import make_proof_files
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.proof.importers import FMI_VERSIONS as KNOWN
 from natives import VERSIONS
@@ -209,7 +209,7 @@ def test_a_changed_reference_fails_by_name(
             return data
         *rows, last = data.decode().splitlines()
         cells = last.split(",")
-        cells[2] = repr(float(cells[2]) * (1.0 + 2.0 * TOLERANCE))
+        cells[2] = repr(float(cells[2]) * (1.0 + 2.0 * REFERENCE_TOLERANCE))
         return "\n".join([*rows, ",".join(cells), ""]).encode()
 
     found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), status=1)
@@ -294,13 +294,17 @@ def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
     computes of it: all that can be changed without a compiler, so that it agrees with itself."""
     model = MODELS[source.stem]
     file = load_default(model.joint).with_values({parameter: value}, "user", "test")
-    made = proof(model.with_parameters(file.joint, file.values), file)
-    own = {path.removeprefix(f"{FOLDER}/"): data for path, data in made.items() if path.startswith(FOLDER)}
+    made = make_proof_files(model.with_parameters(file.joint, file.values), file)
+    own = {
+        path.removeprefix(f"{REFERENCE_FOLDER}/"): data
+        for path, data in made.items()
+        if path.startswith(REFERENCE_FOLDER)
+    }
     old = rf'name="{re.escape(parameter)}".*?start="([^"]*)"'.encode()
 
     def change(name: str, data: bytes) -> bytes | None:
         if name != "modelDescription.xml":
-            return None if name.startswith(FOLDER) else data
+            return None if name.startswith(REFERENCE_FOLDER) else data
         match = re.search(old, data, re.DOTALL)
         assert match is not None
         return data[: match.start(1)] + repr(value).encode() + data[match.end(1) :]
@@ -355,7 +359,8 @@ def test_a_manifest_of_an_older_draft_is_read(
     """Times as attributes, no tolerance, columns not quoted, an address with an escape, a start time."""
     with zipfile.ZipFile(fmu) as archive:
         text, drive = (
-            archive.read(f"{FOLDER}/experiments/01_load_ramp_{x}.csv").decode() for x in ("ref", "in")
+            archive.read(f"{REFERENCE_FOLDER}/experiments/01_load_ramp_{x}.csv").decode()
+            for x in ("ref", "in")
         )
     f = drive.split(",")[-1].strip()
     rows = [line.split(",") for line in text.splitlines()]
@@ -377,7 +382,7 @@ def test_memory_is_accepted_at_completed_steps(
     native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """An importer that is told to leave them out in model exchange misses the loop, and only that way."""
-    name = next(model.name for model in MODELS.values() if model.loop)
+    name = next(model.name for model in MODELS.values() if model.load_cycle)
     with zipfile.ZipFile(native / "fmi3" / f"{name}.fmu") as archive:
         assert b'needsCompletedIntegratorStep="true"' in archive.read("modelDescription.xml")
     change = replaced("modelDescription.xml", b'needsCompletedIntegratorStep="true"', b"")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import RELEASED, refused_line
-from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER, MANIFEST, MODEL_EXCHANGE
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MANIFEST_PATH, MODEL_EXCHANGE, REFERENCE_FOLDER
 from numpy.typing import NDArray
 from proofs import BOTH, ECOS, LIBCOSIM, copy, other_manifest, proved, replaced
 
@@ -153,7 +153,7 @@ def test_a_label_says_for_which_interface_an_experiment_is(
     files = {"u.csv": INPUT, "y.csv": csv(TIME, exact(TIME))}
     path = other_manifest(neuron, tmp_path / "all.fmu", experiment("one", FILES), **files)
     name = f'<Label name="interface:{label.replace(" ", "-")}"/></Related>'.encode()
-    change = replaced(Path(MANIFEST).name, b'role="experiment"/>', b'role="experiment">' + name)
+    change = replaced(Path(MANIFEST_PATH).name, b'role="experiment"/>', b'role="experiment">' + name)
     found = proved(capsys, copy(path, tmp_path / "one.fmu", change))
     assert [one["interface"] for one in found["experiments"]] == runs
 
@@ -233,7 +233,7 @@ def test_what_lies_elsewhere_or_in_other_formats_is_left_out(
         b'role="experiment"/>'
         b'<Related source="plan.txt" type="text/plain" role="experiment/validation"/></fmiReferences>'
     )
-    path = copy(path, tmp_path / "m.fmu", replaced(Path(MANIFEST).name, b"</fmiReferences>", more))
+    path = copy(path, tmp_path / "m.fmu", replaced(Path(MANIFEST_PATH).name, b"</fmiReferences>", more))
     found = {one["name"]: one["verdict"] for one in proved(capsys, path, status=1)["experiments"]}
     assert found == {
         "two": "not executed: has 2 References, one is read",
@@ -264,7 +264,7 @@ def test_the_example_of_the_standard_is_read(
     files |= {"test1-ref.csv": csv(TIME, exact(TIME))}
     path = copy(neuron, tmp_path / "example.fmu", lambda name, data: data, **files)
     with zipfile.ZipFile(path) as archive:
-        assert f"{FOLDER}/baseline-params.ssv" not in archive.namelist()
+        assert f"{REFERENCE_FOLDER}/baseline-params.ssv" not in archive.namelist()
     verdicts = [(one["name"], one["verdict"]) for one in proved(capsys, path)["experiments"]]
     kind = "not executed: has References of type application/hdf5, text/csv is read"
     assert verdicts == [("Test1", "passed"), ("Test1", "passed"), ("Test2", kind)]

@@ -9,17 +9,24 @@ import pytest
 from jointfmu_tools.published import calibration
 from jointfmu_tools.published import validation as comparison
 from jointfmu_tools.published.calibration import calibrate
-from jointfmu_tools.published.computed import published_numbers
+from jointfmu_tools.published.computed import load_published_numbers
 from jointfmu_tools.published.reference import (
     CALIBRATION_TOLERANCE,
     GUESS_ROLES,
     ROLES,
     Guess,
     Point,
+    compute_trivial_guesses,
     read_points,
-    trivial_guesses,
 )
-from jointfmu_tools.published.validation import compare, counts, missed_points, summary, table, validate
+from jointfmu_tools.published.validation import (
+    compare_point,
+    count_points,
+    format_summary,
+    format_table,
+    missed_points,
+    validate,
+)
 from matplotlib.lines import Line2D
 from published_marks import published_mark
 
@@ -31,12 +38,12 @@ REPRODUCED = 1e-6
 """Relative tolerance of a value fitted again [1]: the fit stops at residuals of 1e-8, and the worst of
 its parameters moves about ten times as much."""
 
-PAPERS = [paper for kind in KINDS.values() for paper in published_numbers(kind).papers]
-OBSERVABLES = {q: f for kind in KINDS.values() for q, f in published_numbers(kind).observables.items()}
+PAPERS = [paper for kind in KINDS.values() for paper in load_published_numbers(kind).papers]
+OBSERVABLES = {q: f for kind in KINDS.values() for q, f in load_published_numbers(kind).observables.items()}
 FITS = {
-    name: (published_numbers(kind).papers[0], published_numbers(kind).calibration)
+    name: (load_published_numbers(kind).papers[0], load_published_numbers(kind).calibration)
     for name, kind in KINDS.items()
-    if published_numbers(kind).calibration
+    if load_published_numbers(kind).calibration
 }
 ALL = [point for paper in PAPERS for point in read_points(paper)]
 
@@ -52,7 +59,7 @@ def rows():
 @pytest.mark.parametrize("point", ALL, ids=[f"{p.paper}-{p.id}" for p in ALL])
 def test_published_point_is_met(rows, point):
     row = next(r for r in rows if r.point == point)
-    assert row.passed, (row.point.id, row.computed, row.point.value, row.error)
+    assert row.has_passed, (row.point.id, row.computed_value, row.point.value, row.error)
 
 
 def test_every_point_is_compared_once(rows):
@@ -119,7 +126,7 @@ def test_table_3_is_divided_by_the_experiment(rows):
     for row in rows:
         if row.point.quantity == "frequency_error":
             given = row.point.where
-            assert row.computed == pytest.approx(
+            assert row.computed_value == pytest.approx(
                 100 * (given["predicted"] / given["measured"] - 1), rel=1e-12
             )
 
@@ -160,30 +167,30 @@ def point(**changes):
     ],
 )
 def test_compare(changes, computed, error, passed):
-    row = compare(point(**changes), computed)
+    row = compare_point(point(**changes), computed)
     assert row.error == pytest.approx(error, rel=1e-9, nan_ok=True)  # differences of three digits
-    assert row.passed is passed
-    assert row.as_dict()["verdict"] == ("pass" if passed else "miss")
+    assert row.has_passed is passed
+    assert row.to_json()["verdict"] == ("pass" if passed else "miss")
     assert missed_points([row]) == ([] if passed else [row])
 
 
 @pytest.mark.parametrize("role", [role for role in ROLES if role != "claim"])
 def test_what_a_miss_means(role):
     """It counts, unless the point was met by calibration or by construction."""
-    row = compare(point(role=role), -300.0)
-    assert not row.passed
+    row = compare_point(point(role=role), -300.0)
+    assert not row.has_passed
     assert missed_points([row]) == ([] if role in ("calibration", "circular") else [row])
-    assert counts([row]).missed == [r.point.id for r in missed_points([row])]
+    assert count_points([row]).missed == [r.point.id for r in missed_points([row])]
 
 
 def test_who_is_nearer():
-    assert compare(point(), -199.0).nearer == ""
-    assert compare(point(), -199.0, -201.5).nearer == "law"
-    assert compare(point(), -198.0, -201.5).nearer == "guess"
-    assert compare(point(), -199.0, -201.0).nearer == "guess"  # no better than the guess
-    row = compare(point(absolute=True), -199.0, -201.5)
+    assert compare_point(point(), -199.0).nearer_estimate == ""
+    assert compare_point(point(), -199.0, -201.5).nearer_estimate == "law"
+    assert compare_point(point(), -198.0, -201.5).nearer_estimate == "guess"
+    assert compare_point(point(), -199.0, -201.0).nearer_estimate == "guess"  # no better than the guess
+    row = compare_point(point(absolute=True), -199.0, -201.5)
     assert (row.guess, row.guess_error) == (-201.5, -1.5)
-    assert row.as_dict()["guess"] == -201.5
+    assert row.to_json()["guess"] == -201.5
 
 
 @pytest.mark.parametrize(
@@ -228,7 +235,7 @@ A, B, C = (
 def test_guess(how, guess, text):
     asked = point(value=1.0, where={"torque": 9.0}, guess=Guess(**how))
     other = point(id="y", value=99.0, guess=Guess(rule="constant", points=["b"]))
-    assert trivial_guesses([A, B, C, other, asked])["x"] == pytest.approx(guess, rel=1e-12)
+    assert compute_trivial_guesses([A, B, C, other, asked])["x"] == pytest.approx(guess, rel=1e-12)
     assert text in str(asked.guess)
 
 
@@ -251,7 +258,7 @@ def test_a_guess_from_what_was_not_calibrated_is_refused(name):
     """From itself, from a prediction without a guess, from nothing."""
     asked = point(guess=Guess(rule="constant", points=[name]))
     with pytest.raises(ValueError, match=f"x: guess from '{name}', allowed are calibration points"):
-        trivial_guesses([point(id="z"), asked])
+        compute_trivial_guesses([point(id="z"), asked])
 
 
 def test_guesses_are_those_by_hand(rows):
@@ -267,7 +274,7 @@ def test_guesses_are_those_by_hand(rows):
 def test_modes_are_guessed_from_the_lower_preload():
     published = read_points("zhao2018_modes")
     measured = {p.id: p.value for p in published}
-    found = trivial_guesses(published)
+    found = compute_trivial_guesses(published)
     assert len(found) == 12
     assert all(value == measured[name.split(".")[0] + ".9kN"] for name, value in found.items())
 
@@ -284,27 +291,29 @@ def test_a_wrong_computed_value_is_a_miss(monkeypatch):
             if not isinstance(first.value, bool):
                 off = first.tolerance * (1.0 if first.absolute else abs(first.value))
                 wrong = first.value + sign * 2.0 * off
-            assert not compare(first, wrong).passed
-    monkeypatch.setitem(published_numbers(KINDS["bolted_joint"]).observables, "psi", lambda values, D: 2.0)
+            assert not compare_point(first, wrong).has_passed
+    monkeypatch.setitem(
+        load_published_numbers(KINDS["bolted_joint"]).observables, "psi", lambda values, D: 2.0
+    )
     found = validate()
     wrong = [p.id for p in ALL if p.quantity == "psi"]
     assert "psi.1.5" in wrong
     assert [row.point.id for row in missed_points(found)] == wrong
-    assert summary(found).endswith("missed: " + ", ".join(wrong))
-    lines = table(found).splitlines()
+    assert format_summary(found).endswith("missed: " + ", ".join(wrong))
+    lines = format_table(found).splitlines()
     assert len(lines) == len(ALL) + 1
     assert [line.split()[1] for line in lines if line.endswith("MISS")] == wrong
 
 
 def test_counts(rows):
-    found = counts(rows)
+    found = count_points(rows)
     assert sum(found.roles.values()) == len(ALL)
     assert found.roles == {role: sum(p.role == role for p in ALL) for role in ROLES} == found.met
     assert found.numbers == found.printed + found.derived == len(ALL) - found.roles["claim"]
     assert found.printed == len(PRINTED)
     assert found.guessed == {role: n if role in GUESS_ROLES else 0 for role, n in found.roles.items()}
     assert found.nearer == {
-        role: sum(r.nearer == "law" and r.point.role == role for r in rows) for role in ROLES
+        role: sum(r.nearer_estimate == "law" and r.point.role == role for r in rows) for role in ROLES
     }
     assert len(found.contradictions) == 3
     assert found.missed == []
@@ -332,9 +341,9 @@ def test_the_guide_explains_every_role():
 
 
 def test_summary(rows):
-    found = counts(rows)
+    found = count_points(rows)
     roles = ", ".join(f"{n} {role}" for role, n in found.roles.items() if role != "claim")
-    assert summary(rows) == (
+    assert format_summary(rows) == (
         f"{found.numbers} numbers, {found.printed} printed in the papers and {found.derived} computed from "
         f"printed ones: {roles}; {found.roles['claim']} claims; "
         f"nearer than the trivial guess: {found.nearer['interpolation']} of 5 (interpolation), "
@@ -342,15 +351,18 @@ def test_summary(rows):
         "(prediction); "
         f"text against its own equations: {', '.join(found.contradictions)}; missed: none"
     )
-    off = [replace(row, passed=False) if row.point.id == "p_max.9kN" else row for row in rows]
-    assert f"{found.roles['calibration']} calibration ({found.roles['calibration'] - 1} met)" in summary(off)
+    off = [replace(row, has_passed=False) if row.point.id == "p_max.9kN" else row for row in rows]
+    assert (
+        f"{found.roles['calibration']} calibration ({found.roles['calibration'] - 1} met)"
+        in format_summary(off)
+    )
 
 
 def test_another_parameter_set_is_compared():
     """Those given count, the others are the defaults."""
     soft = load_default("harmonic_drive").with_values({"K_FTS0": 1e4}, "user", "test")
     found = validate({"harmonic_drive": soft})
-    names = {row.point.id for row in found if not row.passed}
+    names = {row.point.id for row in found if not row.has_passed}
     assert "K_WTS.measured.5" in names
     assert all(name.startswith("K_WTS") for name in names)
 
@@ -400,7 +412,9 @@ def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
 def refitted(monkeypatch, fits):
     """Let the calibration use other fits."""
     monkeypatch.setattr(
-        calibration, "published_numbers", lambda kind: replace(published_numbers(kind), calibration=fits)
+        calibration,
+        "load_published_numbers",
+        lambda kind: replace(load_published_numbers(kind), calibration=fits),
     )
 
 
@@ -474,7 +488,7 @@ def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
     for row in rows:
         if row.point.paper == paper:
             computed = OBSERVABLES[row.point.quantity](changed.values, **row.point.where)
-            if computed != pytest.approx(row.computed, rel=1e-6):  # far above round-off, far below 1e-3
+            if computed != pytest.approx(row.computed_value, rel=1e-6):  # far above round-off, far below 1e-3
                 moved.add(row.point.role)
     assert "calibration" in moved
     assert (
@@ -492,6 +506,6 @@ def test_validation_reads_nothing_but_the_parameter_set(rows, monkeypatch):
     }
     monkeypatch.setattr(comparison, "read_points", shifted.__getitem__)
     for row, again in zip(rows, validate(), strict=True):
-        assert again.computed == row.computed
+        assert again.computed_value == row.computed_value
         if not isinstance(row.point.value, bool):
-            assert not again.passed
+            assert not again.has_passed

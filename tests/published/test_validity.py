@@ -14,7 +14,7 @@ from band_of_waves import periodic, rms_height, rms_slope
 from clients import needs
 from measured_joints import measured
 
-from jointfmu.contact.interface import at_pressure, stiffness_curve
+from jointfmu.contact.interface import evaluate_at_pressure, stiffness_curve
 
 pytestmark = [pytest.mark.slow, needs("tamaas")]
 
@@ -135,7 +135,7 @@ def test_only_the_hertz_stiffness_keeps_the_tangential_ratio():
     stick = (1.0 - law.traction_ratio) ** (1.0 / 3.0)
     ratio = {}
     for spot in ("family", "hertz"):
-        state = at_pressure(replace(law, spot_stiffness=spot), 1e6)
+        state = evaluate_at_pressure(replace(law, spot_stiffness=spot), 1e6)
         ratio[spot] = state["K_T"] / state["K_N"]
     assert ratio["hertz"] == pytest.approx(mindlin * stick, rel=1e-6)
     assert ratio["family"] < 0.6 * mindlin

@@ -9,7 +9,7 @@ from laws import HU, LAWS, YU, ZHAO
 
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.contact.laws.zhao2018 import Zhao2018
-from jointfmu.contact.surface import Elastic, ElasticPlastic, FlankSurface, ProfileSurface
+from jointfmu.contact.surface import ElasticConstants, ElasticPlasticConstants, FlankSurface, ProfileSurface
 from jointfmu.quantity import (
     build_parameter_set,
     check_fields,
@@ -195,7 +195,7 @@ def test_a_set_has_one_of_the_alternatives(values):
     assert flatten_parameters(hole) == values
     assert flatten_parameters(build_parameter_set(Part, nested(values))) == nested(values)
     assert list(dict(flat_fields(Hole))) == ["depth", "round.radius", "square.side", "square.corner"]
-    assert list(dict(flat_fields(Hole, names=values))) == list(values)
+    assert list(dict(flat_fields(Hole, parameter_names=values))) == list(values)
 
 
 @pytest.mark.parametrize("most", [ROUND, SQUARE])
@@ -235,11 +235,11 @@ def test_missing_alternatives_are_named():
 
 def test_construction_checks_as_well():
     with pytest.raises(ValueError, match=r"^E = -1 Pa is outside \(0, inf\): Young's modulus$"):
-        Elastic(E=-1.0, nu=0.3)
+        ElasticConstants(E=-1.0, nu=0.3)
     with pytest.raises(ValueError, match=r"^nu = 0.6 is outside \(-1, 0.5\]: Poisson ratio$"):
-        Elastic(E=1e11, nu=0.6)
+        ElasticConstants(E=1e11, nu=0.6)
     with pytest.raises(ValueError, match=r"^E = 0 Pa .*; nu = -1 is .*; sigma_y = -2 Pa .*yield strength$"):
-        ElasticPlastic(E=0.0, nu=-1.0, sigma_y=-2.0)
+        ElasticPlasticConstants(E=0.0, nu=-1.0, sigma_y=-2.0)
     with pytest.raises(ValueError, match=r"^D = 2 is outside \(1, 2\)"):
         ProfileSurface(D=2.0, G=1e-9, gamma=1.5)
     with pytest.raises(ValueError, match=r"^D = 1 is outside \(1, 2\).*; G = 0 m is outside \(0, inf\)"):

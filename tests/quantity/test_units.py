@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_tools.export import tables
-from jointfmu_tools.export.mesh import COLUMNS as PAIRS
-from jointfmu_tools.export.placing import UNITS as SETS
+from jointfmu_tools.export.mesh import COLUMN_UNITS as PAIRS
+from jointfmu_tools.export.placing import UNIT_SETS as SETS
 from jointfmu_tools.fem.geometry import BoxSection, Layer, Plate
 from jointfmu_tools.fields.nodal_result import COLUMN_UNITS as FIELD
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.surfaces.csvfile import LENGTH_UNITS
-from jointfmu_tools.systems.system import systems
+from jointfmu_tools.systems.system import load_systems
 from scipy import constants
 
 from jointfmu.joints import KINDS, MODELS
@@ -118,13 +118,15 @@ def test_size(unit):
 @pytest.mark.parametrize("unit", UNITS)
 def test_exponents(unit):
     expected = dict(zip(("kg", "m", "s", "rad", "K"), EXPONENTS[unit], strict=True))
-    assert UNITS[unit].base == base_exponents(unit) == {name: n for name, n in expected.items() if n}
+    assert (
+        UNITS[unit].base_exponents == base_exponents(unit) == {name: n for name, n in expected.items() if n}
+    )
     assert unit_size(unit) == 1.0
 
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_display_units_measure_the_same(unit):
-    for shown, times in UNITS[unit].display.items():
+    for shown, times in UNITS[unit].display_factors.items():
         assert base_exponents(shown) == base_exponents(unit)
         assert times * unit_size(shown) == pytest.approx(
             1.0, rel=2e-16
@@ -213,12 +215,12 @@ def declared():
         for field, item in model.parameter_fields().items():
             if "unit" in item.metadata:
                 yield f"{name}.{field}", item.metadata["unit"]
-    for name, example in systems().items():
+    for name, example in load_systems().items():
         for part in example.components.values():
             yield from ((f"{name}.{part.name}.{key}", unit) for key, unit in part.units.items() if unit)
     for spec in (preload.COLUMN_UNITS, torque_angle.COLUMN_UNITS, PAIRS, FIELD, {"height": LENGTH_UNITS}):
         yield from ((name, next(iter(units))) for name, units in spec.items())
-    yield from (*tables.LABEL_HEADS, *tables.SPRING_HEADS)
+    yield from (*tables.LABEL_COLUMN_HEADS, *tables.SPRING_COLUMN_HEADS)
 
 
 def test_no_unit_is_declared_that_the_table_lacks():

@@ -17,10 +17,10 @@ from browser import Browser, browser
 from clients import needs
 from conftest import made_once
 from joint_cases import CASES, law
-from jointfmu_fmu_src.native.data import split
+from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import Module, list_modules
+from jointfmu_tools.laboratory.describe import PageModule, list_modules
 from natives import close
 from webassembly import Instance, random_values
 
@@ -216,7 +216,7 @@ def test_a_shipped_file_is_shown_whatever_was_shown_before(shown: Browser, stem:
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.files[0].law}")
 def test_a_file_with_other_numbers_is_shown(
-    shown: Browser, module: Module, seed: int, tmp_path: Path
+    shown: Browser, module: PageModule, seed: int, tmp_path: Path
 ) -> None:
     """Whatever the page can take; start values of inputs too."""
     rng = np.random.default_rng(seed)
@@ -282,10 +282,8 @@ def test_a_bolted_joint_of_a_drawing_is_refused(
         assert said.endswith("jointfmu report mine.toml")
 
 
-BOX, DRIVE = (
-    format_parameter_file(load_default("bolted_joint")),
-    format_parameter_file(load_default("harmonic_drive")),
-)
+BOX = format_parameter_file(load_default("bolted_joint"))
+DRIVE = format_parameter_file(load_default("harmonic_drive"))
 
 
 def field_text() -> str:
@@ -369,7 +367,7 @@ def test_a_faulty_file_is_refused(shown: Browser, what: str, tmp_path: Path) -> 
 @needed
 @pytest.mark.parametrize("path", FOREIGN, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_a_file_of_another_kind_is_refused(shown: Browser, path: Path) -> None:
-    refusal(shown, path.read_text(encoding="utf-8"))
+    assert refusal(shown, path.read_text(encoding="utf-8")), "the page says nothing"
 
 
 def reopen(shown: Browser, address: str) -> None:
@@ -419,25 +417,23 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
       lab.take(lab.set);
       return [text, lab.toml()];
     })""")
-    again, moved = (
-        load_parameter_file(write(tmp_path / "back.toml", back)),
-        load_parameter_file(write(tmp_path / "moved.toml", text)),
-    )
+    again = load_parameter_file(write(tmp_path / "back.toml", back))
+    moved = load_parameter_file(write(tmp_path / "moved.toml", text))
     assert replace(again, inputs=first.inputs) == first
     assert moved.values_by_name == first.values_by_name | {"h": 2.0 * first.values_by_name["h"]}
     assert moved.roughness == {}  # the height stands in their place
 
 
 @pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.files[0].law}")
-def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: Module) -> None:
+def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: PageModule) -> None:
     """So the page may write it there."""
     file = module.files[0]
-    given = split(module.model, file)
-    for name in given.fixed.keys() & file.values_by_name.keys():
+    given = split_parameters(module.model, file)
+    for name in given.data_values.keys() & file.values_by_name.keys():
         value = 0.9 * file.values_by_name[name] or 1e-6
-        other = split(module.model, file.with_values({name: value}, "user", "x"))
-        assert other.fixed == given.fixed | {name: value}
-        assert other.code == given.code
+        other = split_parameters(module.model, file.with_values({name: value}, "user", "x"))
+        assert other.data_values == given.data_values | {name: value}
+        assert other.code_values == given.code_values
         assert {k: t.rows.tolist() for k, t in other.tables.items()} == {
             k: t.rows.tolist() for k, t in given.tables.items()
         }

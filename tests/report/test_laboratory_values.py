@@ -16,7 +16,7 @@ from clients import needs
 from conftest import Fmu
 from joint_cases import random_inputs
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import Module, list_modules
+from jointfmu_tools.laboratory.describe import PageModule, list_modules
 from webassembly import Instance, native_fmu, random_values, refused_values
 
 pytestmark = pytest.mark.slow
@@ -44,20 +44,20 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module", params=EVERY)
-def module(request: pytest.FixtureRequest) -> Module:
+def module(request: pytest.FixtureRequest) -> PageModule:
     """Every module of the page."""
     return EVERY[request.param]
 
 
 @pytest.fixture(scope="module")
-def fmu(module: Module, folder: Path) -> Iterator[Fmu]:
+def fmu(module: PageModule, folder: Path) -> Iterator[Fmu]:
     made = Fmu(native_fmu(module, folder / module.files[0].law))
     yield made
     made.free_instance()
 
 
 @pytest.fixture(scope="module")
-def cases(module: Module, fmu: Fmu) -> list[Case]:
+def cases(module: PageModule, fmu: Fmu) -> list[Case]:
     """What the native FMU gives: numbers at random, then Booleans as well."""
     rng = np.random.default_rng(15)
     values = [random_values(module, rng, switched=i % 3 == 2) for i in range(SETS)]
@@ -71,7 +71,7 @@ def cases(module: Module, fmu: Fmu) -> list[Case]:
     return found
 
 
-def module_inputs(module: Module, given: dict[str, float]) -> dict[str, float]:
+def module_inputs(module: PageModule, given: dict[str, float]) -> dict[str, float]:
     return dict.fromkeys((v.name for v in module.model.inputs), 0.0) | given
 
 
@@ -97,12 +97,12 @@ def compare(case: Case, found: list[dict[str, float]]) -> None:
 
 
 @pytest.fixture(scope="module")
-def instance(module: Module) -> Instance:
+def instance(module: PageModule) -> Instance:
     return Instance(module, module.compile_module())
 
 
 def test_wasmtime_gives_the_numbers_and_refusals(
-    module: Module, cases: list[Case], instance: Instance
+    module: PageModule, cases: list[Case], instance: Instance
 ) -> None:
     for case in cases:
         _ = instance.said
@@ -119,7 +119,7 @@ def test_wasmtime_gives_the_numbers_and_refusals(
         compare(case, found)
 
 
-def test_wasmtime_gives_the_derivatives(module: Module, fmu: Fmu, instance: Instance) -> None:
+def test_wasmtime_gives_the_derivatives(module: PageModule, fmu: Fmu, instance: Instance) -> None:
     (given,) = random_inputs(module.model.name, 1, seed=5)
     inputs = module_inputs(module, given)
     fmu.reset()
@@ -159,7 +159,7 @@ _RUN = """(async () => {{
 
 
 @needed
-def test_chromium_gives_the_numbers_and_refusals(module: Module, cases: list[Case], shown: Any) -> None:
+def test_chromium_gives_the_numbers_and_refusals(module: PageModule, cases: list[Case], shown: Any) -> None:
     """A refusal is that of the package, in the units of the sliders."""
     asked = json.dumps([{"values": c.values, "path": c.path, "refusal": c.refusal} for c in cases])
     name, law = json.dumps(module.model.name), json.dumps(module.files[0].law)

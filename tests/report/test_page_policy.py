@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from browser import browser
 from clients import needs
-from jointfmu_fmu_src.native.page import documentation
+from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.partners.models import parameters
-from jointfmu_fmu_src.templates import template
+from jointfmu_fmu_src.partners.models import load_partner_parameters
+from jointfmu_fmu_src.templates import load_template
 from jointfmu_tools.laboratory.assemble import write_laboratory
 from jointfmu_tools.report import figure
 from jointfmu_tools.report.joint import write_joint_report
@@ -58,7 +58,9 @@ def pages(folder: Path) -> dict[str, Path]:
         model, file = kind.models[0], load_default(name)
         found[name] = folder / "documentation" / f"{name}.html"
         found[name].parent.mkdir(exist_ok=True)
-        found[name].write_bytes(documentation(model.with_parameters(name, file.values), file)["index.html"])
+        found[name].write_bytes(
+            make_documentation(model.with_parameters(name, file.values), file)["index.html"]
+        )
     found["report"] = folder / "report.html"
     write_joint_report(found["report"], load_default(next(iter(KINDS))))
     return found
@@ -68,7 +70,7 @@ def test_documentation_and_reports_forbid_the_network(tmp_path: Path) -> None:
     for path in pages(tmp_path).values():
         check(path.read_text(encoding="utf-8"))
     for name, model in PARTNERS.items():
-        check(documentation(model, parameters(name))["index.html"].decode())
+        check(make_documentation(model, load_partner_parameters(name))["index.html"].decode())
 
 
 def test_the_template_of_all_reports_forbids_the_network() -> None:
@@ -76,7 +78,7 @@ def test_the_template_of_all_reports_forbids_the_network() -> None:
     folder = Path(figure.__file__).parent
     assert '{% extends "base.html" %}' in (folder / "page.html").read_text(encoding="utf-8")
     script = figure.page_script("tabs.js")
-    check(template(folder / "base.html").render(style="", script=script))
+    check(load_template(folder / "base.html").render(style="", script=script))
 
 
 @pytest.mark.slow

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.native.page import documentation, panels
-from jointfmu_fmu_src.proof.experiments import experiments
+from jointfmu_fmu_src.native.page import find_ramp_panels, make_documentation
+from jointfmu_fmu_src.proof.experiments import compute_experiments
 from jointfmu_tools import cli
 from jointfmu_tools.pressure import judge_file
 from jointfmu_tools.report.course import LoadHistory
-from jointfmu_tools.report.joint import TOPICS, write_joint_report
+from jointfmu_tools.report.joint import VALIDITY_HEADINGS, write_joint_report
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
@@ -60,12 +60,12 @@ def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
     rest = {v.name: file.start_value(v.name) for v in model.inputs}
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
     ramp = model.with_load_range(spring, rest).ramp.sample_inputs(101)
-    for panel, (over, names) in zip(drawn, panels(model), strict=True):
+    for panel, (over, names) in zip(drawn, find_ramp_panels(model), strict=True):
         shown = panel["y"].rpartition("[")[2].rstrip("]").replace("µ", "u").replace(" ", ".")
         factor = units.conversion_factor(variables[names[0]].unit, shown)
         for series in panel["series"]:
             for i in (0, 50, 100):
-                inputs = {**rest, model.ramp.input: float(ramp[i])}
+                inputs = {**rest, model.ramp.input_name: float(ramp[i])}
                 value = float(model.evaluate(spring, inputs)[series["name"]])
                 # the page has seven digits
                 assert series["y"][i] == pytest.approx(factor * value, rel=1e-6), (over, i)
@@ -88,13 +88,13 @@ def test_what_the_user_changed_is_there_with_his_words(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.html", "mine.toml"]
 
 
-@pytest.mark.parametrize("name", [name for name, model in MODELS.items() if model.loop])
+@pytest.mark.parametrize("name", [name for name, model in MODELS.items() if model.load_cycle])
 def test_loops_lose_what_the_joint_says_it_lost(name: str) -> None:
     model = MODELS[name]
-    own = {n: v for n, v in model.loop.settings.items() if n in model.parameter_fields()}
+    own = {n: v for n, v in model.load_cycle.settings.items() if n in model.parameter_fields()}
     file = load_default(model.joint).with_values(own, "user", "with memory")
     loops = LoadHistory(model, file).compute_loops()
-    for row in loops.rows():
+    for row in loops.compute_rows():
         # trapezoids over 80 points of a cycle, a branch of which is about a parabola: 1/40^2 of it
         assert row["loss"] == pytest.approx(row["E_loss"], rel=2e-2)
         assert row["loss"] > 0.0
@@ -123,10 +123,10 @@ def test_the_ramp_reaches_where_the_joint_is_loaded(
         assert columns["tau"][-1] == pytest.approx(file.values_by_name["max_torque"], rel=1e-9)
     assert columns[stiffness][-1] >= least * (1.0 - 1e-9)
     stem = {"GearMesh": "phi1", "HarmonicDriveSpring": "phi2"}.get(name, "tau")
-    said = f"<code>{stem}</code> from 0 to {course.model.ramp.end:.6g} "
-    assert said in documentation(model, file)["index.html"].decode()
-    ramp = next(one for one in experiments(model, file) if one.name == "load ramp")
-    assert ramp.drive.levels[-1] == pytest.approx(course.model.ramp.end, rel=1e-8)
+    said = f"<code>{stem}</code> from 0 to {course.model.ramp.end_value:.6g} "
+    assert said in make_documentation(model, file)["index.html"].decode()
+    ramp = next(one for one in compute_experiments(model, file) if one.name == "load ramp")
+    assert ramp.stimulus.levels[-1] == pytest.approx(course.model.ramp.end_value, rel=1e-8)
     assert ramp.results.columns[stiffness][-1] == pytest.approx(columns[stiffness][-1], rel=1e-6)
     assert np.all(ramp.results.columns[stiffness][1:] > 0.0)
 
@@ -134,13 +134,13 @@ def test_the_ramp_reaches_where_the_joint_is_loaded(
 def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:
     for name, model in MODELS.items():
         course = LoadHistory(model, load_default(model.joint))
-        assert course.model.ramp.end > course.start_values[model.ramp.input], name
-        if course.limit:
-            value, text = course.limit
-            inputs = {**course.start_values, model.ramp.input: value}
+        assert course.model.ramp.end_value > course.start_values[model.ramp.input_name], name
+        if course.law_limit:
+            value, text = course.law_limit
+            inputs = {**course.start_values, model.ramp.input_name: value}
             outputs = model.evaluate(course.spring, inputs)
             assert text in model.find_warnings(course.spring, {**inputs, **outputs}).values()
-            below = {**course.start_values, model.ramp.input: 0.99 * value}
+            below = {**course.start_values, model.ramp.input_name: 0.99 * value}
             assert text.split("=")[0] not in "".join(
                 model.find_warnings(course.spring, {**below, **model.evaluate(course.spring, below)}).values()
             )
@@ -174,7 +174,7 @@ def test_what_makes_no_page_is_one_line(
 
 
 def test_topics_are_headings_of_the_pages_on_validity() -> None:
-    for page, headings in TOPICS.items():
+    for page, headings in VALIDITY_HEADINGS.items():
         text = (ROOT / page).read_text(encoding="utf-8")
         for heading in headings:
             assert f"\n## {heading}\n" in text

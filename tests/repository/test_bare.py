@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import format_parameter_file, load_default

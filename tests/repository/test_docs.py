@@ -21,7 +21,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 from clients import CHROMIUM_OPTIONS, chromium, needs
 from conftest import here_alone
-from jointfmu_fmu_src.joint_parts import Parts
+from jointfmu_fmu_src.joint_parts import FmuParts
 from jointfmu_tools import cli
 from jointfmu_tools.joint_parts import TOOL_NAMES
 from jointfmu_tools.parser import build_parser
@@ -190,7 +190,7 @@ def test_every_part_of_a_joint_is_explained() -> None:
     assert asked == {*TOOL_NAMES}
     for tool in TOOL_NAMES:
         assert re.search(rf"^\| `{tool}` \| `[A-Z_a-z]+`", ARCHITECTURE, re.M), tool
-    for field in fields(Parts):
+    for field in fields(FmuParts):
         assert re.search(rf"^\| `{field.name}` \| ", ARCHITECTURE, re.M), field.name
 
 

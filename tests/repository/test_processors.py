@@ -19,7 +19,7 @@ import pytest
 from clients import needs
 from conftest import REFINEMENT
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.new import computed
+from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 from numbers_of_all import components, texts
 
 pytestmark = pytest.mark.slow
@@ -70,7 +70,11 @@ def paths(tmp_path_factory) -> list[Path]:
     with pytest.MonkeyPatch.context() as patch:
         for name in PLATES:
             assert cli.main(drawing(name, folder)) == 0
-            patch.setattr(computed, "compute_facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
+            patch.setattr(
+                plate_finite_elements,
+                "compute_facts",
+                lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
+            )
     return sorted(folder.iterdir())
 
 

@@ -13,7 +13,7 @@ import pytest
 from clients import needs
 from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.nodal_result import ContactField
@@ -83,9 +83,9 @@ def folder(tmp_path_factory, native):
     (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
     joint = load_default("bolted_joint").values
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bolts, "CELLS_ACROSS", 3)  # few nodes are read as many are
-        shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0
-    field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.equal)
+        patch.setattr(bolts, "CELLS_ACROSS_FLANGE", 3)  # few nodes are read as many are
+        shape, mean = joint.pattern.pressure_distribution(), 9e3 * joint.n_bolts / joint.A_0
+    field = ContactField(joint.A_0 * shape.area_share, shape.position, mean * shape.preload_shape)
     (place / "my_field.csv").write_text(nodal_result.csv_text(field))
     (place / "models/robots").mkdir()
     shutil.copy(ROOT / "models/robots/six_axis.xml", place / "models/robots")
@@ -176,7 +176,7 @@ def predicted(count):
 
 
 def test_counts_are_those_of_the_comparison(rows):
-    found = validation.counts(rows)
+    found = validation.count_points(rows)
     n, lost = found.roles, sum(found.guessed.values()) - sum(found.nearer.values())
     for said in (
         f"{found.numbers} numbers are compared, {found.printed} printed in the papers and {found.derived} "
@@ -213,7 +213,7 @@ def test_the_start_says_how_far_it_holds(rows):
     here = re.search(r"\n(\*\*How far it holds\..*)\n", start)
     assert here is not None
     assert here.start() < start.index("![")
-    found = validation.counts(rows)
+    found = validation.count_points(rows)
     said = f"Of the {found.numbers} numbers compared with the papers {predicted(found.roles['prediction'])}: "
     assert said in here[1]
     assert f"of the {found.numbers} numbers compared {predicted(found.roles['prediction'])};" in trust

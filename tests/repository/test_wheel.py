@@ -13,7 +13,7 @@ import pytest
 from clients import needs
 from conftest import Fmu, made_once
 from joint_cases import CASES, STATE, law, random_inputs
-from jointfmu_fmu_src.native.compiled import ahead
+from jointfmu_fmu_src.native.compiled import compile_ahead
 from natives import VERSIONS, close
 from packaging.requirements import Requirement
 from test_native_binaries import BINARIES, members
@@ -64,10 +64,10 @@ def built_wheel(out: Path) -> Path:
         copytree(ROOT / folder, tree / folder, ignore=ignored)
     for file in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
         (tree / file).write_bytes((ROOT / file).read_bytes())
-    every = ahead.structures
+    every = compile_ahead.list_structures
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ahead, "structures", lambda model: islice(every(model), 1))
-        ahead.compile_ahead([NAME], tree / "fmu_src" / "native" / "parts")
+        patch.setattr(compile_ahead, "list_structures", lambda model: islice(every(model), 1))
+        compile_ahead.compile_ahead([NAME], tree / "fmu_src" / "native" / "parts")
     options = ("--no-deps", "--no-index", "--no-build-isolation", "--quiet", "--wheel-dir", str(out))
     subprocess.run([sys.executable, "-m", "pip", "wheel", *options, str(tree)], check=True)
     (wheel,) = out.glob("*.whl")

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from jointfmu.contact.laws.hu2023 import Hu2023
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.contact.laws.zhao2018 import Zhao2018
-from jointfmu.contact.surface import ArealSurface, Elastic, FlankSurface, ProfileSurface, Spectrum
+from jointfmu.contact.surface import ArealSurface, ElasticConstants, FlankSurface, ProfileSurface, Spectrum
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 T = TypeVar("T")
@@ -22,8 +22,8 @@ QUAD = 1e-9
 # Table 1 and section 2 of Zhao 2018; friction, area and mass are not published.
 ZHAO = Zhao2018(
     surface=ProfileSurface(D=1.42, G=1.21e-8, gamma=1.5),
-    side1=Elastic(E=1.5e11, nu=0.28),
-    side2=Elastic(E=1.5e11, nu=0.28),
+    side1=ElasticConstants(E=1.5e11, nu=0.28),
+    side2=ElasticConstants(E=1.5e11, nu=0.28),
     H=1.96e9,
     mu=0.3,
     traction_ratio=0.5,
@@ -35,8 +35,8 @@ ZHAO = Zhao2018(
 # Section 2.3 of Hu 2023; gamma, base radius, smallest spot and yield strength are not published.
 HU = Hu2023(
     surface=ArealSurface(D=2.5304, G=2.4248e-7, gamma=1.5, r_m=2e-5, s_min=1e-17),
-    side1=Elastic(E=2.09e11, nu=0.295),
-    side2=Elastic(E=2.19e11, nu=0.3),
+    side1=ElasticConstants(E=2.09e11, nu=0.295),
+    side2=ElasticConstants(E=2.19e11, nu=0.3),
     sigma_y=835e6,
     mu=0.15,
     traction_ratio=0.4,
@@ -51,8 +51,8 @@ YU = Yu2022(
     surface=Spectrum(gamma=1.5),
     e=0.2,
     lambda_=0.6,
-    side1=Elastic(E=2.06e11, nu=0.26),
-    side2=Elastic(E=2.06e11, nu=0.26),
+    side1=ElasticConstants(E=2.06e11, nu=0.26),
+    side2=ElasticConstants(E=2.06e11, nu=0.26),
     sigma_y=235e6,
     mu=0.1,
     traction_ratio=0.3,

@@ -58,7 +58,7 @@ def numbers(instance: Fmu) -> dict[str, float]:
 
 def settle(instance: Fmu) -> None:
     """Let the simulation go on: a step, or on to continuous time and back to the next event."""
-    if instance.exchange:
+    if instance.is_model_exchange:
         instance.fmu.enterContinuousTimeMode()
         instance.time += 1.0
         instance.fmu.setTime(instance.time)

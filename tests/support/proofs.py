@@ -8,7 +8,12 @@ from typing import Any
 
 import pytest
 from clients import needs
-from jointfmu_fmu_src.proof.standard import ATTRIBUTES, FOLDER, MANIFEST, NAME
+from jointfmu_fmu_src.proof.standard import (
+    ATTRIBUTE_NAMESPACE,
+    MANIFEST_PATH,
+    REFERENCE_FOLDER,
+    STANDARD_NAME,
+)
 from jointfmu_tools import cli
 
 Change = Callable[[str, bytes], bytes | None]
@@ -30,7 +35,7 @@ def copy(source: Path, target: Path, change: Change, **more: bytes) -> Path:
             if data is not None:
                 new.writestr(name, data)
         for name, data in more.items():
-            new.writestr(f"{FOLDER}/{name}", data)
+            new.writestr(f"{REFERENCE_FOLDER}/{name}", data)
     return target
 
 
@@ -48,14 +53,19 @@ def replaced(part: str, old: bytes, new: bytes) -> Change:
 
 def other_manifest(source: Path, target: Path, experiments: str, **files: bytes) -> Path:
     """A copy of an FMU with a manifest of one file of experiments, in place of what it carries."""
-    head = f'xmlns:fmi-ls="{ATTRIBUTES}" fmi-ls:fmi-ls-name="{NAME}" fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
+    head = f'xmlns:fmi-ls="{ATTRIBUTE_NAMESPACE}" fmi-ls:fmi-ls-name="{STANDARD_NAME}" '
+    head += 'fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
     related = '<Related type="application/x-ma-ls-experiments" source="own.exp" role="experiment"/>'
     texts = {
-        Path(MANIFEST).name: f"<fmiReferences {head}>{related}</fmiReferences>".encode(),
+        Path(MANIFEST_PATH).name: f"<fmiReferences {head}>{related}</fmiReferences>".encode(),
         "own.exp": f'<Experiments name="own">{experiments}</Experiments>'.encode(),
     }
     return copy(
-        source, target, lambda name, data: None if name.startswith(FOLDER) else data, **texts, **files
+        source,
+        target,
+        lambda name, data: None if name.startswith(REFERENCE_FOLDER) else data,
+        **texts,
+        **files,
     )
 
 

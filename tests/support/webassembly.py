@@ -11,36 +11,38 @@ import fmpy
 import numpy as np
 from conftest import here_alone
 from jointfmu_fmu_src.native.compiled.binary import fill_library
-from jointfmu_fmu_src.native.compiled.compiler import file_name
-from jointfmu_fmu_src.native.compiled.kept import compiled_model
-from jointfmu_fmu_src.native.data import data_of, placeholder, split
-from jointfmu_fmu_src.native.description import fmi3_xml
-from jointfmu_tools.laboratory.describe import Module
+from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
+from jointfmu_fmu_src.native.compiled.compiler import library_file_name
+from jointfmu_fmu_src.native.data import make_fmu_data, make_placeholder, split_parameters
+from jointfmu_fmu_src.native.description import format_fmi3_description
+from jointfmu_tools.laboratory.describe import PageModule
 
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import build_parameter_set as make
 from jointfmu.quantity import flatten_parameters
 
 
-def native_fmu(module: Module, folder: Path) -> Path:
+def native_fmu(module: PageModule, folder: Path) -> Path:
     """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
     name, file, here = module.model.name, module.files[0], fmpy.platform_tuple
-    given = split(module.model, file)
+    given = split_parameters(module.model, file)
     with here_alone("3"):
-        part = compiled_model(module.model, file, given)
-    data = data_of(module.model, file, given, part.sources)
-    library = fill_library(part.libraries["3"][here], placeholder(module.model, given), data, name)
+        part = get_compiled_model(module.model, file, given)
+    data = make_fmu_data(module.model, file, given, part.sources)
+    library = fill_library(part.libraries["3"][here], make_placeholder(module.model, given), data, name)
     folder.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
-        archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, data.token, "tunable"))
-        archive.writestr(f"binaries/{here}/{file_name(name, here)}", library)
+        archive.writestr(
+            "modelDescription.xml", format_fmi3_description(module.model, file, data.token, "tunable")
+        )
+        archive.writestr(f"binaries/{here}/{library_file_name(name, here)}", library)
     return folder / f"{name}.fmu"
 
 
 class Instance:
     """An instance in wasmtime, with the methods of `conftest.Fmu`."""
 
-    def __init__(self, module: Module, binary: bytes, file: ParameterFile | None = None) -> None:
+    def __init__(self, module: PageModule, binary: bytes, file: ParameterFile | None = None) -> None:
         """file : whose numbers that no tool may set stand in the data, instead of the module's own"""
         import wasmtime
 
@@ -48,7 +50,7 @@ class Instance:
         compiled = wasmtime.Module(self.store.engine, binary)
         self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
         self("_initialize")
-        fixed = np.array([*split(module.model, file or module.files[0]).fixed.values()])
+        fixed = np.array([*split_parameters(module.model, file or module.files[0]).data_values.values()])
         self.exports["memory"].write(self.store, fixed.tobytes(), self("lab_hidden_parameters"))
         self.it = self("lab_create")
         model = module.model
@@ -91,7 +93,7 @@ class Instance:
         return bytes(memory.read(self.store, at, at + 768)).split(b"\0")[0].decode().splitlines()
 
 
-def random_values(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
+def random_values(module: PageModule, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
     """Parameters around those of the first file, inside their intervals and the limits that they set each
     other; Booleans too if `switched`."""
     values = module.files[0].values
@@ -102,7 +104,7 @@ def random_values(module: Module, rng: np.random.Generator, switched: bool) -> d
             return found
 
 
-def refused_values(module: Module, rng: np.random.Generator) -> dict[str, Any]:
+def refused_values(module: PageModule, rng: np.random.Generator) -> dict[str, Any]:
     """The same, but for one number on the wrong side of its interval."""
     fields = module.model.parameter_fields()
     bounded = [name for name, item in fields.items() if np.isfinite(_ends(item)[0])]
@@ -116,7 +118,7 @@ def _ends(item: Field[Any]) -> tuple[float, float]:
     return (interval.low, interval.high) if interval else (-np.inf, np.inf)
 
 
-def _drawn(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
+def _drawn(module: PageModule, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
     found: dict[str, Any] = {}
     flat = module.files[0].values_by_name
     for name, item in module.model.parameter_fields().items():

@@ -16,7 +16,7 @@ from jointfmu_tools.surfaces.form import fill_gaps, remove_form, remove_spikes
 from jointfmu_tools.surfaces.heights import ArealMap, Profile
 from jointfmu_tools.surfaces.reading import read_heights
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.joints import KINDS
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
@@ -115,8 +115,8 @@ def test_the_effect_of_spikes_on_sq_is_said(area):
     z = area.z.copy()
     z.ravel()[:: z.size // 100] += 1e-4
     (repair,) = remove_spikes(replace(area, z=z))[1]
-    said = float(repair.effect.split("Sq is ")[1].split()[0])
-    share = repair.count / repair.points
+    said = float(repair.effect_note.split("Sq is ")[1].split()[0])
+    share = repair.repaired_points / repair.total_points
     expected = np.hypot(np.std(remove_form(area).z), 1e-4 * np.sqrt(share * (1.0 - share)))
     assert said == pytest.approx(expected / np.std(remove_form(area).z), rel=0.02)  # three digits, 0.6 %
 
@@ -653,7 +653,7 @@ def test_the_scan_acts(folder, line, capsys, joint):
         assert file.values_by_name["h"] == found["roughness"]["h"]
         heights.append(file.values_by_name["h"])
         law = KINDS[joint].extract_law(file.values)
-        stiffness.append(float(at_pressure(law, np.array([1e5]))["K_N"][0]))
+        stiffness.append(float(evaluate_at_pressure(law, np.array([1e5]))["K_N"][0]))
     assert heights[0] == pytest.approx(2.0 * heights[1], rel=1e-6)  # of the file's seven digits
     # K ~ 1/h, a little less: the slope halves too, and less of the contact flows
     assert stiffness[1] / stiffness[0] == pytest.approx(2.0, rel=0.05)

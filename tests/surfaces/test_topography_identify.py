@@ -149,7 +149,7 @@ def test_range_ends_where_the_surface_rolls_off():
     rolled = Profile(z=np.fft.irfft(noise * f ** (-0.5 - H)), dx=dx, name="rolled")
     z = rolled.with_heights(rolled.z * 1e-7 / rolled.z.std())
     free = identify([z]).select_best(method="psd")
-    assert free.fit.high < 80e-6
+    assert free.fit.max_scale < 80e-6
     assert free.profile.D.value == pytest.approx(2.0 - H, abs=0.1)
     forced = identify([z], scale_range=(5e-6, 1e-3))
     assert any("not self-affine" in text for text in forced.warnings)
@@ -359,7 +359,7 @@ def test_both_sides_alike_are_a_pair_of_one_power():
     for single, pair in zip(one.results, both.results, strict=True):
         assert pytest.approx(single.fit.H, abs=1e-4) == pair.fit.H
         # twice the power: the level of ln Phi rises by ln 2
-        assert pair.fit.level - single.fit.level == pytest.approx(np.log(2.0), abs=1e-4)
+        assert pair.fit.log_power - single.fit.log_power == pytest.approx(np.log(2.0), abs=1e-4)
         # one surface known once: no surer than alone
         assert pair.fit.covariance[0, 0] == pytest.approx(single.fit.covariance[0, 0], rel=1e-3)
     with pytest.raises(ValueError, match="side = both beside two files"):

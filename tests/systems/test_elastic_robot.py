@@ -17,7 +17,7 @@ from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.interface import drive
 from jointfmu_tools.robots import elastic, pictures, poses
-from jointfmu_tools.robots.transmission import transmission
+from jointfmu_tools.robots.transmission import make_transmission
 
 from jointfmu.parameters import format_parameter_file
 
@@ -51,7 +51,7 @@ def six(tmp_path_factory):
     out, shown = tmp_path_factory.mktemp("six"), io.StringIO()
     words = ["robot", str(ROBOT), "--out", str(out), "--json", "--drive", *DRIVES, *POSE, "--payload", "3"]
     with redirect_stdout(shown), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pictures, "POINTS", 7)  # a coarser grid of poses, of which nothing here is asked
+        patch.setattr(pictures, "GRID_ANGLES", 7)  # a coarser grid of poses, of which nothing here is asked
         assert cli.main(words) == 0
     return json.loads(shown.getvalue()), mujoco.MjModel.from_xml_path(str(out / "six_axis_elastic.xml"))
 
@@ -59,7 +59,7 @@ def six(tmp_path_factory):
 @pytest.fixture
 def few_poses(monkeypatch):
     """A coarser grid, where any will do."""
-    monkeypatch.setattr(pictures, "POINTS", 7)
+    monkeypatch.setattr(pictures, "GRID_ANGLES", 7)
 
 
 def held(spec, payload):
@@ -151,11 +151,13 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
     is < 1 %.
     """
     spec = elastic.read_robot(ROBOT)
-    axes = elastic.axes(spec, {f"joint{i}": transmission(drive(n).file) for i, n in enumerate(SIZES, 1)})
+    axes = elastic.make_axes(
+        spec, {f"joint{i}": make_transmission(drive(n).file) for i, n in enumerate(SIZES, 1)}
+    )
     rigid = spec.compile()
     pose = elastic.joint_positions(rigid, {"joint2": "0.7", "joint3": "0.8"})
-    springs = [SimpleNamespace(joint=axis.joint, stiffness=axis.fitted.stiffness) for axis in axes]
-    expected = poses.frequencies(rigid, springs, pose, 3.0, rigid.body("flange").id)
+    springs = [SimpleNamespace(joint=axis.joint, stiffness=axis.spring.stiffness) for axis in axes]
+    expected = poses.compute_frequencies(rigid, springs, pose, 3.0, rigid.body("flange").id)
     said, _ = six
     model, data = held(mujoco.MjSpec.from_file(said["written"][0]), 3.0)
     links = [int(model.joint(f"joint{i}").dofadr[0]) for i in range(1, 7)]
@@ -170,7 +172,7 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
             forces.append((data.qfrc_passive - data.qfrc_bias)[links])
             data.qpos[place] -= step
         stiffness[:, column] = (forces[1] - forces[0]) / 2e-6
-    mass = elastic.mass_matrix(model, data.qpos)[np.ix_(links, links)]
+    mass = elastic.compute_mass_matrix(model, data.qpos)[np.ix_(links, links)]
     found = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)) / (2.0 * np.pi)
     assert expected == pytest.approx(found, rel=0.01)
 
@@ -302,8 +304,8 @@ def test_a_tool_frame_of_a_urdf_is_the_tip(tmp_path):
     tool = '<joint name="t" type="fixed"><parent link="l1"/><child link="tool"/></joint><link name="tool"/>'
     robot.write_text(SEVEN.format(LINK.format(1, 0, "0 1 0", 2) + tool))
     spec = elastic.read_robot(robot)
-    axes = elastic.axes(spec, {"j1": transmission(drive("CSG-14-100").file)})
-    assert spec.compile().body(elastic.body(spec.compile(), None, axes)).name == "tool"
+    axes = elastic.make_axes(spec, {"j1": make_transmission(drive("CSG-14-100").file)})
+    assert spec.compile().body(elastic.find_body(spec.compile(), None, axes)).name == "tool"
 
 
 OTHERS = {

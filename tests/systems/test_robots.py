@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.robots.fitted import fit
-from jointfmu_tools.robots.transmission import area, transmission
+from jointfmu_tools.robots.fitted import fit_spring
+from jointfmu_tools.robots.transmission import loop_area, make_transmission
 
 import jointfmu
 
@@ -122,11 +122,11 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
 @pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100"])
 def test_loops_inside_have_the_area_of_the_fmus(name):
     """Fitted at rated torque alone."""
-    own = transmission(jointfmu.drive(name, hysteresis=1.0).file)
-    springs = fit(own, own.rated_torque)
+    own = make_transmission(jointfmu.drive(name, hysteresis=1.0).file)
+    springs = fit_spring(own, own.rated_torque)
     for share in (0.1, 0.2, 0.3, 0.5, 0.7):
-        torques, x = own.loop(share * own.rated_torque)
-        assert area(x, springs.torque_at(x)) == pytest.approx(area(x, torques), rel=0.05), share
+        torques, x = own.compute_loop(share * own.rated_torque)
+        assert loop_area(x, springs.torque_at(x)) == pytest.approx(loop_area(x, torques), rel=0.05), share
 
 
 @pytest.mark.parametrize(("speed", "since"), [(0.01, 0.0), (5.0, 0.045), (60.0, 0.045)])

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from conftest import Fmu, here_alone, made_once, run_client, unpack
 from jointfmu_fmu_src.native.build import build
-from jointfmu_fmu_src.partners import parameters
+from jointfmu_fmu_src.partners import load_partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
-from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system
-from jointfmu_tools.systems.system import system
+from jointfmu_tools.systems.system import load_system
 from scipy.integrate import solve_ivp
 
 pytestmark = pytest.mark.slow  # builds FMUs
@@ -39,8 +39,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         with here_alone():
             for name in ("RotationalInertia", "TranslationalMass"):
                 for version in "23":
-                    build(name, parameters(name), out / f"fmi{version}", version)
-            build_system(assembly(system("robot_joint")), out, platforms=(fmpy.platform_tuple,))
+                    build(name, load_partner_parameters(name), out / f"fmi{version}", version)
+            build_system(assemble_system(load_system("robot_joint")), out, platforms=(fmpy.platform_tuple,))
 
     return made_once(tmp_path_factory, "set_states", make)
 

@@ -18,14 +18,14 @@ from jointfmu_tools.modelica.systems import render_system_model
 from jointfmu_tools.report.systems import joint_load_outputs, system_panels
 from jointfmu_tools.systems import cosimulation, ssp
 from jointfmu_tools.systems.arm import Arm, Link
-from jointfmu_tools.systems.ssp import fmu_names
-from jointfmu_tools.systems.steps import longest_step
-from jointfmu_tools.systems.system import names, read_system, system
-from jointfmu_tools.systems.wiring import ends, lags, wires
+from jointfmu_tools.systems.ssp import find_fmu_names
+from jointfmu_tools.systems.steps import find_largest_stable_step
+from jointfmu_tools.systems.system import list_system_names, load_system, read_system
+from jointfmu_tools.systems.wiring import find_connections, find_lag_parameters, find_signals
 from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.mechanics.steps import largest_stable_steps
+from jointfmu.mechanics.stable_steps import largest_stable_steps
 from jointfmu.parameters import format_parameter_file, load_default
 from jointfmu.quantity import replace_values as replaced
 
@@ -212,14 +212,14 @@ def test_an_arm_that_is_wrong_is_refused_in_one_line(
     assert said in refused_line(capsys, "system", path, "--out", tmp_path / "out")
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_every_input_is_fed_once_and_lags_stand_where_joints_push(name: str) -> None:
-    found = system(name)
-    fed = [(w.target, w.input) for w in wires(found)]
+    found = load_system(name)
+    fed = [(w.target, w.input) for w in find_signals(found)]
     assert len(fed) == len(set(fed))
-    pushed = {w.target for w in wires(found) if w.source in found.joints}
-    assert set(lags(found)) == pushed
-    assert len(ends(found)) == len(found.connections)
+    pushed = {w.target for w in find_signals(found) if w.source in found.joints}
+    assert set(find_lag_parameters(found)) == pushed
+    assert len(find_connections(found)) == len(found.connections)
 
 
 def test_a_parameter_file_of_its_own_makes_an_fmu_of_its_own(tmp_path: Path) -> None:
@@ -230,29 +230,32 @@ def test_a_parameter_file_of_its_own_makes_an_fmu_of_its_own(tmp_path: Path) -> 
         ('model = "HarmonicDriveSpring"', 'model = "HarmonicDriveSpring"\nparameters = "my_drive.toml"'),
     )
     drive = read_system(mine).joints["drive"]
-    assert drive.file is not None
-    assert (drive.file.values_by_name["ratio"], drive.file.values_by_name["hysteresis_loss"]) == (
+    assert drive.parameter_file is not None
+    assert (
+        drive.parameter_file.values_by_name["ratio"],
+        drive.parameter_file.values_by_name["hysteresis_loss"],
+    ) == (
         50.0,
         2.9e-4,
     )
-    assert fmu_names(read_system(mine))["drive"] == "mine_drive"
-    assert fmu_names(system("robot_joint"))["drive"] == "HarmonicDriveSpring"
-    robot = system("six_axis_robot")
+    assert find_fmu_names(read_system(mine))["drive"] == "mine_drive"
+    assert find_fmu_names(load_system("robot_joint"))["drive"] == "HarmonicDriveSpring"
+    robot = load_system("six_axis_robot")
     own = {f"six_axis_robot_{one}" for one in robot.joints}
-    assert set(fmu_names(robot).values()) == own | {"AngleProfile", "RotationalInertia", "TorqueCurve"}
+    assert set(find_fmu_names(robot).values()) == own | {"AngleProfile", "RotationalInertia", "TorqueCurve"}
 
 
 def test_joints_with_the_same_baked_values_share_an_fmu(tmp_path: Path) -> None:
     """The same drive at two axes, with another damping: that is set in the archive."""
     path = changed(tmp_path, ('"CSG-40-100"', '"csg 32 100"'), text=ARM)
-    found = fmu_names(read_system(path))
+    found = find_fmu_names(read_system(path))
     assert found["base_drive"] == found["shoulder_drive"] == "mine_base_drive"
     assert found["elbow_drive"] == "mine_elbow_drive"
 
 
 # The arm
 
-ROBOT: Arm = system("six_axis_robot").arm
+ROBOT: Arm = load_system("six_axis_robot").arm
 
 
 def energies(arm: Arm, q: Array, speed: Array) -> tuple[Array, Array]:
@@ -260,15 +263,15 @@ def energies(arm: Arm, q: Array, speed: Array) -> tuple[Array, Array]:
     step = 1e-6
 
     def centres(angles: Array) -> Array:
-        turns, places, _ = arm.frames(angles)
+        turns, places, _ = arm.compute_frames(angles)
         pairs = zip(arm.links, turns, places, strict=True)
         return np.stack([place + link.centre * turn[:, :, 2] for link, turn, place in pairs], axis=1)
 
     rate = (centres(q + step * speed) - centres(q - step * speed)) / (2.0 * step)
     masses = np.array([link.mass for link in arm.links])
     kinetic = 0.5 * np.sum(masses * np.sum(rate**2, axis=2), axis=1)
-    forth, back = arm.frames(q + step * speed)[0], arm.frames(q - step * speed)[0]
-    for k, (link, turn) in enumerate(zip(arm.links, arm.frames(q)[0], strict=True)):
+    forth, back = arm.compute_frames(q + step * speed)[0], arm.compute_frames(q - step * speed)[0]
+    for k, (link, turn) in enumerate(zip(arm.links, arm.compute_frames(q)[0], strict=True)):
         spin = (forth[k] - back[k]) / (2.0 * step) @ turn.transpose(0, 2, 1)  # skew matrix of the turning
         w = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
         own = np.einsum("nji,nj->ni", turn, w)
@@ -278,8 +281,8 @@ def energies(arm: Arm, q: Array, speed: Array) -> tuple[Array, Array]:
 
 def test_power_of_the_torques_is_the_rate_of_the_energy() -> None:
     time = np.linspace(0.1, 1.1, 4001)
-    q, speed, acceleration = ROBOT.motion(time)
-    power = np.sum(ROBOT.torques(q, speed, acceleration) * speed, axis=1)
+    q, speed, acceleration = ROBOT.compute_motion(time)
+    power = np.sum(ROBOT.inverse_dynamics(q, speed, acceleration) * speed, axis=1)
     kinetic, potential = energies(ROBOT, q, speed)
     rate = np.gradient(kinetic + potential, time)
     assert np.max(np.abs(power - rate)[2:-2]) < 1e-5 * np.max(np.abs(power))  # of central differences
@@ -301,18 +304,20 @@ def test_a_double_pendulum_has_the_textbooks_torques() -> None:
     first = inertia * a[:, 0] + mixed * a[:, 1] - swirl * (2 * v[:, 0] * v[:, 1] + v[:, 1] ** 2)
     first -= (m1 + m2) * GRAVITY * l1 * np.sin(q[:, 0]) + both
     other = mixed * a[:, 0] + m2 * l2**2 * a[:, 1] + swirl * v[:, 0] ** 2 - both
-    np.testing.assert_allclose(arm.torques(q, v, a), np.stack([first, other], axis=1), rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(arm.inertias(q[0]), [inertia[0], m2 * l2**2], rtol=1e-9)
+    np.testing.assert_allclose(
+        arm.inverse_dynamics(q, v, a), np.stack([first, other], axis=1), rtol=1e-9, atol=1e-9
+    )
+    np.testing.assert_allclose(arm.axis_inertias(q[0]), [inertia[0], m2 * l2**2], rtol=1e-9)
 
 
 def test_the_tip_is_where_the_links_lead() -> None:
     reach = sum(link.length for link in ROBOT.links)
     zero = np.zeros((1, 6))
-    np.testing.assert_allclose(ROBOT.tip(zero), [[0.0, 0.0, reach]], atol=1e-15)
+    np.testing.assert_allclose(ROBOT.tip_position(zero), [[0.0, 0.0, reach]], atol=1e-15)
     level = np.array([[0.5, math.pi / 2, 0.0, 0.3, 0.0, 0.7]])
     above = reach - ROBOT.links[0].length
     expected = [[above * math.cos(0.5), above * math.sin(0.5), ROBOT.links[0].length]]
-    np.testing.assert_allclose(ROBOT.tip(level), expected, atol=1e-12)
+    np.testing.assert_allclose(ROBOT.tip_position(level), expected, atol=1e-12)
 
 
 def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
@@ -325,9 +330,9 @@ def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
         "wrist": (3.9, 12, 10e3, 14e3),
         "hand": (2, 6.9, 4700, 6100),
     }
-    found = system("six_axis_robot")
+    found = load_system("six_axis_robot")
     for name, (first, second_, k1, k2) in rows.items():
-        file = found.joints[f"{name}_drive"].file
+        file = found.joints[f"{name}_drive"].parameter_file
         assert file is not None
         midline = HarmonicDriveSpring.tabulate(replaced(file.values, {"hysteresis_loss": 0.0}))
         angle = float(midline.evaluate_torque(float(second_))["phi_rel"])
@@ -336,16 +341,16 @@ def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
 
 def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
     """Seventeen points leave 4e-4 of the largest torque of an axis."""
-    found = system("six_axis_robot")
+    found = load_system("six_axis_robot")
     x = np.linspace(0.0, 1.0, 301)
-    q, speed, acceleration = ROBOT.motion(ROBOT.start + ROBOT.duration * x)
-    torque = ROBOT.torques(q, speed, acceleration)
-    for k, name in enumerate(ROBOT.names):
+    q, speed, acceleration = ROBOT.compute_motion(ROBOT.start + ROBOT.duration * x)
+    torque = ROBOT.inverse_dynamics(q, speed, acceleration)
+    for k, name in enumerate(ROBOT.axis_names):
         given = found.components[f"{name}_load"].values
         curve = TorqueCurve(**given)
         time = ROBOT.start + ROBOT.duration * x
-        values = np.array([curve.outputs({"time": t, "tau_in": 0.0})["tau"] for t in time])
-        inertia = found.values[f"{name}_link.J"]
+        values = np.array([curve.evaluate_outputs({"time": t, "tau_in": 0.0})["tau"] for t in time])
+        inertia = found.list_values[f"{name}_link.J"]
         left = inertia * acceleration[:, k] - torque[:, k]
         assert np.max(np.abs(values - left)) < 5e-4 * np.max(np.abs(torque[:, k]))
     assert re.search(r"J = .*", ARM) is None  # computed, not stated
@@ -376,7 +381,7 @@ def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatc
     """Of the motor and the link on the drive at rest, and at the largest torque of a run."""
     monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, force: [])
     path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
-    drive = HarmonicDriveSpring.tabulate(read_system(path).joints["drive"].file.values)
+    drive = HarmonicDriveSpring.tabulate(read_system(path).joints["drive"].parameter_file.values)
 
     def limit(torque: float) -> float:
         at_rest = drive.evaluate_torque(torque)["K_WTS"]
@@ -393,7 +398,7 @@ def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatc
     assert f"warning: {said}" in capsys.readouterr().err
     angle, still = np.array([0.0, float(drive.evaluate_torque(5.0)["phi_rel"]), 0.0]), np.zeros(3)
     moved = {"motor.phi": still, "motor.w": still, "link.phi": angle, "link.w": still}
-    found = longest_step(read_system(path), moved | {"drive.tau1": angle, "drive.tau2": -angle})
+    found = find_largest_stable_step(read_system(path), moved | {"drive.tau1": angle, "drive.tau2": -angle})
     assert found == (pytest.approx(limit(5.0), rel=0.01), "drive")
     assert limit(5.0) < 0.8 * limit(0.0)
 
@@ -407,7 +412,7 @@ def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatc
 
 
 def test_a_picture_shows_the_peaks_of_a_run():
-    robot, time = system("robot_joint"), np.linspace(0.0, 2.0, 4001)
+    robot, time = load_system("robot_joint"), np.linspace(0.0, 2.0, 4001)
     torque = np.zeros(4001)
     torque[[1233, 1234]] = -3.0, 77.5
     ((output, _),) = joint_load_outputs(robot).values()

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.proof.series import TimeSeries
-from jointfmu_fmu_src.proof.standard import FOLDER
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_tools.host import open_instance, unpack_fmu
 from jointfmu_tools.proof.manifest import RelatedFiles
 from jointfmu_tools.proof.run import prove
 from jointfmu_tools.systems.fmu import proof
-from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system
-from jointfmu_tools.systems.system import read_system, system, systems
+from jointfmu_tools.systems.system import load_system, load_systems, read_system
 from proofs import ECOS, LIBCOSIM, copy, replaced
 from scipy.interpolate import CubicSpline
 
@@ -39,9 +39,11 @@ STOP = {"six_axis_robot": 0.6}
 
 
 def made(name, out):
-    shipped = system(name)
+    shipped = load_system(name)
     ends = replace(shipped, stop_time=STOP.get(name, max(shipped.stop_time, TURNED)))
-    return dict(zip("23", build_system(assembly(ends), out, platforms=(fmpy.platform_tuple,)), strict=True))
+    return dict(
+        zip("23", build_system(assemble_system(ends), out, platforms=(fmpy.platform_tuple,)), strict=True)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -97,8 +99,8 @@ def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
         assert (found.failures, found.run_count) == ([], 3)
     if name == "six_axis_robot":  # fmpy's master has nothing in it that the robot's one joint has not
         return
-    stop = max(systems()[name].stop_time, TURNED)
-    references = RelatedFiles(files["2"]).experiments()[0].references
+    stop = max(load_systems()[name].stop_time, TURNED)
+    references = RelatedFiles(files["2"]).read_experiments()[0].references
     expected = exchange(files["2"], [output], stop, 1e-9, stop / 20_000)
     due = np.interp(references.time, expected["time"], expected[output])
     assert np.abs(references.columns[output] - due).max() < 2e-4 * np.abs(due).max()  # of the memory's steps
@@ -119,7 +121,8 @@ def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
 )
 def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
     old = re.search(
-        rb'name="link.phi" value="([^"]*)"', zipfile.ZipFile(joint["2"]).read(f"{FOLDER}/co-simulation.exp")
+        rb'name="link.phi" value="([^"]*)"',
+        zipfile.ZipFile(joint["2"]).read(f"{REFERENCE_FOLDER}/co-simulation.exp"),
     )
     change = replaced("co-simulation.exp", old[0], old[0].replace(old[1], scale))
     path = copy(Path(joint["2"]), tmp_path / "other.fmu", change)
@@ -133,16 +136,16 @@ def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
 @pytest.mark.parametrize(("sensitive", "end"), [(3.0, 2.0), (0.505, 0.5), (0.5, 0.49)])
 def test_the_proof_ends_before_the_motion_is_too_sensitive(monkeypatch, sensitive, end):
     """Where a host's tolerance gives other results than that of the references."""
-    model = assembly(system("robot_joint")).model()
+    model = assemble_system(load_system("robot_joint")).make_model()
 
     def exchanged(model, fmu, times, tolerance):
         columns = {v.name: times + 1.0 for v in model.outputs}
-        if tolerance > proof.SOLVER:
+        if tolerance > proof.SOLVER_TOLERANCE:
             columns["link.phi"] = np.where(times < sensitive - 1e-9, times + 1.0, 0.0)
         return TimeSeries(times, columns)
 
-    monkeypatch.setattr(proof, "_exchanged", exchanged)
-    members = proof.proof(model, 2.0, 5e-4, Path())
+    monkeypatch.setattr(proof, "_simulate", exchanged)
+    members = proof.make_proof_files(model, 2.0, 5e-4, Path())
     (text,) = (content.decode() for path, content in members.items() if path.endswith("model-exchange.exp"))
     assert f'stopTime="{end:g}"' in text
     assert f"They end at {end:g} s of 2 s" in members["documentation/fmi-ls-ref.txt"].decode()
@@ -325,4 +328,4 @@ def test_a_joint_between_grounds_is_refused(tmp_path):
     wires = [("drive.flange1", "ground"), ("drive.flange2", "ground"), ("load", "motor.flange_a")]
     file.write_text(text(wires))
     with pytest.raises(ValueError, match='drive: all its flanges are on "ground"; allowed is'):
-        assembly(read_system(file))
+        assemble_system(read_system(file))

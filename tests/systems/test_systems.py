@@ -21,13 +21,12 @@ import fmpy
 import numpy as np
 import pytest
 from clients import needs
-from conftest import Fmu, made_once, refused_line
+from conftest import Fmu, refused_line
 from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.native.terminals import terminals
+from jointfmu_fmu_src.native.terminals import find_terminals
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners.laws import (
     GRAVITY,
@@ -36,17 +35,17 @@ from jointfmu_fmu_src.partners.laws import (
     TorqueProfile,
     TranslationalMass,
 )
-from jointfmu_fmu_src.ssv import NUMBER
+from jointfmu_fmu_src.ssv import REAL_ELEMENT
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
 from jointfmu_tools.joints.harmonic_drive.job import TORQUE_RATIOS
 from jointfmu_tools.report.systems import wind_up_and_tip_error
 from jointfmu_tools.systems import decays, ringing, ssp
 from jointfmu_tools.systems.cosimulation import simulate as simulate_system
-from jointfmu_tools.systems.master import Slave, motion
+from jointfmu_tools.systems.master import Slave, simulate_motion
 from jointfmu_tools.systems.ssp import MASTERS, Master
-from jointfmu_tools.systems.system import names, system, systems
-from jointfmu_tools.systems.wiring import model_of, wires
+from jointfmu_tools.systems.system import list_system_names, load_system, load_systems
+from jointfmu_tools.systems.wiring import find_model, find_signals
 from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
@@ -54,8 +53,8 @@ from scipy.interpolate import CubicSpline
 from test_modelica import simulate, top
 
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import format_parameter_file, load_default
 from jointfmu.quantity import flatten_parameters, replace_values
@@ -66,8 +65,8 @@ Array = NDArray[np.float64]
 Values = dict[str, float]
 
 DRIVE = HarmonicDriveSpring.tabulate(load_default("harmonic_drive").values)
-ROBOT = HarmonicDriveSpring.tabulate(system("robot_joint").joints["drive"].file.values)
-LINK = system("robot_joint").values["link.J"]
+ROBOT = HarmonicDriveSpring.tabulate(load_system("robot_joint").joints["drive"].parameter_file.values)
+LINK = load_system("robot_joint").list_values["link.J"]
 ROBOT_AXES = ("base", "shoulder", "elbow", "forearm", "wrist", "hand")
 SCHEMAS = {
     "1.0": Path(fmpy.__file__).parent / "ssp" / "schema",
@@ -83,14 +82,9 @@ def bolted() -> BoltedJointSpring:
 
 
 @pytest.fixture(scope="session")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What `jointfmu build --systems` makes, and the drive with torque in."""
-
-    def make(out: Path) -> None:
-        build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
-        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
-
-    return made_once(tmp_path_factory, "systems", make)
+def built(system_files: Path) -> Path:
+    """The same under a shorter name."""
+    return system_files
 
 
 @pytest.fixture
@@ -144,7 +138,7 @@ def test_flanges_of_a_partner_fit_those_of_the_joints(built: Path, name: str) ->
         (flow,) = [m for m in members.values() if m["variableKind"] != "signal"]
         assert flow["variableKind"] == "inflow"
         joint = {"phi": "HarmonicDriveSpring", "s": "BoltedJoint"}[next(iter(members))]
-        assert any(t.members.keys() == members.keys() for t in terminals(MODELS[joint]))
+        assert any(t.members.keys() == members.keys() for t in find_terminals(MODELS[joint]))
     motion, rate, load = {"RotationalInertia": ("phi", "w", "tau")}.get(name, ("s", "v", "f"))
     expected = {f"flange_{x}": {motion: motion, rate: rate, load: f"{load}_{x}"} for x in "ab"}
     assert found == (expected if PARTNERS[name].state_count else {})
@@ -177,7 +171,7 @@ def test_a_source_follows_time_in_both_interfaces(make: Make, version: str) -> N
     parameters = TorqueProfile(**(flatten_parameters(ssp.partner_parameters("TorqueProfile").values) | given))
 
     def expected(time: float) -> float:
-        return float(parameters.outputs({"time": time, "tau_in": 0.25})["tau"])
+        return float(parameters.evaluate_outputs({"time": time, "tau_in": 0.25})["tau"])
 
     slave = make("TorqueProfile", version).start(given | {"tau_in": 0.25})
     for k in range(30):
@@ -195,7 +189,7 @@ def test_loads_have_no_corner() -> None:
         pulse_hold=0.0,
     )  # fmt: skip
     t = np.linspace(0.0, 0.5, 5001)
-    y = np.array([float(load.outputs({"time": x, "tau_in": 0.0})["tau"]) for x in t])
+    y = np.array([float(load.evaluate_outputs({"time": x, "tau_in": 0.0})["tau"]) for x in t])
     assert (y[0], y[-1]) == (0.0, 1.0)
     second = np.diff(y, 2) / (t[1] - t[0]) ** 2
     assert np.max(np.abs(np.diff(second))) < 1e-2 * np.max(np.abs(second))
@@ -292,17 +286,17 @@ def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -
 # Archives
 
 
-ARCHIVES = pytest.mark.parametrize("version", list(ssp.FOLDERS))
+ARCHIVES = pytest.mark.parametrize("version", list(ssp.ARCHIVE_FOLDERS))
 MASTER = pytest.mark.parametrize("master", MASTERS, ids=["side by side", "in turn"])
 
 
 @ARCHIVES
 @MASTER
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_an_archive_is_complete_and_its_connections_fit(
     built: Path, name: str, version: str, master: Master
 ) -> None:
-    found, folder = system(name), ssp.FOLDERS[version][0]
+    found, folder = load_system(name), ssp.ARCHIVE_FOLDERS[version][0]
     with zipfile.ZipFile(built / folder / f"{name}{master.suffix}.ssp") as archive:
         members = {n: archive.read(n) for n in archive.namelist()}
     for suffix, schema in ((".ssd", "Description"), (".ssv", "ParameterValues")):
@@ -314,16 +308,16 @@ def test_an_archive_is_complete_and_its_connections_fit(
     space = {"ssd": root.nsmap["ssd"], "ssc": root.nsmap["ssc"]}
     assert root.get("version") == version
     assert master.doc in root.get("description")
-    fmus = ssp.fmu_names(found)
+    fmus = ssp.find_fmu_names(found)
     units = {}
     for component in root.iterfind(".//ssd:Component", space):
         own = component.get("name")
-        model = model_of(found.components[own])
+        model = find_model(found.components[own])
         assert component.get("source") == f"resources/{fmus[own]}.fmu"
         assert component.get("source") in members
         listed = {v.name: (kind, v.unit) for kind in ("input", "output") for v in getattr(model, f"{kind}s")}
         for connector in component.iterfind(".//ssd:Connector", space):
-            key, typed = connector.get("name"), connector.find(f"ssc:{NUMBER[version]}", space)
+            key, typed = connector.get("name"), connector.find(f"ssc:{REAL_ELEMENT[version]}", space)
             assert listed[key] == (connector.get("kind"), typed.get("unit"))
             units[f"{own}.{key}"] = typed.get("unit")
     ends = []
@@ -332,7 +326,7 @@ def test_an_archive_is_complete_and_its_connections_fit(
         assert units[start] == units[end]
         ends.append(end)
     assert len(ends) == len(set(ends))
-    assert set(ends) == {f"{w.target}.{w.input}" for w in wires(found)}
+    assert set(ends) == {f"{w.target}.{w.input}" for w in find_signals(found)}
     assert {u.get("name") for u in root.iterfind("ssd:Units/ssc:Unit", space)} == set(units.values())
     described = {n: content for n, content in members.items() if n.endswith(".fmu")}
     assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} == set(described)
@@ -359,9 +353,9 @@ def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Pa
         rb'<oms:SimulationInformation>\s*<oms:FixedStepMaster description="oms-ma" stepSize="0.0005" />'
     )
     for master in MASTERS:
-        path = built / ssp.FOLDERS[version][0] / f"robot_joint{master.suffix}.ssp"
+        path = built / ssp.ARCHIVE_FOLDERS[version][0] / f"robot_joint{master.suffix}.ssp"
         with zipfile.ZipFile(path) as archive:
-            assert bool(kind.search(archive.read("SystemStructure.ssd"))) == master.in_turn
+            assert bool(kind.search(archive.read("SystemStructure.ssd"))) == master.is_sequential
             values = fromstring(archive.read("parameters/robot_joint.ssv")).iter()
             lags = [n for n in values if (n.get("name") or "").endswith(".lag_b")]
         assert [n.get("name") for n in lags] == ["motor.lag_b", "link.lag_b"]
@@ -370,7 +364,7 @@ def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Pa
 
 @ARCHIVES
 @MASTER
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_a_reader_of_both_versions_opens_the_archives(
     built: Path, name: str, version: str, master: Master
 ) -> None:
@@ -378,13 +372,13 @@ def test_a_reader_of_both_versions_opens_the_archives(
     from pyssp_standard.ssp import SSP
     from pyssp_standard.ssv import SSV
 
-    found = system(name)
-    with SSP(built / ssp.FOLDERS[version][0] / f"{name}{master.suffix}.ssp", mode="r") as archive:
+    found = load_system(name)
+    with SSP(built / ssp.ARCHIVE_FOLDERS[version][0] / f"{name}{master.suffix}.ssp", mode="r") as archive:
         with archive.system_structure as ssd:
             ssd.__check_compliance__()
             ends = ("start_element", "start_connector", "end_element", "end_connector")
             read = [tuple(getattr(c, end) for end in ends) for c in ssd.connections()]
-            assert (ssd.version, read) == (version, [tuple(wire) for wire in wires(found)])
+            assert (ssd.version, read) == (version, [tuple(wire) for wire in find_signals(found)])
             assert [element.name for element in ssd.system.elements] == list(found.components)
             assert ssd.check_connections() == []
         with SSV(archive.unpacked_path / "parameters" / f"{name}.ssv") as ssv:
@@ -392,12 +386,14 @@ def test_a_reader_of_both_versions_opens_the_archives(
             kinds = {p["name"]: p["type_name"] for p in ssv.parameters}
             numbers = [p for p in ssv.parameters if p["type_name"] == "Real"]  # of Float64 it has none
             given = {p["name"]: float(p["type_value"].parameter["value"]) for p in numbers}
-        assert set(kinds.values()) <= {NUMBER[version], "Boolean"}
-        written = {f"{n}.{v}": x.value for n, c in found.components.items() for v, x in ssp.values(c).items()}
+        assert set(kinds.values()) <= {REAL_ELEMENT[version], "Boolean"}
+        written = {
+            f"{n}.{v}": x.value for n, c in found.components.items() for v, x in ssp.list_values(c).items()
+        }
         assert written.keys() <= kinds.keys()
         assert given == ({n: given[n] for n in given} | written if version == "1.0" else {})
         assert {p.name for p in archive.ssp_resource_path.iterdir()} == {
-            f"{fmu}.fmu" for fmu in ssp.fmu_names(found).values()
+            f"{fmu}.fmu" for fmu in ssp.find_fmu_names(found).values()
         }
 
 
@@ -406,19 +402,19 @@ def stated(text: str) -> float:
     return float(text == "true") if text in ("true", "false") else float(text)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_parameters_come_from_the_files(built: Path, name: str) -> None:
-    path, found = str(built / "ssp" / f"{name}.ssp"), system(name)
+    path, found = str(built / "ssp" / f"{name}.ssp"), load_system(name)
     every = {p.name: stated(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
     for joint, component in found.joints.items():
-        assert component.file
-        for key, value in component.file.values_by_name.items():
+        assert component.parameter_file
+        for key, value in component.parameter_file.values_by_name.items():
             if isinstance(value, bool):
                 assert f"{joint}.{key}" not in every  # a start value of the FMU
-            elif key in MODELS[component.model].parameter_fields():
+            elif key in MODELS[component.model_name].parameter_fields():
                 assert every[f"{joint}.{key}"] == value
-    baked = {n for n in found.values if n.partition(".")[2] == "max_torque"}
-    assert {n: v for n, v in found.values.items() if n not in baked}.items() <= every.items()
+    baked = {n for n in found.list_values if n.partition(".")[2] == "max_torque"}
+    assert {n: v for n, v in found.list_values.items() if n not in baked}.items() <= every.items()
     for component in found.components:
         own = read_ssv(path, f"parameters/{component}.ssv").parameters
         prefix = f"{component}."
@@ -433,12 +429,12 @@ def test_another_joint_goes_into_the_archive(built: Path, tmp_path: Path) -> Non
         for version in ("fmi2", "fmi3"):
             (tmp_path / version).mkdir(exist_ok=True)
             shutil.copy(built / version / f"{fmu}.fmu", tmp_path / version)
-    column = system("bolted_column").with_joint(changed)
-    paths = ssp.pack_system(column, tmp_path)
+    column = load_system("bolted_column").with_joint(changed)
+    paths = ssp.write_archives(column, tmp_path)
     every = {p.name: p.value for p in read_ssv(str(paths[0]), "parameters/bolted_column.ssv").parameters}
     assert float(every["joint.mu"]) == 0.11
     first = [path.read_bytes() for path in paths]
-    assert [path.read_bytes() for path in ssp.pack_system(column, tmp_path)] == first
+    assert [path.read_bytes() for path in ssp.write_archives(column, tmp_path)] == first
 
 
 def test_a_joint_without_system_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -471,7 +467,7 @@ STEPS = 2000
 
 def in_fmpy(built: Path, name: str) -> Any:
     """So many steps of a system's own size."""
-    step = system(name).interval
+    step = load_system(name).interval
     return simulated(built, name, step, (STEPS - 0.5) * step)
 
 
@@ -535,7 +531,7 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
 ) -> None:
     """The same equations step by step: they differ by round-off, which the motion does not amplify."""
     out, path = tmp_path / "rows.npy", built / "ssp" / f"{name}.ssp"
-    arguments = [path, name, system(name).interval, STEPS, out, *wanted]
+    arguments = [path, name, load_system(name).interval, STEPS, out, *wanted]
     subprocess.run([sys.executable, "-c", script, *map(str, arguments)], check=True, timeout=100)
     rows = np.load(out)
     other = in_fmpy(built, name)
@@ -544,10 +540,10 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
         np.testing.assert_allclose(rows[:, k], expected, rtol=1e-9, atol=1e-12 * np.max(np.abs(expected)))
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_the_own_master_runs_an_archive_as_fmpy_does(built: Path, name: str) -> None:
     """Side by side: the same equations step by step."""
-    found = system(name)
+    found = load_system(name)
     own = simulate_system(found, built / "fmi2", stop=STEPS * found.interval)
     rows = in_fmpy(built, name)
     for column in own.keys() - {"time"}:
@@ -565,7 +561,7 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 ) -> None:
     """Against a step of a quarter: each archive in its own master converges, a present force that is carried
     on does not come near."""
-    found, (_, in_turn) = system(name), MASTERS
+    found, (_, in_turn) = load_system(name), MASTERS
     stop = 0.6 * found.stop_time
 
     def run(master: Master, h: float) -> Array:
@@ -589,7 +585,7 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 @cache
 def moved(folder: Path) -> dict[str, Array]:
     """The robot of six axes through its motion."""
-    return simulate_system(system("six_axis_robot"), folder)
+    return simulate_system(load_system("six_axis_robot"), folder)
 
 
 def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
@@ -601,17 +597,17 @@ def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
 def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
     """Torques of the rigid arm, and the ringing of six inertias about it; at rest the weight alone, and the
     midline's wind-up within the hysteresis."""
-    found, run = system("six_axis_robot"), moved(built / "fmi2")
-    q, speed, acceleration = found.arm.motion(run["time"])
-    torque = found.arm.torques(q, speed, acceleration)
+    found, run = load_system("six_axis_robot"), moved(built / "fmi2")
+    q, speed, acceleration = found.arm.compute_motion(run["time"])
+    torque = found.arm.inverse_dynamics(q, speed, acceleration)
     commanded, wound, error = wind_up_and_tip_error(found, run)
     np.testing.assert_allclose(commanded, q, atol=1e-12)
     largest = np.max(np.abs(torque))
-    for k, axis in enumerate(found.arm.names):
+    for k, axis in enumerate(found.arm.axis_names):
         carried = run[f"{axis}_drive.tau2"]
         assert np.max(np.abs(carried - torque[:, k])) < 0.12 * np.max(np.abs(torque[:, k])) + 1e-4 * largest
         assert np.mean(carried[-3000:]) == pytest.approx(torque[-1, k], abs=2e-3 * largest)
-        file = found.joints[f"{axis}_drive"].file
+        file = found.joints[f"{axis}_drive"].parameter_file
         assert file is not None
         free = HarmonicDriveSpring.tabulate(replace_values(file.values, {"hysteresis_loss": 0.0}))
         held = float(free.evaluate_torque(abs(torque[-1, k]))["phi_rel"])
@@ -621,12 +617,13 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
 
 
 def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Path) -> None:
-    found = system("six_axis_robot")
+    found = load_system("six_axis_robot")
     run = until(0.9, moved(built / "fmi2"))
     commanded, wound, error = wind_up_and_tip_error(found, run)
     q, dq = commanded[-1], wound[-1]
     step = 1e-6
-    slope = [(found.arm.tip(q + step * e)[0] - found.arm.tip(q - step * e)[0]) / (2.0 * step)
+    tip = found.arm.tip_position
+    slope = [(tip(q + step * e)[0] - tip(q - step * e)[0]) / (2.0 * step)
              for e in np.eye(6)[:, None, :]]  # fmt: skip
     assert np.linalg.norm(dq @ np.array(slope)) == pytest.approx(error[-1], rel=5e-3)  # of second order
 
@@ -641,9 +638,9 @@ def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Ar
     """Stiffness and friction of the sliders that touch at a preload, of all patches."""
     joint, patches = spring.joint, spring.patches
     approach = spring.curve.inverse(preload_pressure(joint, patches, preload, 0.0))
-    carried = spring.foundation(approach).slider_properties(approach)
-    area = joint.A_0 * patches.share[:, None]
-    stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
+    carried = spring.friction.foundation(approach).slider_properties(approach)
+    area = joint.A_0 * patches.area_share[:, None]
+    stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.friction_limit))
     some = stiffness > 0.0
     return stiffness[some], limit[some]
 
@@ -653,19 +650,19 @@ def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[flo
     ratio, friction = ROBOT.joint.ratio, x[4:]
     drive = DRIVE.evaluate_motion(x[0], x[1], x[2], x[3])
     drive = {"tau1": drive["tau1"] + friction.sum() / ratio, "tau2": drive["tau2"] - friction.sum()}
-    slid = sliding(friction, ROBOT.hysteresis.stiffness, ROBOT.hysteresis.limit, x[3] - x[1] / ratio)
-    tau = float(load.outputs({"time": time, "tau_in": 0.0})["tau"])
+    slid = sliding(friction, ROBOT.hysteresis.stiffness, ROBOT.hysteresis.friction_limit, x[3] - x[1] / ratio)
+    tau = float(load.evaluate_outputs({"time": time, "tau_in": 0.0})["tau"])
     motor = RotationalInertia(J=found["motor.J"], m=0.0, l=0.0, lag_a=0.0, lag_b=0.0)
     link = RotationalInertia(J=found["link.J"], m=found["link.m"], l=found["link.l"], lag_a=0.0, lag_b=0.0)
-    a1 = motor.outputs({"phi": x[0], "w": x[1], "tau_a": tau, "tau_b": float(drive["tau1"])})["a"]
-    a2 = link.outputs({"phi": x[2], "w": x[3], "tau_a": 0.0, "tau_b": float(drive["tau2"])})["a"]
+    a1 = motor.evaluate_outputs({"phi": x[0], "w": x[1], "tau_a": tau, "tau_b": float(drive["tau1"])})["a"]
+    a2 = link.evaluate_outputs({"phi": x[2], "w": x[3], "tau_a": 0.0, "tau_b": float(drive["tau2"])})["a"]
     return [x[1], float(a1), x[3], float(a2), *slid]
 
 
 def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
-    found, stop = system("robot_joint").values, 0.4
+    found, stop = load_system("robot_joint").list_values, 0.4
     load = TorqueProfile(**{k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")})
-    sliders = ROBOT.hysteresis.limit.size
+    sliders = ROBOT.hysteresis.friction_limit.size
     start, small = [0.0] * (4 + sliders), [1e-12] * 4 + [1e-8] * sliders  # rad, rad/s and N.m
     exact = solve_ivp(
         robot, (0.0, stop), start, "DOP853", rtol=1e-9, atol=small, max_step=0.02, args=(found, load)
@@ -678,18 +675,16 @@ def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
 
 
 def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
-    found, stop = system("bolted_column").values, 1.6e-3
+    found, stop = load_system("bolted_column").list_values, 1.6e-3
     defaults = flatten_parameters(ssp.partner_parameters("ForceProfile").values)
     pulse = {k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")}
-    load, mass = (
-        ForceProfile(**(defaults | pulse)),
-        TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0),
-    )
+    load = ForceProfile(**(defaults | pulse))
+    mass = TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0)
     stiffness, limit = column_sliders(bolted(), found["joint.preload"])
 
     def rates(time: float, x: Array) -> list[float]:
-        f = float(load.outputs({"time": time, "f_in": 0.0})["f"])
-        moved = mass.outputs({"s": x[0], "v": x[1], "f_a": f, "f_b": -x[2:].sum()})
+        f = float(load.evaluate_outputs({"time": time, "f_in": 0.0})["f"])
+        moved = mass.evaluate_outputs({"s": x[0], "v": x[1], "f_a": f, "f_b": -x[2:].sum()})
         return [x[1], float(moved["a"]), *sliding(x[2:], stiffness, limit, x[1])]
 
     start, small = [0.0] * (2 + limit.size), [1e-12] * 2 + [1e-6] * limit.size  # m, m/s and N
@@ -751,7 +746,7 @@ def ring(
         Slave(drive, {"d": damping}, ("phi2", "w2"), ("tau2",)) as joint,
         Slave(inertia, start, ("tau_a", "tau_b"), ("phi", "w")) as body,
     ):
-        return motion(joint, body, 0.0, step, count, late)
+        return simulate_motion(joint, body, 0.0, step, count, late)
 
 
 def released(angle: float, damping: bool, stop: float) -> Array:
@@ -812,7 +807,7 @@ def test_the_largest_stable_step_is_the_formulas(built: Path) -> None:
             Slave(drive, {"d": 0.0}, ("phi2", "w2"), ("tau2",)) as joint,
             Slave(inertia, start, ("tau_a", "tau_b"), ("phi", "w")) as body,
         ):
-            found = motion(joint, body, 5.0, factor * largest, 400)[:, 0]
+            found = simulate_motion(joint, body, 5.0, factor * largest, 400)[:, 0]
         return float(np.max(np.abs(found - angle)) / (1e-7 * angle))
 
     assert swing(0.995) < 30.0
@@ -916,9 +911,9 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
     early = {"load.pulse_start": 0.01, "drive.hysteresis_loss": 0.0}
     parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters} | early
     fmus = {}
-    for name, part in system("robot_joint").components.items():
+    for name, part in load_system("robot_joint").components.items():
         mine = {n.partition(".")[2]: float(v) for n, v in parameters.items() if n.startswith(f"{name}.")}
-        fmus[name] = make(part.model, version, True).start(mine)
+        fmus[name] = make(part.model_name, version, True).start(mine)
     connections = read_ssd(path).system.connections
     wires = [(c.startElement, c.startConnector, c.endElement, c.endConnector) for c in connections]
     wires.sort(key=lambda wire: wire[0] == "drive")  # its outputs follow its inputs at once
@@ -986,7 +981,7 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
 
     stop = 0.6
     found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-8)
-    own = system("six_axis_robot")
+    own = load_system("six_axis_robot")
     run = until(stop, moved(built / "fmi2"))
     _, wound, _ = wind_up_and_tip_error(own, run)
     for k, axis in enumerate(ROBOT_AXES):
@@ -1006,14 +1001,16 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
     free = rows["time"] > 1.3e-3
     struck = decay.analyse_decay(rows["time"][free], rows["column.s"][free])
-    column = ringing.vibrating_joints()["bolted_column"]
-    (pulled,) = decays.decays(column, built / "fmi2", column.body.pull.deflection, [column.body.pull.load])
+    column = ringing.find_vibrating_joints()["bolted_column"]
+    (pulled,) = decays.simulate_decays(
+        column, built / "fmi2", column.test.slip_deflection.deflection, [column.test.slip_deflection.load]
+    )
     order = np.argsort(pulled.amplitude)
     seen = struck.amplitude > 1.2e-7
     assert np.count_nonzero(seen) >= 3
     for mine, other, allowed in (
         (math.tau * struck.frequency, pulled.frequency, 5e-3),
-        (struck.damping, pulled.damping, 0.1),  # straight lines between the pulled column's windows
+        (struck.damping_ratio, pulled.damping, 0.1),  # straight lines between the pulled column's windows
     ):
         expected = np.interp(struck.amplitude, pulled.amplitude[order], other[order])
         np.testing.assert_allclose(mine[seen], expected[seen], rtol=allowed)
@@ -1028,18 +1025,18 @@ def test_a_file_makes_a_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     shutil.copytree(folder, copy)
     shutil.copytree(folder.parent / "harmonic_drive", tmp_path / "harmonic_drive")
     monkeypatch.setattr("jointfmu_tools.systems.system.files", lambda package: tmp_path)
-    shipped = names()
+    shipped = list_system_names()
     assert set(shipped) == {path.stem for path in folder.glob("*.toml")}
     text = (folder / "robot_joint.toml").read_text(encoding="utf-8")
     (copy / "a_second_arm.toml").write_text(text.replace("value = 0.05", "value = 0.07"), encoding="utf-8")
-    assert set(names()) == {"a_second_arm", *shipped}
-    assert systems()["a_second_arm"].values["link.J"] == 0.07
+    assert set(list_system_names()) == {"a_second_arm", *shipped}
+    assert load_systems()["a_second_arm"].list_values["link.J"] == 0.07
 
 
 def test_a_joint_that_does_not_ring_is_refused() -> None:
     said = "joint 'gear_contact' does not say how it rings, allowed are harmonic_drive, bolted_joint"
     with pytest.raises(ValueError, match=said):
-        ringing.body_on("gear_contact")
+        ringing.load_vibration_test("gear_contact")
 
 
 # jointfmu ring

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from clients import needs
 from jointfmu_tools.uncertainty import journal
-from jointfmu_tools.uncertainty.sweep import bands_csv
+from jointfmu_tools.uncertainty.sweep import format_bands_csv
 
 from jointfmu.files.text import replace_unprintable
 
@@ -69,7 +69,7 @@ BROKEN = {
 
 def written(folder: Path, *lines: bytes) -> Path:
     folder.mkdir()
-    path = folder / journal.RUNS
+    path = folder / journal.RUNS_FILE
     path.write_bytes(b"".join(line + b"\n" for line in lines))
     return path
 
@@ -96,33 +96,33 @@ def test_a_row_that_no_sweep_wrote_is_named_in_one_line(line: object, tmp_path: 
 def test_rows_of_a_sweep_are_read(tmp_path: Path) -> None:
     path = written(tmp_path / "out", json.dumps(GOOD).encode(), json.dumps(FAILED).encode())
     with journal.Journal(path.parent, 8) as held:
-        assert (held.finished, held.failed) == ({0, 1}, 1)
+        assert (held.finished_runs, held.failed_count) == ({0, 1}, 1)
         held.add({**GOOD, "run": 5})
     assert [one["run"] for one in journal.read_entries(path.parent)] == [0, 1, 5]
     units = {"tau": "N.m", "K_WTS": "N.m/rad"}
-    assert bands_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
+    assert format_bands_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
 
 
 @needs("Linux or macOS")
 def test_a_pipe_in_its_place_is_refused(tmp_path: Path) -> None:
-    for name in (journal.RUNS, journal.STUDY):
+    for name in (journal.RUNS_FILE, journal.STUDY_FILE):
         os.mkfifo(tmp_path / name)
     with pytest.raises(ValueError, match=r"runs\.jsonl: is a pipe, no regular file"):
         journal.Journal(tmp_path, 8).__enter__()
     with pytest.raises(ValueError, match=r"study\.json: is a pipe, no regular file"):
-        journal.claim(tmp_path, {"fmu": "a.fmu"})
+        journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
 
 
 @pytest.mark.parametrize("text", ["[1, 2]", "null", 100_000 * "[", "{", "\x1b"])
 def test_a_study_that_is_none_is_refused(text: str, tmp_path: Path) -> None:
-    (tmp_path / journal.STUDY).write_text(text)
+    (tmp_path / journal.STUDY_FILE).write_text(text)
     with pytest.raises(ValueError, match=r"study.json: is no study of a sweep"):
-        journal.claim(tmp_path, {"fmu": "a.fmu"})
+        journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
 
 
 @pytest.mark.parametrize("held", [{"fmu": ESC}, {ESC: 1, "fmu": "a.fmu"}])
 def test_a_foreign_study_is_named_in_printable_text(held: dict[str, object], tmp_path: Path) -> None:
-    (tmp_path / journal.STUDY).write_text(json.dumps(held))
+    (tmp_path / journal.STUDY_FILE).write_text(json.dumps(held))
     with pytest.raises(ValueError, match="holds another study") as said:
-        journal.claim(tmp_path, {"fmu": "a.fmu"})
+        journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
     assert replace_unprintable(str(said.value)) == str(said.value)

@@ -32,7 +32,7 @@ def test_reduced_evaluation_against_the_springs(joint, study):
     outcome = propagate.evaluate_samples(task, points, task.loads, "")
     assert np.all(outcome.accepted)
     for i in range(count):
-        values, factor, _ = propagate.one_sample(task, points, i)
+        values, factor, _ = propagate.select_sample(task, points, i)
         exact = task.curves.exact(build_parameter_set(KINDS[joint].parameters, values), factor * task.loads)
         for output, value in exact.items():
             found = outcome.outputs[output][:, i]
@@ -106,7 +106,7 @@ def test_samples_that_only_the_law_refuses():
     points = propagate.sample_designs(task, 256, 0)[0]
     outcome = propagate.evaluate_samples(task, points, task.loads, "")
     for i in np.flatnonzero(~outcome.accepted):
-        values, _, _ = propagate.one_sample(task, points, int(i))
+        values, _, _ = propagate.select_sample(task, points, int(i))
         with pytest.raises(ValueError, match=r"representable|no stiffness"):
             reduced_curves(KINDS["bolted_joint"]).exact(
                 build_parameter_set(KINDS["bolted_joint"].parameters, values), task.loads

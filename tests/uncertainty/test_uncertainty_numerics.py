@@ -98,8 +98,8 @@ def test_powers_of_two():
 
 
 def test_design_is_seeded_and_balanced():
-    one, two = (study.unit_design(256, 3, seed) for seed in (1, 2))
-    assert np.array_equal(one, study.unit_design(256, 3, 1))
+    one, two = (study.unit_cube_points(256, 3, seed) for seed in (1, 2))
+    assert np.array_equal(one, study.unit_cube_points(256, 3, 1))
     assert not np.array_equal(one, two)
     for column in one.T:  # a Sobol' sequence of 2^k points has one in each of 2^k equal intervals
         assert np.array_equal(np.sort(np.floor(256 * column)), np.arange(256))
@@ -132,7 +132,7 @@ def test_bands_of_a_linear_output():
         # 16384 points of a Sobol' sequence: error of a quantile below 1e-4/density at 1 %
         assert row == pytest.approx(found.loads * law.ppf(q), rel=2e-3)
     assert found.mean["K_N"] == pytest.approx(found.loads * 10.5, rel=1e-4)
-    assert found.sd["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
+    assert found.standard_deviation["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
     assert found.refusals.count == 0
     indices = propagate.compute_sensitivity(task, A[:4096], B[:4096]).outputs["K_N"]
     exact = np.array([0.36, 0.0025]) / 0.3625
@@ -164,7 +164,7 @@ ISHIGAMI_FIRST, ISHIGAMI_TOTAL = (0.31390519, 0.44241114, 0.0), (0.55758886, 0.4
 
 
 def designs(n, d, seed):
-    points = 2.0 * np.pi * study.unit_design(n, 2 * d, seed).T - np.pi
+    points = 2.0 * np.pi * study.unit_cube_points(n, 2 * d, seed).T - np.pi
     A, B = points[:d], points[d:]
     mixed = np.stack([np.where(np.arange(d)[:, None] == i, B, A) for i in range(d)])
     return A, B, mixed

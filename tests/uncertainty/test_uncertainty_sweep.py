@@ -96,7 +96,7 @@ def test_a_local_sweep_opens_no_socket_and_ends_with_its_processes_when_killed(f
     own.mkdir()
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "512", "--workers", "2", "--out", str(out)]
     process = start_sweep(arguments, own)
-    runs = out / journal.RUNS
+    runs = out / journal.RUNS_FILE
     wait_for(lambda: runs.exists() and runs.read_bytes().count(b"\n") >= 5, process)
     pids = processes_of(process.pid)
     assert len(pids) >= 3
@@ -117,7 +117,7 @@ def test_killed_and_resumed(fmu, tmp_path, capsys):
     out = tmp_path / "out"
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "128", "--workers", "1", "--out", str(out)]
     process = subprocess.Popen([sys.executable, "-m", "jointfmu", *arguments], stderr=subprocess.DEVNULL)
-    runs = out / journal.RUNS
+    runs = out / journal.RUNS_FILE
     wait_for(lambda: runs.exists() and runs.read_bytes().count(b"\n") >= 10, process)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
@@ -152,7 +152,7 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
     own.mkdir()
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "64", "--workers", "2", "--out", str(out)]
     process = start_sweep(arguments, own)
-    runs = out / journal.RUNS
+    runs = out / journal.RUNS_FILE
 
     def reached():
         if moment == "runs":
@@ -179,9 +179,9 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
 def test_a_process_that_dies_as_it_starts_prints_nothing():
     code = (
         "import subprocess, sys\n"
-        "from jointfmu.progress import _quiet_start\n"
+        "from jointfmu.progress import _quiet_start_context\n"
         "child = [sys.executable, '-c', '1/0']\n"
-        "with _quiet_start():\n"
+        "with _quiet_start_context():\n"
         "    subprocess.run(child)\n"
         "print('after', file=sys.stderr)\n"
         "subprocess.run([*child[:2], 'import sys; sys.stderr.write(str(1))'])\n"
@@ -194,9 +194,9 @@ def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
     """On a scheduler's workers, through its address alone; the same numbers as `jointfmu ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
     record, runs = plan_runs(fmu, DRIVE, given, 8, 0)
-    journal.claim(tmp_path, record)
+    journal.claim_folder(tmp_path, record)
     done = sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
-    assert (done.runs, done.new_runs, done.failed) == (8, 8, 0)
+    assert (done.run_count, done.new_runs, done.failed_count) == (8, 8, 0)
     found = {entry["run"]: entry for entry in journal.read_entries(tmp_path)}
     for i, settings in enumerate(runs):
         assert (
@@ -218,13 +218,13 @@ def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, nativ
     """The FMUs themselves, sample by sample, with the evaluation that `jointfmu uncertainty` uses."""
     path, drive = native / flavour / f"{name}.fmu", LoadRamp(load, to, to / 6.0)
     record, runs = plan_runs(path, drive, given, 16, 3)
-    journal.claim(tmp_path, record)
-    assert sweep(path, drive, runs, tmp_path, scheduler=cluster).failed == 0
+    journal.claim_folder(tmp_path, record)
+    assert sweep(path, drive, runs, tmp_path, scheduler=cluster).failed_count == 0
     joint = {"preload": "bolted_joint", "f": "gear_contact", "tau": "harmonic_drive"}[load]
     task = state_problem(load_default(joint), given, to, 7)
     for entry in journal.read_entries(tmp_path):
         values = {**task.values, **entry["parameters"]}
-        found = task.curves.evaluate(task.parameters, values, task.loads, np.ones((1, 1)))
+        found = task.curves.evaluate(task.parameter_class, values, task.loads, np.ones((1, 1)))
         for output in set(found) & set(entry["columns"]):
             fmu_values = np.array(entry["columns"][output])
             patches = name == "BoltedJoint" and output.endswith(
@@ -242,7 +242,7 @@ def test_every_run_fails(fmu, cluster, tmp_path, capsys):
     assert "4 runs in" in text
     assert "4 failed" in text
     assert "the first failed, run " in text
-    assert not (tmp_path / "out" / journal.BANDS).exists()
+    assert not (tmp_path / "out" / journal.BANDS_FILE).exists()
 
 
 def dies_at_five(key, drive, index, settings):
@@ -264,7 +264,7 @@ from jointfmu_tools.uncertainty import sweep
 sweep.run_locally = tests.local_dies_at_five
 fmu, out = map(tests.Path, sys.argv[1:3])
 done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)
-print(done.runs, done.new_runs, done.failed, done.first_failure)
+print(done.run_count, done.new_runs, done.failed_count, done.first_failure)
 """
 DIED = {"run": 5, "parameters": {"surface.D": 2.5}, "error": "the process of the run died"}
 
@@ -280,16 +280,16 @@ def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path, monke
     """It is recorded with its parameters; those whose results went down with it are done again."""
     monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.run_on_dask_worker", dies_at_five)
     done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
-    assert (done.runs, done.new_runs, done.failed) == (24, 24, 1)
+    assert (done.run_count, done.new_runs, done.failed_count) == (24, 24, 1)
     assert sorted(indices(tmp_path)) == list(range(24))
     assert done.first_failure == DIED
 
 
 def test_bands_of_the_runs(fmu, cluster, tmp_path):
     record, runs = plan_runs(fmu, DRIVE, GIVEN, 32, 0)
-    journal.claim(tmp_path, record)
+    journal.claim_folder(tmp_path, record)
     sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
-    head, *rows = (tmp_path / journal.BANDS).read_text().splitlines()
+    head, *rows = (tmp_path / journal.BANDS_FILE).read_text().splitlines()
     column = head.split(",").index("K_WTS 50 % [N.m/rad]")
     good = [entry["columns"]["K_WTS"] for entry in journal.read_entries(tmp_path) if "columns" in entry]
     median = [float(row.split(",")[column]) for row in rows]
@@ -308,7 +308,7 @@ def test_a_run_is_written_once(tmp_path):
         held.add(first)
         held.add(second)
     with journal.Journal(tmp_path, 8) as held:
-        assert held.finished == {3}
+        assert held.finished_runs == {3}
         assert held.first_failure == first
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from jointfmu.contact.interface import ONE_SIDED_OFFSET, InterfaceLaw, find_checked_spots
 from jointfmu.contact.powerlaw import SpotDistribution
-from jointfmu.mechanics.curve import CLOSING_RATIO, closing_length_ratio, closing_pressure
+from jointfmu.mechanics.curve import CLOSING_AREA_RATIO, closing_length_ratio, closing_pressure
 from jointfmu.quantity import Array, ParameterLimit, assemble_parameter_set, flat_fields, flatten_parameters
 
 Mask = NDArray[np.bool_]
@@ -176,9 +176,9 @@ def tabulate(
     """
     spots, area = find_checked_spots(law), law.A_0
     shape = np.shape(highest)
-    first = np.broadcast_to(spots.stiffness_onset + np.log(CLOSING_RATIO), shape)
+    first = np.broadcast_to(spots.stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO), shape)
     load = spots.total("load", first)
-    span = np.log(highest * area / load) / spots.m  # ln F grows at least with m u
+    span = np.log(highest * area / load) / spots.size_exponent  # ln F grows at least with m u
     last = first + np.maximum(span, 0.1)
     nodes, rises = _regimes(spots, first, last, ("load", "normal", *names))
     p, k = (nodes[name] - np.log(area) for name in ("load", "normal"))
@@ -210,7 +210,7 @@ def _regimes(
     Between two ends of regimes a total is m w exp(m u) times the integral of exp(-m t) spot(t), which
     grows from node to node by a Chebyshev polynomial's integral.
     """
-    m, grown = spots.m, 0.0
+    m, grown = spots.size_exponent, 0.0
     sums = {name: spots.total(name, first) * np.exp(-m * first) for name in names}
     logs: dict[str, list[Array]] = {name: [] for name in (*names, "approach")}
     rises: dict[str, list[Array]] = {name: [] for name in names}
@@ -218,8 +218,10 @@ def _regimes(
         width = right - left
         u = left + width * _CHEBYSHEV
         side = np.clip(u, left + ONE_SIDED_OFFSET, right - ONE_SIDED_OFFSET)
-        decay = m * spots.weight * np.exp(-m * u)
-        rate = {name: decay * sum(term.spot_value(side) for term in spots.terms[name]) for name in names}
+        decay = m * spots.size_prefactor * np.exp(-m * u)
+        rate = {
+            name: decay * sum(term.spot_value(side) for term in spots.regime_terms[name]) for name in names
+        }
         sums = {name: sums[name][:, -1:] + width * (rate[name] @ _INTEGRAL) for name in names}
         growth = {name: m + rate[name] / sums[name] for name in names}
         approach = grown + width * ((growth["load"] * sums["load"] / sums["normal"]) @ _INTEGRAL)
@@ -237,7 +239,7 @@ def _regimes(
 def _pieces(spots: SpotDistribution, first: Array, last: Array) -> list[tuple[Array, Array]]:
     """Ends (n, 1) of the regimes between two log-areas, wide ones in parts; one that no sample reaches is
     left out."""
-    inner = [np.clip(np.broadcast_to(end, first.shape), first, last) for end in spots.regime_ends]
+    inner = [np.clip(np.broadcast_to(end, first.shape), first, last) for end in spots.regime_end_log_areas]
     limits = np.sort(np.concatenate([first, *inner, last], axis=1), axis=1)
     pairs = [(limits[:, i : i + 1], limits[:, i + 1 : i + 2]) for i in range(limits.shape[1] - 1)]
     parts = []

@@ -101,7 +101,7 @@ class Parser(argparse.ArgumentParser):
         raise SystemExit(2)
 
 
-_METAVARS: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}
+_METAVAR_BY_TYPE: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}
 
 
 def declare_argument(
@@ -122,14 +122,16 @@ def declare_argument(
         help_text += f" (default: {f'{default:g}' if value_type is float else default})"
     names = [name, alias] if alias else [name]
     parser.add_argument(
-        *names, type=value_type, metavar=metavar or _METAVARS[value_type], help=help_text, **options
+        *names, type=value_type, metavar=metavar or _METAVAR_BY_TYPE[value_type], help=help_text, **options
     )
 
 
-def declare_command(commands: SubParsers, name: str, run: CommandFunction, help_text: str) -> Parser:
+def declare_command(
+    commands: SubParsers, name: str, command_function: CommandFunction, help_text: str
+) -> Parser:
     """Declare a command that has the option `--json`."""
     sub: Parser = commands.add_parser(name, help=help_text, description=format_sentence(help_text))
-    sub.set_defaults(run=run, outputs=sub.outputs)
+    sub.set_defaults(run=command_function, outputs=sub.outputs)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
 

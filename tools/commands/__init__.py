@@ -30,12 +30,12 @@ def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
     )
 
 
-def save_panels(path: Path, panels: "Sequence[Panel]", size: tuple[float, float]) -> None:
+def save_panels(path: Path, panels: "Sequence[Panel]", figure_size: tuple[float, float]) -> None:
     """Draw panels side by side and save them as a picture.
 
-    size : width and height [inch]
+    figure_size : width and height [inch]
     """
     from ..report.figure import draw_panels
 
-    with plots.open_figure(path, size) as figure:
+    with plots.open_figure(path, figure_size) as figure:
         draw_panels(figure, panels)

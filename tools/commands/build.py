@@ -142,10 +142,10 @@ def _run_cache(args: argparse.Namespace) -> CommandResult:
     with require_package("build"):
         from jointfmu_fmu_src.native.compiled import cache
     if args.clear:
-        cache.clear()
+        cache.clear_cache()
     files, size = cache.count_files()
     folder = str(cache.cache_folder())
     return CommandResult(
         document={"folder": folder, "files": files, "bytes": size},
-        lines=[f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE})"],
+        lines=[f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE_VARIABLE})"],
     )

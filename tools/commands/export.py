@@ -21,9 +21,9 @@ from ..command_line.common import (
 )
 from ..command_line.outputs import declare_output
 from ..export import exports
-from ..export.exports import CONTENTS, DEFAULT_LOAD_ERROR, FORMAT_CONTENTS, ROBOT_FORMATS
-from ..export.placing import AXIS_ORDER, SI, UNITS, Placement
-from ..judgement import Plausibility, assess_law, find_height
+from ..export.exports import DEFAULT_LOAD_ERROR, EXPORT_CONTENTS, FORMAT_CONTENTS, ROBOT_FORMATS
+from ..export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
+from ..judgement import Plausibility, assess_law, find_rms_height
 from ..pressure import judge_file, nominal_pressure, warn_missing_members
 
 if TYPE_CHECKING:
@@ -72,8 +72,8 @@ def add(commands: SubParsers) -> None:
     declare_argument(export, "--first-set", int, text)
     text = "springs: axis of your model along the joint's normal (default: z)"
     export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
-    text = f"units of the file (default: {SI.name})"
-    export.add_argument("--units", choices=list(UNITS), default=SI.name, help=text)
+    text = f"units of the file (default: {SI_UNIT_SET.name})"
+    export.add_argument("--units", choices=list(UNIT_SETS), default=SI_UNIT_SET.name, help=text)
     text = f"tables: largest relative error of linear interpolation (default: {DEFAULT_LOAD_ERROR:g})"
     declare_argument(export, "--error", float, text, "E")
     text = f"{', '.join(ROBOT_FORMATS)}: largest torque of the fit [N.m] (default: rated torque)"
@@ -93,8 +93,8 @@ def _working_point_meanings() -> dict[str, list[str]]:
 def _run_export(args: argparse.Namespace) -> CommandResult:
     if args.form in ROBOT_FORMATS:
         return _export_drive(args)
-    if args.what not in CONTENTS:
-        choices = ", ".join(map(repr, CONTENTS))
+    if args.what not in EXPORT_CONTENTS:
+        choices = ", ".join(map(repr, EXPORT_CONTENTS))
         raise ValueError(f"argument WHAT: invalid choice: {args.what!r} (choose from {choices})")
     _refuse_options(args, {"torque": f"{args.form}; it is for {', '.join(ROBOT_FORMATS)}"})
     if args.what not in FORMAT_CONTENTS[args.form]:
@@ -119,8 +119,8 @@ def _export_drive(args: argparse.Namespace) -> CommandResult:
     """Write a drive for a robot simulator; the output lists effects that the format cannot represent."""
     idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_point_meanings())
     _refuse_options(args, dict.fromkeys(idle, args.form))
-    if args.units != SI.name:
-        raise ValueError(f"--units = {args.units}: {args.form} is in {SI.name}")
+    if args.units != SI_UNIT_SET.name:
+        raise ValueError(f"--units = {args.units}: {args.form} is in {SI_UNIT_SET.name}")
     from ..robots.writing import write_drive
 
     with require_package("measure the file", "mujoco"):
@@ -145,7 +145,7 @@ def _judge_export(args: argparse.Namespace, file: ParameterFile) -> Plausibility
             return assess_law(
                 KINDS[file.joint].extract_law(file.values),
                 [mean],
-                find_height(file),
+                find_rms_height(file),
                 float(mesh.pressure.max()),
             )
     return judge_file(file, None if load is None else [load])
@@ -155,7 +155,7 @@ def _create_export(args: argparse.Namespace, file: ParameterFile) -> "ExportedFi
     from ..export import writing
     from ..export.mesh import read_pairs
 
-    units = UNITS[args.units]
+    units = UNIT_SETS[args.units]
     error = DEFAULT_LOAD_ERROR if args.error is None else args.error
     if args.what == "contact":
         return writing.export_contact(args.form, file, units, error)
@@ -227,5 +227,5 @@ def _check_options(args: argparse.Namespace, file: ParameterFile) -> None:
             raise ValueError(f"{option} = {value} is outside [1, {highest}]")
         if value is None and args.nodes is not None and args.form in _NUMBERED_FORMATS[name]:
             raise ValueError(f"--nodes needs {option}, {_NUMBER_MEANINGS[name]}")
-    if args.form == "modelica" and args.units != SI.name:
-        raise ValueError(f"--units = {args.units}: a Modelica table is in {SI.name}")
+    if args.form == "modelica" and args.units != SI_UNIT_SET.name:
+        raise ValueError(f"--units = {args.units}: a Modelica table is in {SI_UNIT_SET.name}")

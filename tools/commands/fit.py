@@ -104,10 +104,12 @@ def _find_joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> s
     joints = [
         j
         for j, procedure in choices.items()
-        if names & {procedure.column, *COLUMN_SYNONYMS[procedure.column]}
+        if names & {procedure.identifying_column, *COLUMN_SYNONYMS[procedure.identifying_column]}
     ]
     if len(joints) != 1:
-        expected = " or ".join(f"{procedure.column} ({joint})" for joint, procedure in choices.items())
+        expected = " or ".join(
+            f"{procedure.identifying_column} ({joint})" for joint, procedure in choices.items()
+        )
         raise ValueError(
             f"{args.file}: has {'more than one column' if joints else 'no column'} of {expected}; "
             "expected one"
@@ -132,7 +134,7 @@ def _write_fit(args: argparse.Namespace, fit: Fit) -> CommandResult:
     if args.out and not doubt:
         fit.joint.save(args.out, force=args.force)
     lines = []
-    for row in outcome.rows():
+    for row in outcome.unknown_rows():
         spread = row["relative_deviation"]
         shown = "spread unknown" if spread is None else format_deviation(spread)
         shown = f"+- {shown}" if shown.endswith("%") else shown

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.contact.interface import at_largest_spot, at_pressure
+from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
 from jointfmu.contact.laws import LAWS
 from jointfmu.quantity import flatten_parameters
 
@@ -48,12 +48,12 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
     law = build_law_parameters(args.law, file, dict(args.settings))
     with np.errstate(over="ignore"):
         if args.pressure is not None:
-            state = at_pressure(law, np.array(args.pressure))
+            state = evaluate_at_pressure(law, np.array(args.pressure))
         else:
-            state = at_largest_spot(law, np.array(args.largest_spot))
+            state = evaluate_at_largest_spot(law, np.array(args.largest_spot))
     names = [*LAW_COLUMNS, *(name for name in state if name not in LAW_COLUMNS)]
     count = len(args.pressure or args.largest_spot)
-    rows = [{n: _convert_entry(state[n], i) if n in state else None for n in names} for i in range(count)]
+    rows = [{n: _finite_entry(state[n], i) if n in state else None for n in names} for i in range(count)]
     h = known_surface_height(args.law, law, file, dict(args.settings))
     judgement = assess_law(law, np.ravel(state["pressure"]).tolist(), h)
     heads = [f"{name} [{LAW_COLUMN_UNITS[name]}]" for name in names]
@@ -65,7 +65,9 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _convert_entry(column: Any, i: int) -> float | None:
+def _finite_entry(column: Any, row_index: int) -> float | None:
     """Entry i of a column, which may be one number for all rows; None if it is not finite."""
-    value = float(np.broadcast_to(column, (i + 1,) if np.ndim(column) == 0 else np.shape(column))[i])
+    value = float(
+        np.broadcast_to(column, (row_index + 1,) if np.ndim(column) == 0 else np.shape(column))[row_index]
+    )
     return value if math.isfinite(value) else None

@@ -41,24 +41,26 @@ def add(commands: SubParsers) -> None:
     for kind in KINDS.values():
         if module := load_tool_module(kind, "new"):
             _declare_joint(things, kind.name.replace("_", "-"), module.NEW)
-    for name, rows in TABLES.items():
+    for name, rows in PRINTED_TABLES.items():
         declare_command(things, name, partial(_run_table, rows), f"print the table of known {name}")
 
 
-def _declare_joint(joint_parsers: SubParsers, name: str, drawing: NewJointCommand) -> None:
+def _declare_joint(joint_parsers: SubParsers, name: str, joint_command: NewJointCommand) -> None:
     """Declare the sub-command of one joint."""
-    sub = declare_command(joint_parsers, name, partial(_run_new, drawing), f"make {drawing.description}")
-    sub.example = f"new {name} {drawing.example} --out my.toml"
-    for option in drawing.options:
+    sub = declare_command(
+        joint_parsers, name, partial(_run_new, joint_command), f"make {joint_command.description}"
+    )
+    sub.example = f"new {name} {joint_command.example} --out my.toml"
+    for option in joint_command.options:
         declare_option(sub, option)
     declare_argument(sub, "--name", str, "name of the parameter set (default: made of its sizes)")
     declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)")
 
 
-def _run_new(drawing: NewJointCommand, args: argparse.Namespace) -> CommandResult:
-    """Make a joint from the options of its drawing."""
+def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> CommandResult:
+    """Make a joint from the dimensions of its drawing, given as options."""
     joint = make_from_drawing(
-        drawing, {option.name: getattr(args, option.name) for option in drawing.options}
+        joint_command, {option.name: getattr(args, option.name) for option in joint_command.options}
     )
     if args.name:
         joint = replace(joint, file=replace(joint.file, name=args.name))
@@ -86,9 +88,11 @@ def _joint_document(joint: Joint) -> dict[str, object]:
     }
 
 
-def _run_table(rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace) -> CommandResult:
+def _run_table(
+    iterate_rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace
+) -> CommandResult:
     """Print a table: bolts, materials or finishes."""
-    content = list(rows())
+    content = list(iterate_rows())
     cells = [[*content[0]], *([_format_cell(cell) for cell in row.values()] for row in content)]
     return CommandResult(document=content, lines=align_columns(cells))
 
@@ -132,7 +136,7 @@ def _iterate_table_rows(
 
 
 def _iterate_bolt_rows() -> Iterator[dict[str, object]]:
-    from ..drawing.tables import read_property_classes, read_threads, strength
+    from ..drawing.tables import property_class_strength, read_property_classes, read_threads
     from ..drawing.vdi2230 import assembly_preload, stress_area
 
     for thread in read_threads().values():
@@ -144,13 +148,16 @@ def _iterate_bolt_rows() -> Iterator[dict[str, object]]:
             "socket [mm]": thread.socket * 1e3,
             "A_s [mm2]": stress_area(thread) * 1e6,
             **{
-                f"preload {name} [kN]": assembly_preload(thread, strength(name, "yield", thread)) / 1e3
+                f"preload {name} [kN]": assembly_preload(
+                    thread, property_class_strength(name, "yield", thread)
+                )
+                / 1e3
                 for name in read_property_classes()
             },
         }
 
 
-TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
+PRINTED_TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
     "materials": partial(_iterate_table_rows, "materials", _MATERIAL_COLUMNS, "{E.source}; H: {H.source}"),
     "finishes": partial(_iterate_table_rows, "finishes", _FINISH_COLUMNS, "{Ra_low.source}"),
     "bolts": _iterate_bolt_rows,
@@ -202,10 +209,10 @@ def _format_heading(column: CatalogueColumn) -> str:
     return f"{column.name}{'' if column.display_unit == '1' else f' [{column.display_unit}]'}"
 
 
-def _format_number(item: CatalogueEntry, column: CatalogueColumn) -> str:
+def _format_number(entry: CatalogueEntry, column: CatalogueColumn) -> str:
     """Format one number of a catalogue entry, at least as wide as the heading of its column."""
     width = len(_format_heading(column))
-    if (number := item.numbers.get(column.name)) is None:
+    if (number := entry.numbers.get(column.name)) is None:
         return f"{'-':{width}}"
     mark = ("~" if number.kind == "estimate" else "") + ("<" if number.bound else "")
     return (
@@ -213,8 +220,8 @@ def _format_number(item: CatalogueEntry, column: CatalogueColumn) -> str:
     )
 
 
-def _entry_document(joint: str, columns: Any, item: CatalogueEntry) -> dict[str, Any]:
+def _entry_document(joint: str, catalogue_columns: Any, entry: CatalogueEntry) -> dict[str, Any]:
     """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
-    units = {column.name: column.unit for column in columns}
-    numbers = {name: number._asdict() | {"unit": units[name]} for name, number in item.numbers.items()}
-    return {"joint": joint, "name": item.name, "numbers": numbers}
+    units = {column.name: column.unit for column in catalogue_columns}
+    numbers = {name: number._asdict() | {"unit": units[name]} for name, number in entry.numbers.items()}
+    return {"joint": joint, "name": entry.name, "numbers": numbers}

@@ -41,7 +41,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
         values = flatten_parameters(
             build_law_parameters(name, load_law_file(args.params, name) if args.params else None, {})
         )
-        fields = dict(flat_fields(LAWS[name], names=values))
+        fields = dict(flat_fields(LAWS[name], parameter_names=values))
         if name == ROUGHNESS_LAW:
             fields |= {stated: field for stated, field in HEIGHT_FIELDS.items() if stated not in fields}
         head = {"name": name, "law": name}
@@ -52,7 +52,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
             known = MODELS[name].with_parameters(file.joint, file.values).parameter_fields()
             fields = {stated: field for stated, field in known.items() if stated in values}
         else:
-            fields = dict(flat_fields(type(file.values), names=values))
+            fields = dict(flat_fields(type(file.values), parameter_names=values))
         head = {"name": name, "joint": file.joint, "law": file.law}
     rows = [_parameter_document(stated, field, values.get(stated)) for stated, field in fields.items()]
     return CommandResult(
@@ -72,9 +72,9 @@ def _load_joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
     return load_default(joint, args.law)
 
 
-def _parameter_document(name: str, field: Field[Any], value: Any) -> dict[str, Any]:
+def _parameter_document(name: str, parameter_field: Field[Any], value: Any) -> dict[str, Any]:
     """JSON object of one parameter: name, meaning, default, unit, lower and upper limit, allowed values."""
-    meta = field.metadata
+    meta = parameter_field.metadata
     row = {"name": name, "meaning": meta["doc"], "default": value}
     if "allowed" in meta:
         return row | {"unit": None, "allowed": list(meta["allowed"])}
@@ -84,13 +84,19 @@ def _parameter_document(name: str, field: Field[Any], value: Any) -> dict[str, A
     return row | {"unit": meta["unit"], "low": low, "high": high, "allowed": str(interval)} | whole
 
 
-def _format_row(row: dict[str, Any]) -> tuple[str, ...]:
-    allowed = row["allowed"]
+def _format_row(parameter_document: dict[str, Any]) -> tuple[str, ...]:
+    allowed = parameter_document["allowed"]
     if isinstance(allowed, list):
         allowed = " | ".join(str(option).lower() for option in allowed)
-    elif "whole" in row:
+    elif "whole" in parameter_document:
         allowed += " whole"
-    return (row["name"], _format_default(row["default"]), row["unit"] or "", allowed, row["meaning"])
+    return (
+        parameter_document["name"],
+        _format_default(parameter_document["default"]),
+        parameter_document["unit"] or "",
+        allowed,
+        parameter_document["meaning"],
+    )
 
 
 def _format_default(value: object) -> str:

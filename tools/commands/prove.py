@@ -39,27 +39,27 @@ def _run_prove(args: argparse.Namespace) -> CommandResult:
     if args.listing and args.against:
         raise ValueError("--listing needs the reference results stored in the FMU; expected no --against")
     proof = prove(
-        args.fmu, args.importer, _compute_expected(args.fmu, args.against) if args.against else None
+        args.fmu, args.importer, _compute_expected_contents(args.fmu, args.against) if args.against else None
     )
     folders = (
         listing.write_listing(proof, args.listing, args.force) if args.listing and proof.has_passed else []
     )
     listed = {"listing": [str(folder) for folder in folders]} if args.listing else {}
     return CommandResult(
-        document=report.document(proof) | listed,
-        lines=report.lines(proof),
+        document=report.build_document(proof) | listed,
+        lines=report.format_lines(proof),
         notes=["no listing is written: not all passed"] if args.listing and not folders else (),
         written_files=folders,
         exit_status=int(not proof.has_passed),
     )
 
 
-def _compute_expected(fmu: Path, path: Path) -> ExpectedContents:
+def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedContents:
     """Compute start values and reference results from a parameter file, without building its FMU.
 
     Raises ValueError if the FMU does not have the inputs and outputs of an FMU of the file's joint.
     """
-    from jointfmu_fmu_src.proof.members import proof
+    from jointfmu_fmu_src.proof.members import make_proof_files
 
     from ..host import unpack_fmu
 
@@ -71,7 +71,7 @@ def _compute_expected(fmu: Path, path: Path) -> ExpectedContents:
             described = model.with_parameters(file.joint, file.values)
             starts = {name: file.values_by_name[name] for name in described.parameter_fields()}
             starts |= {v.name: file.start_value(v.name) for v in described.inputs}
-            return ExpectedContents(str(path), starts, proof(described, file))
+            return ExpectedContents(str(path), starts, make_proof_files(described, file))
     models = ", ".join(model.name for model in KINDS[file.joint].models)
     raise ValueError(f"{fmu}: does not have the variables of {models}, the FMUs of {path}")
 
@@ -91,9 +91,9 @@ def _run_validate(args: argparse.Namespace) -> CommandResult:
         with require_fem_packages("the finite-element analysis"):
             rows += compare_natural_frequencies()
     misses = validation.missed_points(rows)
-    counts = asdict(validation.counts(rows))
+    counts = asdict(validation.count_points(rows))
     return CommandResult(
-        document={"rows": [row.as_dict() for row in rows], "counts": counts, "missed": len(misses)},
-        lines=[validation.table(rows), validation.summary(rows)],
+        document={"rows": [row.to_json() for row in rows], "counts": counts, "missed": len(misses)},
+        lines=[validation.format_table(rows), validation.format_summary(rows)],
         exit_status=int(bool(misses)),
     )

@@ -47,7 +47,7 @@ def add(commands: SubParsers) -> None:
     )
     declare_argument(drive, "--about", float, "cycles: mean value of the input (default: 0)")
     drive.add_argument(
-        "--shape", choices=loops.SHAPES, help=f"cycles: shape over time (default: {loops.SHAPES[0]})"
+        "--shape", choices=loops.WAVEFORMS, help=f"cycles: shape over time (default: {loops.WAVEFORMS[0]})"
     )
     declare_argument(drive, "--points", int, f"cycles: points per cycle (default: {loops.DEFAULT_POINTS})")
     declare_argument(
@@ -56,7 +56,7 @@ def add(commands: SubParsers) -> None:
     declare_argument(drive, "--output", str, "cycles: force or motion conjugate to the input")
     declare_argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
     declare_settings(drive)
-    declare_output(drive, "--csv", columns.TABLE, "write every point to a file")
+    declare_output(drive, "--csv", columns.TABLE_FILE_KIND, "write every point to a file")
     declare_output(
         drive, "--plot", PICTURE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
     )
@@ -89,7 +89,7 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
         print(message, file=sys.stderr)
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
-        write_text(args.csv, result.csv())
+        write_text(args.csv, result.format_csv())
     if args.plot:
         count = len(result.columns) - 1
         with plots.open_figure(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
@@ -97,17 +97,19 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
     columns = {name: column.tolist() for name, column in result.columns.items()}
     lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
     if not lines and not args.json:
-        lines = _format_points(result) if sys.stdout.isatty() else [result.csv()[:-1]]
+        lines = _format_points(result) if sys.stdout.isatty() else [result.format_csv()[:-1]]
     return CommandResult(
         document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines
     )
 
 
-def _select_columns(result: ramp.RampResult, varied_input: str, names: list[str] | None) -> ramp.RampResult:
+def _select_columns(
+    result: ramp.RampResult, varied_input: str, output_names: list[str] | None
+) -> ramp.RampResult:
     """Select the varied input and the requested outputs. Raises ValueError for an unknown output."""
-    if unknown := [name for name in names or () if name not in result.columns]:
+    if unknown := [name for name in output_names or () if name not in result.columns]:
         raise ValueError(f"--columns {unknown[0]}: unknown output, allowed are {', '.join(result.columns)}")
-    selected = list(dict.fromkeys([varied_input, *(names or result.columns)]))
+    selected = list(dict.fromkeys([varied_input, *(output_names or result.columns)]))
     return replace(
         result,
         columns={name: result.columns[name] for name in selected},
@@ -155,20 +157,20 @@ def _run_loops(args: argparse.Namespace) -> CommandResult:
     for message in found.messages:
         print(message, file=sys.stderr)
     if args.csv:
-        write_text(args.csv, found.csv())
+        write_text(args.csv, found.format_csv())
     if args.plot:
         with plots.open_figure(args.plot, (11.4, 3.8)) as figure:
             _draw_loops(figure, found, swing)
-    lines, written = found.table().splitlines(), (args.csv, args.plot)
+    lines, written = found.format_table().splitlines(), (args.csv, args.plot)
     return CommandResult(document=_loops_document(args.fmu, found), lines=lines, written_files=written)
 
 
 def _loops_document(fmu: Path, hysteresis: loops.HysteresisLoops) -> dict[str, object]:
     """JSON object of load cycles. Forces act on the joint and are positive in the direction of motion."""
-    rows = hysteresis.rows()
+    rows = hysteresis.compute_rows()
     for row, loop in zip(rows, hysteresis.loops, strict=True):
         row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.cycle_start}
-    names = {"motion": hysteresis.motion, "force": hysteresis.force, "sign": hysteresis.sign}
+    names = {"motion": hysteresis.motion_name, "force": hysteresis.force_name, "sign": hysteresis.force_sign}
     return {
         "fmu": str(fmu),
         **names,
@@ -177,7 +179,7 @@ def _loops_document(fmu: Path, hysteresis: loops.HysteresisLoops) -> dict[str, o
     }
 
 
-def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, swing: loops.CyclicPath) -> None:
+def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, cyclic_path: loops.CyclicPath) -> None:
     """Draw hysteresis loops with first loading and end points; energy loss and stiffness over amplitude."""
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
     cycles = sorted(hysteresis.loops, key=lambda loop: loop.amplitudes[0])
@@ -188,14 +190,14 @@ def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, swing: loop
     for loop in cycles:
         x, y = x_size * loop.motion[loop.cycle_start :], y_size * loop.force[loop.cycle_start :]
         left.plot(x, y, color=plots.BLUE, lw=1.2)
-    first = slice(None, swing.points // 4 + 1)
+    first = slice(None, cyclic_path.points // 4 + 1)
     left.plot(x_size * cycles[-1].motion[first], y_size * cycles[-1].force[first], "--", color=plots.RED)
     ends = np.array([(x_size * loop.motion[-1], y_size * loop.force[-1]) for loop in cycles])
     left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
-    left.set_xlabel(f"{hysteresis.motion} [{motion}]")
-    left.set_ylabel(f"{'-' if hysteresis.sign < 0.0 else ''}{hysteresis.force} [{force}]")
+    left.set_xlabel(f"{hysteresis.motion_name} [{motion}]")
+    left.set_ylabel(f"{'-' if hysteresis.force_sign < 0.0 else ''}{hysteresis.force_name} [{force}]")
     left.legend(loc="lower right")
-    rows = [loop.row() for loop in cycles]
+    rows = [loop.compute_row() for loop in cycles]
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from jointfmu.files.outputs import PICTURE
 from jointfmu.files.writing import write_text
-from jointfmu.mechanics.steps import largest_stable_steps
+from jointfmu.mechanics.stable_steps import largest_stable_steps
 
 from .. import columns
 from ..command_line.common import (
@@ -22,7 +22,7 @@ from ..command_line.common import (
     require_package,
 )
 from ..command_line.outputs import declare_output
-from ..systems.system import names, system
+from ..systems.system import list_system_names, load_system
 from . import save_panels
 
 
@@ -30,7 +30,9 @@ def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu ring` with its options."""
     text = "simulate a joint with a body on it and find resonance and damping over load or amplitude"
     ring = declare_command(commands, "ring", _run_ring, text)
-    declare_argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
+    declare_argument(
+        ring, "system", str, f"{', '.join(list_system_names())}, or a system's file (TOML)", "SYSTEM"
+    )
     declare_argument(ring, "--joint", str, "joint to examine, if the system has several")
     text = "folder with the FMUs of `jointfmu system` or `build --systems`"
     declare_argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
@@ -42,16 +44,16 @@ def add(commands: SubParsers) -> None:
     text += "and print frequency and damping over the amplitude (default load: the largest of the series)"
     declare_argument(ring, "--amplitude", float, text)
     declare_settings(ring)
-    declare_output(ring, "--csv", columns.TABLE, "write the table to a file")
+    declare_output(ring, "--csv", columns.TABLE_FILE_KIND, "write the table to a file")
     declare_output(ring, "--plot", PICTURE, "draw resonance and decay (.png, .svg)")
 
 
 def _run_ring(args: argparse.Namespace) -> CommandResult:
     with require_package("run a system"):
         from ..systems import ringing
-    example = ringing.vibrating_joint(system(args.system), args.joint)
+    example = ringing.find_vibrating_joint(load_system(args.system), args.joint)
     _check_arguments(args, example.inertia_unit)
-    for name in (example.fmu, example.body.partner):
+    for name in (example.fmu_name, example.test.body_model):
         if not (args.fmus / f"{name}.fmu").is_file():
             raise ValueError(
                 f"--fmus {args.fmus}: has no {name}.fmu; `jointfmu system {args.system}` writes it"
@@ -60,7 +62,7 @@ def _run_ring(args: argparse.Namespace) -> CommandResult:
         return _run_decays(args, example)
     if args.settings:
         raise ValueError("--set is given without --amplitude; allowed is with --amplitude only")
-    points = ringing.ring(example, args.fmus, args.load, args.inertia)
+    points = ringing.simulate_vibrations(example, args.fmus, args.load, args.inertia)
     rows = [_resonance_row(point) for point in points]
     for message in dict.fromkeys(text for point in points for text in point.messages):
         print(message, file=sys.stderr)
@@ -71,7 +73,7 @@ def _run_ring(args: argparse.Namespace) -> CommandResult:
         from ..report.systems import RESONANCE_SIZE, resonance_panels
 
         save_panels(args.plot, resonance_panels(points, example, args.fmus), RESONANCE_SIZE)
-    misses = [line for point in points for line in point.misses]
+    misses = [line for point in points for line in point.list_deviations]
     for line in misses:
         print(f"missed: {line}", file=sys.stderr)
     return CommandResult(
@@ -82,17 +84,19 @@ def _run_ring(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _run_decays(args: argparse.Namespace, example: Any) -> CommandResult:
+def _run_decays(args: argparse.Namespace, joint: Any) -> CommandResult:
     """Simulate free decays: frequency and damping over the amplitude."""
     from ..systems import decays
 
-    points = decays.decays(example, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings))
-    body = example.body
+    points = decays.simulate_decays(
+        joint, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings)
+    )
+    body = joint.test
     for message in dict.fromkeys(text for point in points for text in point.messages):
         print(message, file=sys.stderr)
     heads = {
-        "load": example.load_unit,
-        "amplitude": example.motion_unit,
+        "load": joint.load_unit,
+        "amplitude": joint.motion_unit,
         "frequency": "Hz",
         "loop_frequency": "Hz",
         "damping_ratio": "1",
@@ -111,19 +115,19 @@ def _run_decays(args: argparse.Namespace, example: Any) -> CommandResult:
     return CommandResult(document=document, lines=table.splitlines(), written_files=written)
 
 
-def _decay_columns(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
+def _decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
     """Columns of a free decay: load, amplitude, frequency [Hz] and damping ratio [1], each of decay and loop.
 
     The loop is the joint's hysteresis loop of the same amplitude.
     """
     hertz = 1.0 / math.tau
     return (
-        np.full(point.amplitude.size, point.load),
-        point.amplitude,
-        hertz * point.frequency,
-        hertz * point.expected,
-        point.damping,
-        point.stated,
+        np.full(decay.amplitude.size, decay.load),
+        decay.amplitude,
+        hertz * decay.frequency,
+        hertz * decay.expected_frequency,
+        decay.damping,
+        decay.expected_damping,
     )
 
 
@@ -141,19 +145,21 @@ def _check_arguments(args: argparse.Namespace, inertia_unit: str) -> None:
         raise ValueError(f"amplitude = {args.amplitude:g} is outside (0, inf)")
 
 
-def _resonance_row(point: Any) -> dict[str, float]:
+def _resonance_row(vibration: Any) -> dict[str, float]:
     """Results at one load: frequencies [Hz], damping ratios [1], and the largest stable time steps [s].
 
     `largest_step` holds if the co-simulation master passes the force on at once, `largest_step_late` if it
     passes the force on one step late.
     """
-    at_once, late = largest_stable_steps(point.expected**2, 2.0 * point.stated * point.expected, 1.0)
+    at_once, late = largest_stable_steps(
+        vibration.expected_frequency**2, 2.0 * vibration.expected_damping * vibration.expected_frequency, 1.0
+    )
     return {
-        "load": point.load,
-        "frequency": point.frequency / math.tau,
-        "expected_frequency": point.expected / math.tau,
-        "damping_ratio": point.damping,
-        "stated_damping_ratio": point.stated,
+        "load": vibration.load,
+        "frequency": vibration.frequency / math.tau,
+        "expected_frequency": vibration.expected_frequency / math.tau,
+        "damping_ratio": vibration.damping,
+        "stated_damping_ratio": vibration.expected_damping,
         "largest_step": float(at_once),
         "largest_step_late": float(late),
     }

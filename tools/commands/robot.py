@@ -75,29 +75,34 @@ def run(args: argparse.Namespace) -> CommandResult:
     from ..interface import load
     from ..robots import elastic, poses
     from ..robots import pictures as drawn
-    from ..robots.names import check_names, identifier
-    from ..robots.transmission import transmission
+    from ..robots.names import check_names, make_identifier
+    from ..robots.transmission import make_transmission
 
     spec = elastic.read_robot(args.robot)
-    files = {joint: load(name).file for joint, name in names.items()}
+    loaded = {name: load(name).file for name in dict.fromkeys(names.values())}  # axes may share a drive
+    files = {joint: loaded[name] for joint, name in names.items()}
     if args.plugin or args.fmu:
         check_names(files)
     if args.fmu:
-        outputs = [*(identifier(file.name) for file in files.values()), f"{identifier(args.robot.stem)}_axes"]
+        outputs = [
+            *(make_identifier(file.name) for file in files.values()),
+            f"{make_identifier(args.robot.stem)}_axes",
+        ]
         for path in (args.out / f"{name}.toml" for name in outputs):
             check_input_overwrite([path], args, ("out",))
             check_output(path, PARAMETER_FILE, args.force)
-    axes = elastic.axes(spec, {joint: transmission(file) for joint, file in files.items()})
+    drives = {name: make_transmission(file) for name, file in loaded.items()}
+    axes = elastic.make_axes(spec, {joint: drives[name] for joint, name in names.items()})
     model = spec.compile()
-    pose, tip = elastic.joint_positions(model, angles), elastic.body(model, args.tip, axes)
-    made = elastic.with_drives(spec, axes)
-    elastic.keep_folders(made, args.robot)
+    pose, tip = elastic.joint_positions(model, angles), elastic.find_body(model, args.tip, axes)
+    made = elastic.add_drives(spec, axes)
+    elastic.make_folders_absolute(made, args.robot)
     made.compile()
     write_text(written, f"<!-- {PROGRAM_MARK} -->\n{made.to_xml()}")
-    grid, found = drawn.over_poses(model, axes, pose, args.payload, tip)
+    grid, found = drawn.sweep_frequencies(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
-        pose = drawn.lowest(model, axes, pose, grid, args.payload, tip)
+        pose = drawn.find_worst_pose(model, axes, pose, grid, args.payload, tip)
     wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
     more = []
     with require_package("compile", "mujoco"):
@@ -105,12 +110,14 @@ def run(args: argparse.Namespace) -> CommandResult:
             more += _write_plugin_robot(args, spec, axes, files)
         if args.fmu:
             more += _write_axes_system(args, model, axes, files, pose, tip)
-    longest = poses.longest_step(model, axes, pose)
-    weight, jacobian = poses.torques(model, axes, pose, args.payload, tip)
-    plain, plain_sunk = poses.sag(model, axes, pose, args.payload, tip, [axis.fitted for axis in axes])
+    longest = poses.find_largest_stable_step(model, axes, pose)
+    weight, jacobian = poses.compute_torques(model, axes, pose, args.payload, tip)
+    plain, plain_sunk = poses.compute_sag(
+        model, axes, pose, args.payload, tip, [axis.spring for axis in axes]
+    )
     under = list(zip(axes, weight.tolist(), strict=True))
-    notes = [line for axis in axes for line in axis.noted]
-    notes += [line for axis, torque in under for line in axis.overload(torque)]
+    notes = [line for axis in axes for line in axis.notes]
+    notes += [line for axis, torque in under for line in axis.overload_warnings(torque)]
     last = axes[-1].joint
     if args.payload and not jacobian[:, -1].any() and model.jnt_bodyid[model.joint(last).id] == tip:
         notes.append(
@@ -118,7 +125,9 @@ def run(args: argparse.Namespace) -> CommandResult:
             "not load; --tip BODY puts it elsewhere, at a body (a link of a URDF) that stands for the tool"
         )
     lacking = (
-        f"{axis.drive.name}: the MJCF does not carry {line}" for axis in axes for line in axis.drive.lacks
+        f"{axis.drive.name}: the MJCF does not carry {line}"
+        for axis in axes
+        for line in axis.drive.omitted_effects
     )
     notes += dict.fromkeys(lacking)
     if model.opt.timestep > longest:
@@ -141,7 +150,7 @@ def run(args: argparse.Namespace) -> CommandResult:
         "tip_error": sunk,
         "plain": {
             "wind_up": dict(zip([axis.joint for axis in axes], plain.tolist(), strict=True)),
-            "stiffness": {axis.joint: axis.fitted.stiffness(torque) for axis, torque in under},
+            "stiffness": {axis.joint: axis.spring.stiffness(torque) for axis, torque in under},
             "tip_error": plain_sunk,
         },
         "longest_step": longest,
@@ -150,68 +159,71 @@ def run(args: argparse.Namespace) -> CommandResult:
     return CommandResult(document=facts, lines=_format_results(facts, model))
 
 
-def _write_plugin_robot(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:
+def _write_plugin_robot(args: argparse.Namespace, spec: Any, axes: Any, drive_files: Any) -> list[Path]:
     """Write the robot with MuJoCo plugins, and compile the plugins; returns the paths."""
     from ..robots import elastic, plugged
 
-    elastic.keep_folders(spec, args.robot)
+    elastic.make_folders_absolute(spec, args.robot)
     written = args.out / f"{args.robot.stem}_plugin.xml"
-    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{plugged.text(spec, axes, files)}")
-    return [written, *plugged.plugins(files, args.out).values()]
+    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{plugged.format_plugin_robot(spec, axes, drive_files)}")
+    return [written, *plugged.compile_plugins(drive_files, args.out).values()]
 
 
 def _write_axes_system(
-    args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: Any, tip: int
+    args: argparse.Namespace, model: Any, axes: Any, drive_files: Any, pose: Any, tip: int
 ) -> list[Path]:
     """Write the system file of the axes, the parameter files of their drives, and the FMUs.
 
     Returns the paths of the system file and the FMUs.
     """
     from ..robots import axes_system
-    from ..robots.names import identifier
-    from ..systems.fmu.assembly import assembly
+    from ..robots.names import make_identifier
+    from ..systems.fmu.assembly import assemble_system
     from ..systems.fmu.build import build_system
     from ..systems.system import read_system
 
-    written = args.out / f"{identifier(args.robot.stem)}_axes.toml"
-    drives = {identifier(file.name): format_parameter_file(file) for file in files.values()}
+    written = args.out / f"{make_identifier(args.robot.stem)}_axes.toml"
+    drives = {make_identifier(file.name): format_parameter_file(file) for file in drive_files.values()}
     for name, text in drives.items():
         write_parameter_text(args.out / f"{name}.toml", text)
     write_parameter_text(
-        written, axes_system.text(args.robot.stem, model, axes, files, pose, args.payload, tip)
+        written,
+        axes_system.format_axes_system(args.robot.stem, model, axes, drive_files, pose, args.payload, tip),
     )
-    return [written, *build_system(assembly(read_system(written)), args.out, force=args.force)]
+    return [written, *build_system(assemble_system(read_system(written)), args.out, force=args.force)]
 
 
-def _format_results(facts: dict[str, Any], model: Any) -> Sequence[str]:
-    from ..robots.elastic import unit
+def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
+    from ..robots.elastic import coordinate_unit
 
-    span, payload, plain = facts["frequencies"], facts["payload"], facts["plain"]
+    span, payload, plain = result_values["frequencies"], result_values["payload"], result_values["plain"]
     return [
-        *(f"wrote {path}" for path in facts["written"]),
+        *(f"wrote {path}" for path in result_values["written"]),
         f"natural frequencies over the poses: {span['lowest']:.4g} to {span['highest']:.4g} Hz",
         f"with {payload:g} kg at "
-        + ", ".join(f"{name} = {x:.4g} {unit(model, name)}" for name, x in facts["pose"].items()),
-        *(
-            f"{name}: wind-up {1e3 * x:.4g} mrad, {facts['stiffness'][name]:.4g} N.m/rad, "
-            f"at {facts['torque'][name]:.4g} N.m; in the plain file "
-            f"{1e3 * plain['wind_up'][name]:.4g} mrad, {plain['stiffness'][name]:.4g} N.m/rad"
-            for name, x in facts["wind_up"].items()
+        + ", ".join(
+            f"{name} = {x:.4g} {coordinate_unit(model, name)}" for name, x in result_values["pose"].items()
         ),
-        f"tip error at {facts['tip']}: {1e3 * facts['tip_error']:.4g} mm; in the plain file "
+        *(
+            f"{name}: wind-up {1e3 * x:.4g} mrad, {result_values['stiffness'][name]:.4g} N.m/rad, "
+            f"at {result_values['torque'][name]:.4g} N.m; in the plain file "
+            f"{1e3 * plain['wind_up'][name]:.4g} mrad, {plain['stiffness'][name]:.4g} N.m/rad"
+            for name, x in result_values["wind_up"].items()
+        ),
+        f"tip error at {result_values['tip']}: {1e3 * result_values['tip_error']:.4g} mm; in the plain file "
         f"{1e3 * plain['tip_error']:.4g} mm",
-        *facts["notes"],
+        *result_values["notes"],
     ]
 
 
-def _parse_pairs(words: Sequence[str], option: str, value: str) -> dict[str, str]:
+def _parse_pairs(words: Sequence[str], option_name: str, value_name: str) -> dict[str, str]:
     """Parse JOINT=VALUE words into {joint: text}. Raises ValueError for a wrong word or a repeated joint."""
     pairs: dict[str, str] = {}
     for word in words:
         joint, sign, text = word.partition("=")
         if not (joint and sign and text):
-            raise ValueError(f"{option} {word!r}: expected JOINT={value}")
+            raise ValueError(f"{option_name} {word!r}: expected JOINT={value_name}")
         if joint in pairs:
-            raise ValueError(f"{option}: {joint} is stated twice")
+            raise ValueError(f"{option_name}: {joint} is stated twice")
         pairs[joint] = text
     return pairs

@@ -15,7 +15,7 @@ from ..command_line.common import (
     require_package,
 )
 from ..command_line.outputs import declare_output
-from ..systems.system import System, names, system
+from ..systems.system import System, list_system_names, load_system
 from . import save_panels
 
 
@@ -23,27 +23,29 @@ def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu system` with its options."""
     text = "build a system of joints and bodies: FMUs, SSP archives and a Modelica model"
     make = declare_command(commands, "system", _run_system, text)
-    declare_argument(make, "file", str, f"system file (TOML), or {', '.join(names())}", "FILE")
+    declare_argument(make, "file", str, f"system file (TOML), or {', '.join(list_system_names())}", "FILE")
     declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
     text = "also build one FMU of the whole system: NAME.fmu, FMI 2.0 and 3.0"
     make.add_argument("--fmu", action="store_true", help=text)
-    declare_output(make, "--csv", columns.TABLE, "simulate the system and write all connected outputs")
+    declare_output(
+        make, "--csv", columns.TABLE_FILE_KIND, "simulate the system and write all connected outputs"
+    )
     text = "simulate the system and draw the joint loads; for an arm also wind-up and tip error (.png, .svg)"
     declare_output(make, "--plot", PICTURE, text)
 
 
 def _run_system(args: argparse.Namespace) -> CommandResult:
-    described = system(args.file)
+    described = load_system(args.file)
     with require_package("build a system"):
         from ..modelica import library
         from ..modelica.systems import model_name
         from ..systems import ssp
-        from ..systems.fmu.assembly import assembly
-        from ..systems.steps import longest_step
+        from ..systems.fmu.assembly import assemble_system
+        from ..systems.steps import find_largest_stable_step
 
-        whole = assembly(described) if args.fmu else None
+        whole = assemble_system(described) if args.fmu else None
         model = library.render_system(described)
-        step = longest_step(described)
+        step = find_largest_stable_step(described)
         if (args.csv or args.plot) and (warning := _warn_long_step(described, *step)):
             raise ValueError(f"{args.file}: {warning}; allowed is a shorter one, or neither --csv nor --plot")
         written = args.out / "modelica" / f"{model_name(described)}.mo"
@@ -51,7 +53,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
         if whole:
             from ..systems.fmu.build import build_system, fmu_paths
 
-            check_outputs(fmu_paths(whole.model().title, args.out), ARCHIVE, args.force)
+            check_outputs(fmu_paths(whole.make_model().title, args.out), ARCHIVE, args.force)
         built = ssp.build_systems(args.out, [described], force=args.force)
         if whole:
             built += build_system(whole, args.out, force=args.force)
@@ -66,7 +68,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
         except ValueError as error:
             text = f"experiment.interval = {described.interval:g} s may be too long"
             raise ValueError(f"{error}; {text}") from None
-        step = min(step, longest_step(described, run))
+        step = min(step, find_largest_stable_step(described, run))
         if args.csv:
             units = systems.output_units(described)
             heads = [(name, units[name]) for name in run]

@@ -43,7 +43,7 @@ def add(commands: SubParsers) -> None:
     _declare_sampling(study, "number of samples", 16384)
     declare_argument(study, "--to", float, "last value of the load ramp (SI)")
     declare_argument(study, "--points", int, "number of points of the ramp", default=201)
-    declare_output(study, "--csv", columns.TABLE, "write the bands to a file")
+    declare_output(study, "--csv", columns.TABLE_FILE_KIND, "write the bands to a file")
     declare_output(study, "--plot", PICTURE, "draw bands and sensitivity indices (.png, .svg)")
 
 
@@ -78,17 +78,19 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     rows = min(count, max(1024, count // 32))
     indices = (
         compute_sensitivity(task, A[:rows], B[:rows])
-        if len(task.uncertain) > 1 and bands.has_scatter
+        if len(task.uncertain_parameters) > 1 and bands.has_scatter
         else None
     )
     if args.csv:
-        write_text(args.csv, report.bands_csv(task, bands))
+        write_text(args.csv, report.format_bands_csv(task, bands))
     if args.plot:
-        report.draw(args.plot, bands, indices, f"{task.curves.load.name} [{task.curves.load.unit}]")
+        report.draw_bands_and_indices(
+            args.plot, bands, indices, f"{task.curves.load.name} [{task.curves.load.unit}]"
+        )
     judgement = judge_file(
-        replace(file, values=build_parameter_set(task.parameters, task.values)), report.table_loads(task)
+        replace(file, values=build_parameter_set(task.parameter_class, task.values)), report.table_loads(task)
     )
-    lines = [report.table(task, bands, indices)]
+    lines = [report.format_table(task, bands, indices)]
     return CommandResult(document=report.as_json(task, bands, indices), lines=lines, judgement=judgement)
 
 
@@ -129,14 +131,17 @@ def _run_sweep(args: argparse.Namespace) -> CommandResult:
         raise KeyboardInterrupt(text) from None
     failure = done.first_failure
     example = failure and {key: failure[key] for key in ("run", "parameters", "error")}
-    counts = {"runs": done.runs, "now": done.new_runs, "failed": done.failed}
-    before = done.runs - done.new_runs
-    lines = [f"{done.runs} runs in {args.out}: {done.new_runs} now, {before} before, {done.failed} failed"]
+    counts = {"runs": done.run_count, "now": done.new_runs, "failed": done.failed_count}
+    before = done.run_count - done.new_runs
+    lines = [
+        f"{done.run_count} runs in {args.out}: {done.new_runs} now, {before} before, "
+        f"{done.failed_count} failed"
+    ]
     if failure:
         values = ", ".join(f"{k} = {v}" for k, v in failure["parameters"].items())
         lines.append(f"the first failed, run {failure['run']}: {values}: {failure['error']}")
     return CommandResult(
         document={"out": str(args.out), **counts, "first_failure": example},
         lines=lines,
-        exit_status=int(done.failed == done.runs),
+        exit_status=int(done.failed_count == done.run_count),
     )

@@ -44,7 +44,7 @@ FACE_OPTIONS = (
     Option("mu", "coefficient of friction [1] (default: 0.15)"),
 )
 """Options of every joint with rough faces."""
-DEFAULT_MU, DEFAULT_MU_RANGE = 0.15, (0.1, 0.3)
+DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
 """Coefficient of friction if the drawing states none, and its range [1]."""
 MAX_MU = 2.0
 """Largest allowed coefficient of friction [1]: clean pairs of the same metal in air have 0.8 to 1.5."""
@@ -66,21 +66,21 @@ CUT_OFF_WAVELENGTHS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (1
 class Face(NamedTuple):
     """Roughness of one face.
 
-    Rq             : rms height [m]
-    Rq_min, Rq_max : lower and upper limit of the rms height [m]
-    slope, hurst   : rms slope [1], Hurst exponent [1]
-    longest_wave   : longest wavelength [m] that the height includes
-    text           : source of the height
-    stated_heights : {key of the section [roughness] without the number of the side: height [m]}
+    Rq                        : rms height [m]
+    Rq_min, Rq_max            : lower and upper limit of the rms height [m]
+    rms_slope, hurst_exponent : rms slope [1], Hurst exponent [1]
+    longest_wave              : longest wavelength [m] that the height includes
+    height_source             : source of the height
+    stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
     """
 
     Rq: float
     Rq_min: float
     Rq_max: float
-    slope: SourcedNumber
-    hurst: SourcedNumber
+    rms_slope: SourcedNumber
+    hurst_exponent: SourcedNumber
     longest_wave: SourcedNumber
-    text: str
+    height_source: str
     stated_heights: dict[str, float]
 
 
@@ -118,47 +118,51 @@ def add_faces(sheet: ParameterSheet, options: DrawingOptions) -> HeightRange:
         known = soft.numbers["H"]
         sheet.add("H", known.value, known.kind, f"{soft.title}: {known.source}")
     else:
-        sheet.add_stated("H", parse_number("hardness", options["hardness"], "MPa", "Pa"))
+        sheet.add_drawing_value("H", parse_number("hardness", options["hardness"], "MPa", "Pa"))
     if options["mu"] is None:
         sheet.add("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
-        sheet.set_range("mu", *DEFAULT_MU_RANGE)
+        sheet.set_range("mu", *DEFAULT_MU_LIMITS)
     else:
         mu = parse_number("mu", options["mu"], "1", "1")
         if mu > MAX_MU:
             raise ValueError(f"--mu = {options['mu']!r} is outside (0, {MAX_MU:g}]: no metals rub as much")
-        sheet.add_stated("mu", mu)
+        sheet.add_drawing_value("mu", mu)
     sheet.add("traction_ratio", 0.1, "estimate", "vibration far below slip")
     return _add_roughness(sheet, read_faces(options), options["longest_wave"])
 
 
-def _add_roughness(sheet: ParameterSheet, pair: tuple[Face, Face], longest_wave: str | None) -> HeightRange:
+def _add_roughness(sheet: ParameterSheet, faces: tuple[Face, Face], longest_wave: str | None) -> HeightRange:
     """Add the roughness of both faces together: height, slope, Hurst exponent, longest wave."""
     h, low, high = (
-        float(roughness.combine_heights(*(getattr(face, name) for face in pair)))
+        float(roughness.combine_heights(*(getattr(face, name) for face in faces)))
         for name in ("Rq", "Rq_min", "Rq_max")
     )
-    texts = "; ".join(f"side {i + 1}: {face.text}" for i, face in enumerate(pair))
+    texts = "; ".join(f"side {i + 1}: {face.height_source}" for i, face in enumerate(faces))
     spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the range of the finish" if high > low else ""
     sheet.add(
         "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
     )
-    sheet.add("gamma", roughness.GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)")
-    longest = max((face.longest_wave for face in pair), key=lambda known: known.value)
+    sheet.add(
+        "gamma", roughness.PERSSON_GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)"
+    )
+    longest = max((face.longest_wave for face in faces), key=lambda known: known.value)
     if longest_wave is None:
-        sheet.add_sourced("longest_wave", longest)
+        sheet.add_sourced_number("longest_wave", longest)
     else:
-        sheet.add_stated("longest_wave", parse_number("longest_wave", longest_wave, "mm", "m"))
-    rough = max(pair, key=lambda face: face.Rq)
-    sheet.add_sourced("hurst", rough.hurst)
-    slopes = [face.slope for face in pair]
+        sheet.add_drawing_value("longest_wave", parse_number("longest_wave", longest_wave, "mm", "m"))
+    rough = max(faces, key=lambda face: face.Rq)
+    sheet.add_sourced_number("hurst", rough.hurst_exponent)
+    slopes = [face.rms_slope for face in faces]
     value = float(roughness.combine_heights(*(known.value for known in slopes)))
     sheet.add(
         "slope", value, "estimate", "both sides together; " + "; ".join({known.source for known in slopes})
     )
     _add_fractal_parameters(sheet)
-    for i, face in enumerate(pair):
+    for i, face in enumerate(faces):
         kind = "estimate" if face.Rq_max > face.Rq_min else "user"
-        sheet.roughness |= {f"{name}{i + 1}": (v, kind, face.text) for name, v in face.stated_heights.items()}
+        sheet.roughness |= {
+            f"{name}{i + 1}": (v, kind, face.height_source) for name, v in face.stated_heights.items()
+        }
     return HeightRange(low, high, RZ_OVER_RA * rough.Rq / roughness.RQ_OVER_RA)
 
 
@@ -221,8 +225,8 @@ def _cut_off_wavelength(Ra: float) -> SourcedNumber:
     )
 
 
-def _face_from_finish(name: str) -> Face:
-    known = find_row("finishes", name)
+def _face_from_finish(finish_name: str) -> Face:
+    known = find_row("finishes", finish_name)
     Ra, low, high = (known.numbers[key].value for key in ("Ra", "Ra_low", "Ra_high"))
     text = (
         f"{known.title}, Ra {low * 1e6:.3g} to {high * 1e6:.3g} um, taken as {Ra * 1e6:.3g} um "
@@ -233,24 +237,35 @@ def _face_from_finish(name: str) -> Face:
     return Face(Rq, Rq_low, Rq_high, slope, hurst, _cut_off_wavelength(Ra), text, {"Ra": Ra})
 
 
-def _face_from_number(name: str, text: str, finish: TableRow | None) -> Face:
-    value = parse_number(name, text, "um", "m")
+def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | None) -> Face:
+    value = parse_number(roughness_name, height_text, "um", "m")
     if value > roughness.MAX_HEIGHT:
         limit = roughness.MAX_HEIGHT * 1e6
-        raise ValueError(f"--{name} = {text!r} is outside (0, {limit:g}] um: no roughness is as high")
-    Rq = value if name == "Rq" else float(roughness.rms_height(value))
+        raise ValueError(
+            f"--{roughness_name} = {height_text!r} is outside (0, {limit:g}] um: no roughness is as high"
+        )
+    Rq = value if roughness_name == "Rq" else float(roughness.rms_height(value))
     slope = SourcedNumber(DEFAULT_RMS_SLOPE, "estimate", "usual of machined surfaces")
     hurst = SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual of machined surfaces, 0.7 to 0.9")
     if finish:
         slope, hurst = finish.numbers["slope"], finish.numbers["hurst"]
     wave = _cut_off_wavelength(Rq / roughness.RQ_OVER_RA)
-    return Face(Rq, Rq, Rq, slope, hurst, wave, f"{name} {value * 1e6:.4g} um of the drawing", {name: value})
+    return Face(
+        Rq,
+        Rq,
+        Rq,
+        slope,
+        hurst,
+        wave,
+        f"{roughness_name} {value * 1e6:.4g} um of the drawing",
+        {roughness_name: value},
+    )
 
 
 def _face_from_scan(path: str, unit: str | None) -> Face:
     prepared = form.prepare_scan(reading.read_heights(Path(path), unit))
-    longest = form.default_wave(prepared.complete)
-    scan = form.scan_roughness(prepared.gappy, prepared.complete, longest)
+    longest = form.default_longest_wave(prepared.filled_heights)
+    scan = form.scan_roughness(prepared.heights_with_gaps, prepared.filled_heights, longest)
     source = f"scan {Path(path).name}"
     return Face(
         scan.h,
@@ -264,12 +279,13 @@ def _face_from_scan(path: str, unit: str | None) -> Face:
     )
 
 
-def warn_hardness(peak: float, hardness: float) -> list[str]:
+def warn_hardness(peak_pressure: float, hardness: float) -> list[str]:
     """Warning if the greatest pressure [Pa] is above the hardness [Pa], the limit of the law; else empty."""
-    if peak <= hardness:
+    if peak_pressure <= hardness:
         return []
     return [
-        f"the greatest pressure, {peak:.4g} Pa, is above the hardness, {hardness:.4g} Pa: the law ends there"
+        f"the greatest pressure, {peak_pressure:.4g} Pa, is above the hardness, {hardness:.4g} Pa: the "
+        "law ends there"
     ]
 
 
@@ -278,7 +294,7 @@ class LineContact(NamedTuple):
 
     half_width: Number
     area: Number
-    pressure: Number
+    peak_pressure: Number
 
 
 def hertz_line_contact(load: Number, width: Number, curvature: Number, modulus: Number) -> LineContact:

@@ -75,11 +75,11 @@ class ParameterSheet:
         """Set the lower and upper limit that the source of a parameter states."""
         self.ranges[name] = (low, high)
 
-    def add_stated(self, name: str, value: object) -> None:
+    def add_drawing_value(self, name: str, value: object) -> None:
         """Add a parameter that the user states on the drawing."""
         self.add(name, value, "user", "stated on the drawing")
 
-    def add_sourced(self, name: str, number: SourcedNumber) -> None:
+    def add_sourced_number(self, name: str, number: SourcedNumber) -> None:
         """Add a parameter with the value and source of a tabulated number."""
         self.add(name, number.value, number.kind, number.source)
 

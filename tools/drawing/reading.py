@@ -8,8 +8,8 @@ from jointfmu.quantity.units import KELVIN_AT_ZERO, LUBRICANT_TEMPERATURES, conv
 
 from ..command_line.common import option_flag
 
-_TEMPERATURE = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
-_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
+_TEMPERATURE_PATTERN = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
+_NUMBER_PATTERN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
 
 
 def parse_number(
@@ -24,7 +24,7 @@ def parse_number(
 
     Raises ValueError for text that is no number, a wrong unit, an infinite number, or one out of range.
     """
-    match = _NUMBER.fullmatch(text.strip())
+    match = _NUMBER_PATTERN.fullmatch(text.strip())
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
         example = "expected a number without a unit"
@@ -45,7 +45,7 @@ def parse_temperature(option: str, text: str) -> float:
 
     Raises ValueError for text that is no temperature, or outside the range LUBRICANTS of lubricants.
     """
-    match = _TEMPERATURE.fullmatch(text.strip())
+    match = _TEMPERATURE_PATTERN.fullmatch(text.strip())
     if not match:
         raise ValueError(
             f"{option_flag(option)} = {text!r} is no temperature; expected 45, 45degC or 318.15K"

@@ -133,13 +133,13 @@ def read_property_classes() -> dict[str, dict[str, tuple[float, float]]]:
     }
 
 
-LARGE_DIAMETER = 16e-3
+MIN_LARGE_THREAD_DIAMETER = 16e-3
 """Thread diameter [m] above which the second strength of a property class in the table holds."""
 
 
-def strength(property_class: str, stress_kind: str, thread: Thread) -> float:
+def property_class_strength(property_class: str, stress_kind: str, thread: Thread) -> float:
     """Strength [Pa] of a property class, "yield" or "proof", for a thread."""
-    return read_property_classes()[property_class][stress_kind][int(thread.d > LARGE_DIAMETER)]
+    return read_property_classes()[property_class][stress_kind][int(thread.d > MIN_LARGE_THREAD_DIAMETER)]
 
 
 def _read_document(name: str) -> tuple[Path, dict[str, Any]]:

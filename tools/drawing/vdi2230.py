@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from . import tables
-from .tables import Thread, read_threads, strength
+from .tables import Thread, property_class_strength, read_threads
 
 E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
@@ -70,9 +70,9 @@ def cone_slope(grip: float, bearing_diameter: float, outer_diameter: float, is_t
     return float(0.362 + 0.032 * np.log(0.5 * beta) + 0.153 * np.log(y))
 
 
-def cone_diameter(height: float, bearing_diameter: float, slope: float) -> float:
+def cone_diameter(depth: float, bearing_diameter: float, slope: float) -> float:
     """Diameter [m] of the deformation cone at a distance [m] below the head."""
-    return bearing_diameter + 2.0 * height * slope
+    return bearing_diameter + 2.0 * depth * slope
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +171,6 @@ def proof_load(hole_diameter: float) -> tuple[float, str] | None:
     if not fitting or hole_diameter > 1.2 * largest.d:
         return None
     bolt = max(fitting, key=lambda thread: thread.d)
-    load = strength(STRONGEST_CLASS, "proof", bolt) * stress_area(bolt)
+    load = property_class_strength(STRONGEST_CLASS, "proof", bolt) * stress_area(bolt)
     name = f"{bolt.name}, class {STRONGEST_CLASS} (ISO 898-1)"
     return load, f"the proof load of {name}, the largest bolt that passes the hole"

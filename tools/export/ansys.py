@@ -25,12 +25,10 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     All stiffness elements come first. Pairs that agree to nine digits, the precision of the format, share a
     set of real constants.
     """
-    first, first_set, units, count = (
-        placement.first_number,
-        placement.first_set_number,
-        placement.units,
-        len(springs.nodes),
-    )
+    first = placement.first_number
+    first_set = placement.first_set_number
+    units = placement.units
+    count = len(springs.nodes)
     stiffness = placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m"))
     damping = placement.assign_to_axes(
         units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
@@ -55,33 +53,38 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     return "\n".join(lines) + "\n"
 
 
-def upper_triangle(values: Array) -> Array:
+def upper_triangle(spring_values: Array) -> Array:
     """Upper triangle C1 to C78 (78) of the matrix of three springs (3) along x, y, z between two nodes."""
     matrix = np.zeros((12, 12))
     axes = np.arange(3)
-    matrix[axes, axes] = matrix[axes + 6, axes + 6] = values
-    matrix[axes, axes + 6] = matrix[axes + 6, axes] = -values
+    matrix[axes, axes] = matrix[axes + 6, axes + 6] = spring_values
+    matrix[axes, axes + 6] = matrix[axes + 6, axes] = -spring_values
     return np.asarray(matrix[_UPPER_TRIANGLE])
 
 
-def _real_constant_set(sets: dict[tuple[str, ...], int], values: Array, first: int) -> int:
+def _real_constant_set(
+    numbers_by_values: dict[tuple[str, ...], int], spring_values: Array, first_set_number: int
+) -> int:
     """Return the number of the set of real constants of three springs (3). New values get a new set."""
-    return sets.setdefault(tuple(f"{v:.8E}" for v in values), first + len(sets))
+    return numbers_by_values.setdefault(
+        tuple(f"{v:.8E}" for v in spring_values), first_set_number + len(numbers_by_values)
+    )
 
 
-def _format_real_constants(sets: dict[tuple[str, ...], int]) -> Iterable[str]:
-    yield f"RLBLOCK,{len(sets):8d},{max(sets.values()):8d},{_UPPER_TRIANGLE[0].size:8d},{7:8d}"
+def _format_real_constants(numbers_by_values: dict[tuple[str, ...], int]) -> Iterable[str]:
+    sizes = (len(numbers_by_values), max(numbers_by_values.values()), _UPPER_TRIANGLE[0].size, 7)
+    yield ",".join(["RLBLOCK", *(f"{size:8d}" for size in sizes)])
     yield from ("(2i8,6g16.9)", "(7g16.9)")
-    for values, number in sets.items():
+    for values, number in numbers_by_values.items():
         cells = [f"{v:16.8E}" for v in upper_triangle(np.array(values, dtype=np.float64))]
         yield f"{number:8d}{len(cells):8d}" + "".join(cells[:6])
         yield from ("".join(cells[i : i + 7]) for i in range(6, len(cells), 7))
 
 
-def _format_element_type(type_number: int, matrix: int) -> Iterable[str]:
+def _format_element_type(type_number: int, matrix_option: int) -> Iterable[str]:
     yield f"ET,{type_number:9d},{MATRIX27:4d}"
     yield f"KEYOP,{type_number:9d},{2:3d},{0:9d}"
-    yield f"KEYOP,{type_number:9d},{3:3d},{matrix:9d}"
+    yield f"KEYOP,{type_number:9d},{3:3d},{matrix_option:9d}"
 
 
 def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:

@@ -32,7 +32,7 @@ FORMAT_CONTENTS = {
 """{format: contents that a file of this format can have}."""
 ROBOT_FORMATS = ("mjcf", "urdf")
 """Formats of robot simulators; a file has a drive."""
-CONTENTS = ("springs", "contact", "curve")
+EXPORT_CONTENTS = ("springs", "contact", "curve")
 """Contents that can be exported."""
 DEFAULT_LOAD_ERROR = 1e-3
 """Default for the largest relative error of the load [1] when a table is interpolated linearly."""

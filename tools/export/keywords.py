@@ -16,12 +16,12 @@ EXTRAPOLATED_OVERCLOSURE = 1.0
 
 
 def format_springs(
-    springs: Springs, placement: Placement, comment_lines: Sequence[str], dashpots: bool
+    springs: Springs, placement: Placement, comment_lines: Sequence[str], has_dashpots: bool
 ) -> str:
     """Format the springs as SPRING2 elements along the model's axes, and for Abaqus also DASHPOT2 elements.
 
     comment_lines : lines for the head of the file
-    dashpots      : whether to write dashpots
+    has_dashpots  : whether to write dashpots
 
     Pairs that agree to nine digits share an element set.
     """
@@ -37,7 +37,7 @@ def format_springs(
             placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m")),
         )
     ]
-    if dashpots:
+    if has_dashpots:
         values = placement.assign_to_axes(
             units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
         )

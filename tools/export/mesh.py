@@ -17,7 +17,7 @@ from jointfmu.quantity.units import UnitSizes, unit_sizes
 
 from ..columns import Columns, read_columns
 
-COLUMNS: Mapping[str, UnitSizes] = {
+COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "node_1": unit_sizes("1"),
     "node_2": unit_sizes("1"),
     "x": unit_sizes("m", "mm"),
@@ -54,28 +54,28 @@ def read_pairs(path: str | Path) -> NodePairs:
     column, a label that is no positive whole number or stands twice, an area that is not positive, a negative
     pressure, or a pressure that is zero everywhere.
     """
-    table = read_columns(path, COLUMNS, 3)
+    table = read_columns(path, COLUMN_UNITS, 3)
     nodes = np.stack([_read_node_labels(table, name) for name in ("node_1", "node_2")], axis=1)
     labels, counts = np.unique(nodes, return_counts=True)
     if np.any(counts > 1):
         raise ValueError(f"{table.path}: node {labels[counts > 1][0]} stands twice, allowed is once")
-    area = table.require_column("area", COLUMNS)
+    area = table.require_column("area", COLUMN_UNITS)
     _check_values(table, nodes, "area", area, area <= 0.0, "it must be positive")
     pressure = table.columns.get("pressure")
     if pressure is not None:
         _check_values(table, nodes, "pressure", pressure, pressure < 0.0, "a contact does not pull")
         if not np.any(pressure > 0.0):
             raise ValueError(f"{table.path}: pressure is zero everywhere; expected a closed contact")
-    position = np.stack([table.require_column(name, COLUMNS) for name in ("x", "y")], axis=1)
+    position = np.stack([table.require_column(name, COLUMN_UNITS) for name in ("x", "y")], axis=1)
     return NodePairs(table.path, nodes, position - np.average(position, axis=0, weights=area), area, pressure)
 
 
-def _read_node_labels(table: Columns, name: str) -> NDArray[np.int64]:
-    value = table.require_column(name, COLUMNS)
+def _read_node_labels(table: Columns, column_name: str) -> NDArray[np.int64]:
+    value = table.require_column(column_name, COLUMN_UNITS)
     bad = (value != np.round(value)) | (value < 1.0) | (value > MAX_NODE_LABEL)
     if np.any(bad):
         raise ValueError(
-            f"{table.path}: {name} = {value[bad][0]:.10g} is no node; "
+            f"{table.path}: {column_name} = {value[bad][0]:.10g} is no node; "
             f"expected a whole number in [1, {MAX_NODE_LABEL}]"
         )
     return value.astype(np.int64)
@@ -84,13 +84,13 @@ def _read_node_labels(table: Columns, name: str) -> NDArray[np.int64]:
 def _check_values(
     table: Columns,
     nodes: NDArray[np.int64],
-    name: str,
+    column_name: str,
     value: Array,
     is_invalid: NDArray[np.bool_],
     reason: str,
 ) -> None:
     if np.any(is_invalid):
         raise ValueError(
-            f"{table.path}: {name} = {value[is_invalid][0]:g} (SI) at node "
+            f"{table.path}: {column_name} = {value[is_invalid][0]:g} (SI) at node "
             f"{nodes[is_invalid][0, 0]}: {reason}"
         )

@@ -34,8 +34,10 @@ class UnitSet:
         return replace_symbols(unit, self.symbols)
 
 
-SI = UnitSet("m-N-Pa-kg", {})
-UNITS = {units.name: units for units in (SI, UnitSet("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
+SI_UNIT_SET = UnitSet("m-N-Pa-kg", {})
+UNIT_SETS = {
+    units.name: units for units in (SI_UNIT_SET, UnitSet("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))
+}
 """{name: set of units}: SI, and the set that is common in finite-element models."""
 
 
@@ -43,15 +45,15 @@ UNITS = {units.name: units for units in (SI, UnitSet("mm-N-MPa-t", {"m": "mm", "
 class Springs:
     """Springs and dashpots of the closed node pairs. x and y lie in the joint's plane, z is its normal.
 
-    nodes      : (n, 2) labels on side 1 and side 2
-    position   : (n, 2) [m] relative to the centroid of the contact
-    area       : (n)    [m2]
-    pressure   : (n)    [Pa]
-    K_n, K_t   : (n)    [N/m] stiffness along z; along x and along y
-    C_n, C_t   : (n)    [N.s/m] damping along z; along x and along y
-    totals     : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, and summed over the pairs
-    correction : [1] factor on the stiffness of the pairs, so that their sum is the stiffness of the joint
-    open_pairs : number of open pairs, which are left out
+    nodes                : (n, 2) labels on side 1 and side 2
+    position             : (n, 2) [m] relative to the centroid of the contact
+    area                 : (n)    [m2]
+    pressure             : (n)    [Pa]
+    K_n, K_t             : (n)    [N/m] stiffness along z; along x and along y
+    C_n, C_t             : (n)    [N.s/m] damping along z; along x and along y
+    totals               : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, summed over pairs
+    stiffness_correction : [1] factor on the stiffness of the pairs, so that their sum is that of the joint
+    open_pairs           : number of open pairs, which are left out
     """
 
     nodes: NDArray[np.int64]
@@ -63,7 +65,7 @@ class Springs:
     C_n: Array
     C_t: Array
     totals: dict[str, float]
-    correction: float
+    stiffness_correction: float
     open_pairs: int
 
 
@@ -82,7 +84,7 @@ class Placement:
     has_own_nodes    : whether the written file defines the nodes, in place of nodes of the model
     """
 
-    units: UnitSet = SI
+    units: UnitSet = SI_UNIT_SET
     normal: str = "z"
     first_number: int = 1
     first_set_number: int = 1

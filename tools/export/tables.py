@@ -40,98 +40,99 @@ class LoadTable:
     monotone_cubic_errors: tuple[float, float]
 
 
-def tabulate_law(curve: Curve, error: float) -> LoadTable:
+def tabulate_law(curve: Curve, max_error: float) -> LoadTable:
     """Tabulate an interface law: approach [m] from first touch, pressure [Pa], stiffness [N/m3].
 
-    error : largest relative error [1] of the pressure with linear interpolation
+    max_error : largest relative error [1] of the pressure with linear interpolation
 
     The table ends at the hardness. Below the range of the law one line leads to first touch; the errors are
     those above this line.
     """
     x, y, k = _sample_curve(curve)
     in_range = x >= 0.0
-    table = decimate_curve(x[in_range] - curve.displacement[0], y[in_range], k[in_range], error)
+    table = decimate_curve(x[in_range] - curve.displacement[0], y[in_range], k[in_range], max_error)
     rows = np.vstack([[0.0, 0.0, 0.0], table.rows])
     return LoadTable(rows, table.linear_errors, table.monotone_cubic_errors)
 
 
-def tabulate_load(curve: Curve, area: float, error: float) -> LoadTable:
+def tabulate_load(curve: Curve, area: float, max_error: float) -> LoadTable:
     """Tabulate the load [N] and stiffness [N/m] of an interface law on an area [m2].
 
     The first row is open, without load.
     """
-    table = tabulate_law(curve, error)
+    table = tabulate_law(curve, max_error)
     rows = table.rows * [1.0, area, area]
     return LoadTable(
         np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.linear_errors, table.monotone_cubic_errors
     )
 
 
-def tabulate_odd_curve(curve: Curve, error: float) -> LoadTable:
+def tabulate_odd_curve(curve: Curve, max_error: float) -> LoadTable:
     """Tabulate an odd curve through zero, with both signs of the displacement.
 
-    error : largest relative error [1] of the load with linear interpolation
+    max_error : largest relative error [1] of the load with linear interpolation
 
     The stiffness error is kept below MAX_STIFFNESS_ERROR, unless the curve has a jump of the stiffness.
     """
     half = _sample_curve(curve, _MIN_POINTS_WITH_STIFFNESS)
     try:
-        rows = decimate_curve(*half, error, stiffness_error=MAX_STIFFNESS_ERROR).rows
+        rows = decimate_curve(*half, max_error, stiffness_error=MAX_STIFFNESS_ERROR).rows
     except ValueError:
-        rows = decimate_curve(*half, error).rows
+        rows = decimate_curve(*half, max_error).rows
     rows = np.vstack([rows[:0:-1] * [-1.0, -1.0, 1.0], rows])
     x, y, k = (np.concatenate([sign * v[:0:-1], v]) for sign, v in zip((-1.0, -1.0, 1.0), half, strict=True))
     return LoadTable(rows, *_interpolation_errors(rows, x, y, k, (0.0, 0.0)))
 
 
 def decimate_curve(
-    x: Array,
-    y: Array,
-    k: Array,
-    error: float,
+    displacement: Array,
+    load: Array,
+    stiffness: Array,
+    max_error: float,
     min_reference: tuple[float, float] = (0.0, 0.0),
     fixed_points: Collection[int] = (),
     stiffness_error: float = np.inf,
 ) -> LoadTable:
     """Select few of the points (n) of a curve so that linear interpolation stays within an error.
 
-    x, y, k         : displacement, load and stiffness (n)
-    error           : [1] largest error of y, relative to y, or to min_reference[0] if that is larger
+    displacement, load, stiffness : points (n) of the curve
+    max_error       : [1] largest error of the load, relative to the load, or to min_reference[0] if that is
+                      larger
     min_reference   : smallest load and stiffness to which errors are relative
     fixed_points    : indices of points that are always selected
     stiffness_error : [1] largest relative error of the slope of a line
 
     The points are selected one after the other. Raises ValueError if the error is out of range or too small.
     """
-    if not 0.0 < error < 0.5:
-        raise ValueError(f"error = {error:g} is outside (0, 0.5)")
-    size = np.maximum(np.abs(y), min_reference[0])
+    if not 0.0 < max_error < 0.5:
+        raise ValueError(f"error = {max_error:g} is outside (0, 0.5)")
+    size = np.maximum(np.abs(load), min_reference[0])
     size = np.where(size > 0.0, size, np.inf)
 
     def error_ratio(i: int, j: int) -> float:
-        slope = (y[j] - y[i]) / (x[j] - x[i])
-        line = y[i] + slope * (x[i : j + 1] - x[i])
-        loads = float(np.max(np.abs(line - y[i : j + 1]) / size[i : j + 1])) / error
+        slope = (load[j] - load[i]) / (displacement[j] - displacement[i])
+        line = load[i] + slope * (displacement[i : j + 1] - displacement[i])
+        loads = float(np.max(np.abs(line - load[i : j + 1]) / size[i : j + 1])) / max_error
         if not np.isfinite(stiffness_error):
             return loads
-        return max(loads, float(np.max(np.abs(slope / k[i : j + 1] - 1.0))) / stiffness_error)
+        return max(loads, float(np.max(np.abs(slope / stiffness[i : j + 1] - 1.0))) / stiffness_error)
 
-    stops = {*fixed_points, x.size - 1}
+    stops = {*fixed_points, displacement.size - 1}
     index = decimate(stops, lambda i, j: error_ratio(i, j) <= 1.0)
     between = np.diff(index)[~np.isin(index[1:], list(stops))]
     if np.any(between < _MIN_POINTS_PER_LINE):
         raise ValueError(
-            f"error = {error:g} is too small for a table; it would have {index.size} rows or more"
+            f"error = {max_error:g} is too small for a table; it would have {index.size} rows or more"
         )
-    rows = np.stack([x[index], y[index], k[index]], axis=1)
-    return LoadTable(rows, *_interpolation_errors(rows, x, y, k, min_reference))
+    rows = np.stack([displacement[index], load[index], stiffness[index]], axis=1)
+    return LoadTable(rows, *_interpolation_errors(rows, displacement, load, stiffness, min_reference))
 
 
 def _interpolation_errors(
-    rows: Array, x: Array, y: Array, k: Array, min_reference: tuple[float, float]
+    rows: Array, displacement: Array, load: Array, stiffness: Array, min_reference: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Largest relative errors of load and stiffness: with linear interpolation, with the monotone cubic."""
-    which = np.clip(np.searchsorted(rows[:, 0], x, side="right") - 1, 0, len(rows) - 2)
+    which = np.clip(np.searchsorted(rows[:, 0], displacement, side="right") - 1, 0, len(rows) - 2)
     slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
     cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
 
@@ -141,12 +142,12 @@ def _interpolation_errors(
         return float(np.max(np.abs(approximate - exact)[positive] / size[positive]))
 
     straight = (
-        largest_error(np.interp(x, rows[:, 0], rows[:, 1]), y, min_reference[0]),
-        largest_error(slope, k, min_reference[1]),
+        largest_error(np.interp(displacement, rows[:, 0], rows[:, 1]), load, min_reference[0]),
+        largest_error(slope, stiffness, min_reference[1]),
     )
     return straight, (
-        largest_error(cubic(x), y, min_reference[0]),
-        largest_error(cubic(x, 1), k, min_reference[1]),
+        largest_error(cubic(displacement), load, min_reference[0]),
+        largest_error(cubic(displacement, 1), stiffness, min_reference[1]),
     )
 
 
@@ -165,8 +166,8 @@ ColumnHeads = Sequence[tuple[str, str]]
 
 SIGNIFICANT_DIGITS = 12
 """Significant digits of numbers in tables."""
-LABEL_HEADS: ColumnHeads = (("node_1", "1"), ("node_2", "1"))
-SPRING_HEADS: ColumnHeads = (
+LABEL_COLUMN_HEADS: ColumnHeads = (("node_1", "1"), ("node_2", "1"))
+SPRING_COLUMN_HEADS: ColumnHeads = (
     ("x", "m"),
     ("y", "m"),
     ("area", "m2"),
@@ -190,7 +191,10 @@ def format_springs_csv(springs: Springs, placement: Placement, comment_lines: Se
     damping = placement.assign_to_axes(springs.C_t, springs.C_n)
     values = [*springs.position.T, springs.area, springs.pressure, *stiffness.T, *damping.T]
     return format_columns_csv(
-        [*springs.nodes.T, *values], [*LABEL_HEADS, *SPRING_HEADS], placement.units, comment_lines
+        [*springs.nodes.T, *values],
+        [*LABEL_COLUMN_HEADS, *SPRING_COLUMN_HEADS],
+        placement.units,
+        comment_lines,
     )
 
 

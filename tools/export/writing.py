@@ -25,10 +25,10 @@ class ExportedFile:
 _SPRING_WRITERS: dict[str, tuple[Callable[[Springs, Placement, list[str]], str], tuple[str, ...]]] = {
     "ansys": (ansys.format_springs, ("MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping",)),
     "calculix": (
-        partial(keywords.format_springs, dashpots=False),
+        partial(keywords.format_springs, has_dashpots=False),
         ("no dashpots: CalculiX has none along an axis between coincident nodes",),
     ),
-    "abaqus": (partial(keywords.format_springs, dashpots=True), ()),
+    "abaqus": (partial(keywords.format_springs, has_dashpots=True), ()),
     "csv": (tables.format_springs_csv, ()),
 }
 """{format: (function that formats springs, comment lines)}."""
@@ -67,22 +67,22 @@ def export_springs(
         f"units: {units.name}",
         f"pairs: {len(field.nodes)}, left out because they are open: {field.open_pairs}",
         f"sums over the pairs, SI: {sums}",
-        f"stiffness multiplied by {field.correction:.9g} to add up to the joint's",
+        f"stiffness multiplied by {field.stiffness_correction:.9g} to add up to the joint's",
         f"the joint's normal is the model's {placement.normal}",
     ]
     write, notes = _SPRING_WRITERS[file_format]
-    facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.correction}
+    facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.stiffness_correction}
     facts |= field.totals
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
 
 
-def export_contact(file_format: str, file: ParameterFile, units: UnitSet, error: float) -> ExportedFile:
+def export_contact(file_format: str, file: ParameterFile, units: UnitSet, max_error: float) -> ExportedFile:
     """Export the interface's pressure over its approach, for a contact of two surfaces.
 
     Raises ValueError if the joint does not offer it.
     """
     curve, more = require_content(file.joint, "contact")(file.values)
-    table = tables.tabulate_law(curve, error)
+    table = tables.tabulate_law(curve, max_error)
     about = [
         "normal contact of the rough interface: pressure over overclosure from first touch",
         f"parameters: {file.name} ({file.joint})",
@@ -99,14 +99,14 @@ def export_contact(file_format: str, file: ParameterFile, units: UnitSet, error:
 
 
 def export_curve(
-    file_format: str, file: ParameterFile, working_point: object, units: UnitSet, error: float
+    file_format: str, file: ParameterFile, working_point: object, units: UnitSet, max_error: float
 ) -> ExportedFile:
     """Export the load over the displacement of the whole joint, with its stiffness.
 
     Raises ValueError if the joint does not offer the curve, or if the working point is missing.
     """
     load: LoadCurve = require_content(file.joint, "curve")
-    table = load.compute_table(file.values, working_point, error)
+    table = load.compute_table(file.values, working_point, max_error)
     heads = [(v.name, v.unit) for v in load.columns]
     about = [load.meaning, f"parameters: {file.name} ({file.joint})"]
     if working_point is not None:

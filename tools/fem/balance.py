@@ -18,7 +18,7 @@ from scipy.spatial import ConvexHull
 
 from jointfmu.quantity import Array
 
-from .elasticity import ElasticBody, Index
+from .elasticity import ElasticBody, IndexArray
 
 MAX_RELATIVE_IMBALANCE = 1e-6
 """Largest unbalanced force over the sum of the loads' magnitudes [1].
@@ -43,20 +43,20 @@ class RigidBalance:
     hull_points          : indices of the quadrature points on the convex hull of the contact
     """
 
-    force: Array
+    generalised_load: Array
     rigid_approach: Array
     unsupported_approach: Array
     total_load: float
-    corners: Index
+    hull_points: IndexArray
 
     @classmethod
     def from_loads(
         cls,
         bodies: Sequence[ElasticBody],
-        traces: Sequence[sp.csr_matrix],
+        approach_matrices: Sequence[sp.csr_matrix],
         loads: Sequence[Array],
-        supports: Sequence[Index],
-        position: Array,
+        supported_unknowns: Sequence[IndexArray],
+        quadrature_position: Array,
         *,
         supports_carry_load: bool,
     ) -> "RigidBalance":
@@ -70,23 +70,23 @@ class RigidBalance:
         """
         motions = [rigid_motions(body) for body in bodies]
         force = np.concatenate([m.T @ load for m, load in zip(motions, loads, strict=True)])
-        rigid_approach = np.hstack([trace @ m for m, trace in zip(motions, traces, strict=True)])
-        at_supports = [m[rows] for m, rows in zip(motions, supports, strict=True)]
+        rigid_approach = np.hstack([trace @ m for m, trace in zip(motions, approach_matrices, strict=True)])
+        at_supports = [m[rows] for m, rows in zip(motions, supported_unknowns, strict=True)]
         unsupported = block_diag(
             *[null_space(rows, rcond=MIN_RELATIVE_MOTION) if rows.size else np.eye(6) for rows in at_supports]
         )
         balanced = unsupported if supports_carry_load else np.eye(force.size)
         scale = sum(float(np.abs(load).sum()) for load in loads)
-        corners = np.asarray(ConvexHull(position).vertices, dtype=np.int64)
+        corners = np.asarray(ConvexHull(quadrature_position).vertices, dtype=np.int64)
         return cls(
             balanced.T @ force, rigid_approach @ balanced, rigid_approach @ unsupported, scale, corners
         )
 
     def check_loads(self) -> None:
         """Raise RuntimeError if the contact cannot balance the loads by pushing, or if no load closes it."""
-        if not _is_independent(self.unsupported_approach):
+        if not _has_independent_columns(self.unsupported_approach):
             raise RuntimeError("supports and contact leave a rigid motion of a body free")
-        if self.force.size == 0:
+        if self.generalised_load.size == 0:
             return
         if not self.total_load > 0.0:
             raise RuntimeError("no load presses the contact closed: all loads are 0 N")
@@ -102,14 +102,15 @@ class RigidBalance:
                 f"is more than {MAX_RELATIVE_IMBALANCE:g}"
             )
 
-    def check_contact(self, force: Array) -> None:
+    def check_contact(self, contact_force: Array) -> None:
         """Raise RuntimeError if contact forces (q) [N] >= 0 do not balance the loads or leave a body free."""
-        if not _is_independent(self.unsupported_approach[force > 0.0]):
+        if not _has_independent_columns(self.unsupported_approach[contact_force > 0.0]):
             raise RuntimeError(
-                f"the contact does not hold the bodies: it stays closed at {np.count_nonzero(force)} of "
-                f"{force.size} points"
+                "the contact does not hold the bodies: it stays closed at "
+                f"{np.count_nonzero(contact_force)} of "
+                f"{contact_force.size} points"
             )
-        imbalance = float(np.abs(self.force - self.rigid_approach.T @ force).sum())
+        imbalance = float(np.abs(self.generalised_load - self.rigid_approach.T @ contact_force).sum())
         if not imbalance <= MAX_RELATIVE_IMBALANCE * self.total_load:
             raise RuntimeError(
                 f"the contact is not in balance: it leaves {imbalance / self.total_load:.2g} of the "
@@ -122,15 +123,17 @@ class RigidBalance:
 
         Returns the sum of these forces and the remaining imbalance, both over the total load [1].
         """
-        corner_approach = self.rigid_approach[self.corners].T
-        slack = np.eye(self.force.size)
-        cost = np.concatenate([np.zeros(self.corners.size), np.ones(2 * self.force.size)])
+        corner_approach = self.rigid_approach[self.hull_points].T
+        slack = np.eye(self.generalised_load.size)
+        cost = np.concatenate([np.zeros(self.hull_points.size), np.ones(2 * self.generalised_load.size)])
         best = linprog(
-            cost, A_eq=np.hstack([corner_approach, slack, -slack]), b_eq=self.force / self.total_load
+            cost,
+            A_eq=np.hstack([corner_approach, slack, -slack]),
+            b_eq=self.generalised_load / self.total_load,
         )
         if best.status != 0:
             raise RuntimeError(f"the balance of the loads was not found: {best.message}")
-        return float(best.x[: self.corners.size].sum()), float(best.fun)
+        return float(best.x[: self.hull_points.size].sum()), float(best.fun)
 
 
 def rigid_motions(body: ElasticBody) -> Array:
@@ -139,11 +142,11 @@ def rigid_motions(body: ElasticBody) -> Array:
     return np.asarray(motions * np.sqrt(body.unknown_count / 3.0))
 
 
-def _is_independent(approach: Array) -> bool:
+def _has_independent_columns(rigid_approach: Array) -> bool:
     """Whether every combination of motions (columns) changes the approach of some points (rows)."""
-    if approach.shape[1] == 0:
+    if rigid_approach.shape[1] == 0:
         return True
-    if approach.shape[0] < approach.shape[1]:
+    if rigid_approach.shape[0] < rigid_approach.shape[1]:
         return False
-    smallest = np.linalg.svd(approach, compute_uv=False)[-1]
-    return bool(smallest > MIN_RELATIVE_MOTION * np.sqrt(approach.shape[0]))
+    smallest = np.linalg.svd(rigid_approach, compute_uv=False)[-1]
+    return bool(smallest > MIN_RELATIVE_MOTION * np.sqrt(rigid_approach.shape[0]))

@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..fields.joint_parameters import with_field
+from ..fields.joint_parameters import insert_field
 from ..fields.nodal_result import ContactField
 from .contact import ContactModel, ContactSolution, Interface, PressureLaw
 from .elasticity import ElasticBody
@@ -48,9 +48,9 @@ class BoltedContact:
         interface = Interface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 
-    def solve(self, law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
+    def solve(self, pressure_law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under a preload [N] per bolt and a moment [N.m] about x."""
-        return self._solve(ContactModel(self.bodies, self.interface, law), preload, moment)
+        return self._solve(ContactModel(self.bodies, self.interface, pressure_law), preload, moment)
 
     def _solve(
         self,
@@ -63,7 +63,7 @@ class BoltedContact:
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.bolt_head_loads, strict=True)]
-        mean = float(force.sum() / self.interface.area.sum())
+        mean = float(force.sum() / self.interface.quadrature_area.sum())
         return JointSolution(self, force, model.solve(loads, mean, initial_solution))
 
 
@@ -102,7 +102,11 @@ class JointSolution:
     def field(self) -> ContactField:
         """Contact pressure at the quadrature points, with area and total force of the finite elements."""
         interface = self.joint.interface
-        return ContactField(area=interface.area, position=interface.position, pressure=self.contact.pressure)
+        return ContactField(
+            area=interface.quadrature_area,
+            position=interface.quadrature_position,
+            pressure=self.contact.pressure,
+        )
 
     @property
     def peak_pressure(self) -> float:
@@ -128,17 +132,20 @@ class JointSolution:
         return {"K_N": float(k.sum()), "K_rx": float(k @ y**2), "K_ry": float(k @ x**2)}
 
 
-def bolt_midpoints(bolts: Array) -> Array:
+def bolt_midpoints(bolt_positions: Array) -> Array:
     """Midpoints (k, 2) [m] of neighbouring bolts at (n, 2) [m].
 
     Two bolts are neighbours if no third bolt lies in the circle whose diameter is the line between them.
     """
     midpoints = []
-    for i in range(len(bolts)):
+    for i in range(len(bolt_positions)):
         for j in range(i):
-            midpoint = 0.5 * (bolts[i] + bolts[j])
-            distance = np.hypot(*(bolts - midpoint).T)
-            if np.sum(distance < 0.5 * np.hypot(*(bolts[i] - bolts[j])) * (1.0 + 1e-9)) == 2:
+            midpoint = 0.5 * (bolt_positions[i] + bolt_positions[j])
+            distance = np.hypot(*(bolt_positions - midpoint).T)
+            if (
+                np.sum(distance < 0.5 * np.hypot(*(bolt_positions[i] - bolt_positions[j])) * (1.0 + 1e-9))
+                == 2
+            ):
                 midpoints.append(midpoint)
     return np.array(midpoints).reshape(-1, 2)
 
@@ -147,7 +154,7 @@ DEFAULT_MOMENT_RATIO = 1.0 / 3.0
 """Moment of the second pressure field over the moment that unloads a row of bolts [1], as in Zhao 2018."""
 
 
-def with_contact_field(
+def insert_contact_field(
     file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
 ) -> tuple[ParameterFile, PressureDistribution]:
     """Insert the computed pressure field into the parameters of a joint.
@@ -167,7 +174,7 @@ def with_contact_field(
     source = f"finite elements of the assembly {joint.assembly.name}"
     bolts = joint.assembly.bolts.positions
     second = tilting or None
-    file, reduction = with_field(
-        file, equal, preload, source, moment_field=tilted, moment=second, bolts=bolts
+    file, reduction = insert_field(
+        file, equal, preload, source, moment_field=tilted, moment=second, bolt_positions=bolts
     )
     return replace(file, name=f"{file.name}, computed field"), reduction.full_shape

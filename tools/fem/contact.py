@@ -23,7 +23,7 @@ from skfem import Basis, Element, ElementQuadS2, MeshQuad
 from jointfmu.quantity import Array
 
 from .balance import RigidBalance
-from .elasticity import ElasticBody, Index
+from .elasticity import ElasticBody, IndexArray
 from .newton import ContactEnergy, EnergyMinimum
 
 QUADRATURE_DEGREE = 4
@@ -53,19 +53,19 @@ class Interface:
 
     basis: Basis
     nodes: Array
-    interpolation: sp.csr_matrix
-    area: Array
-    position: Array
+    interpolation_matrix: sp.csr_matrix
+    quadrature_area: Array
+    quadrature_position: Array
 
     @property
     def centroid(self) -> Array:
         """Centroid of the contact area (2) [m]."""
-        return np.asarray(self.area @ self.position / self.area.sum())
+        return np.asarray(self.quadrature_area @ self.quadrature_position / self.quadrature_area.sum())
 
     @property
     def centred_position(self) -> Array:
         """Positions (q, 2) [m] of the quadrature points relative to the centroid."""
-        return self.position - self.centroid
+        return self.quadrature_position - self.centroid
 
     @classmethod
     def from_mesh(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
@@ -99,9 +99,9 @@ class ContactModel:
 
     bodies: tuple[ElasticBody, ...]
     interface: Interface
-    law: PressureLaw
+    pressure_law: PressureLaw
     gap: Callable[[Array, Array], Array] | None = None
-    fixed_unknowns: tuple[Index, ...] | None = None
+    fixed_unknowns: tuple[IndexArray, ...] | None = None
 
     @property
     def is_mirrored(self) -> bool:
@@ -120,7 +120,7 @@ class ContactModel:
         """Distance [m] of the unloaded faces at positions x, y (...) [m]."""
         return np.zeros(np.shape(x)) if self.gap is None else self.gap(x, y)
 
-    def supported_unknowns(self) -> tuple[Index, ...]:
+    def supported_unknowns(self) -> tuple[IndexArray, ...]:
         """Unknowns of each body that stay zero."""
         if self.fixed_unknowns is not None:
             return self.fixed_unknowns
@@ -130,7 +130,7 @@ class ContactModel:
         )
 
     @cached_property
-    def _free_unknowns(self) -> tuple[Index, ...]:
+    def _free_unknowns(self) -> tuple[IndexArray, ...]:
         """Unknowns of each body that are not fixed."""
         pairs = zip(self.bodies, self.supported_unknowns(), strict=True)
         return tuple(np.setdiff1d(np.arange(body.unknown_count), fixed) for body, fixed in pairs)
@@ -147,9 +147,9 @@ class ContactModel:
         return ContactEnergy(
             stiffness=blocks[0] if self.is_mirrored else sp.block_diag(blocks, format="csr"),
             load=np.zeros(sum(free.size for free in self._free_unknowns)),
-            approach_matrix=(self.interface.interpolation @ sp.hstack(traces)).tocsr(),
-            weight=self.interface.area * (0.5 if self.is_mirrored else 1.0),
-            law=self.law.derivatives,
+            approach_matrix=(self.interface.interpolation_matrix @ sp.hstack(traces)).tocsr(),
+            quadrature_area=self.interface.quadrature_area * (0.5 if self.is_mirrored else 1.0),
+            pressure_law=self.pressure_law.derivatives,
         )
 
     def solve(
@@ -169,11 +169,11 @@ class ContactModel:
         """
         balance = self.rigid_balance(loads)
         balance.check_loads()
-        gap = self.unloaded_gap(*self.interface.position.T)
+        gap = self.unloaded_gap(*self.interface.quadrature_position.T)
         offset = (
-            float(self.law.inverse(np.asarray(initial_pressure))) + float(gap.max())
+            float(self.pressure_law.inverse(np.asarray(initial_pressure))) + float(gap.max())
             if initial_solution is None
-            else initial_solution.offset
+            else initial_solution.approach_offset
         )
         free_load = np.concatenate(
             [load[free] for load, free in zip(loads, self._free_unknowns, strict=True)]
@@ -182,7 +182,7 @@ class ContactModel:
         minimum = energy.minimise(
             offset - gap, None if initial_solution is None else initial_solution.minimum
         )
-        balance.check_contact(energy.weight * self.law.derivatives(minimum.approach, 1)[0])
+        balance.check_contact(energy.quadrature_area * self.pressure_law.derivatives(minimum.approach, 1)[0])
         return ContactSolution(
             self, tuple(loads), self._expand_displacement(minimum.displacement), offset, minimum
         )
@@ -200,10 +200,10 @@ class ContactModel:
         interface = self.interface
         return RigidBalance.from_loads(
             self.bodies,
-            [interface.interpolation @ trace for trace in self.approach_matrices()],
+            [interface.interpolation_matrix @ trace for trace in self.approach_matrices()],
             loads,
             self.supported_unknowns(),
-            interface.position,
+            interface.quadrature_position,
             supports_carry_load=self.fixed_unknowns is not None,
         )
 
@@ -221,7 +221,7 @@ class ContactSolution:
     model: ContactModel
     loads: tuple[Array, ...]
     displacement: tuple[Array, ...]
-    offset: float
+    approach_offset: float
     minimum: EnergyMinimum
 
     @property
@@ -230,19 +230,19 @@ class ContactSolution:
         return self.minimum.approach
 
     @property
-    def steps(self) -> int:
+    def newton_steps(self) -> int:
         """Number of steps of Newton's method."""
-        return self.minimum.steps
+        return self.minimum.newton_steps
 
     @property
     def pressure(self) -> Array:
         """Contact pressure (q) [Pa] at the quadrature points."""
-        return self.model.law.derivatives(self.approach, 1)[0]
+        return self.model.pressure_law.derivatives(self.approach, 1)[0]
 
     @property
     def stiffness(self) -> Array:
         """Stiffness dp/d(approach) (q) [Pa/m] of the interface at the quadrature points."""
-        return self.model.law.derivatives(self.approach, 1)[1]
+        return self.model.pressure_law.derivatives(self.approach, 1)[1]
 
     @cached_property
     def node_approach(self) -> Array:
@@ -250,22 +250,22 @@ class ContactSolution:
         nodes = self.model.interface.nodes
         pairs = zip(self.model.approach_matrices(), self.displacement, strict=True)
         elastic_approach = sum((trace @ u for trace, u in pairs), start=np.zeros(nodes.shape[1]))
-        return np.asarray(self.offset - self.model.unloaded_gap(*nodes) + elastic_approach)
+        return np.asarray(self.approach_offset - self.model.unloaded_gap(*nodes) + elastic_approach)
 
     @property
     def node_pressure(self) -> Array:
         """Pressure [Pa] at the nodes of the contact; some of them lie on its edges."""
-        return self.model.law.derivatives(self.node_approach, 1)[0]
+        return self.model.pressure_law.derivatives(self.node_approach, 1)[0]
 
     def pressure_at(self, positions: Array) -> Array:
         """Pressure (k) [Pa] at positions (k, 2) [m] in the contact."""
         approach = self.model.interface.basis.interpolator(self.node_approach)(np.asarray(positions).T)
-        return self.model.law.derivatives(approach, 1)[0]
+        return self.model.pressure_law.derivatives(approach, 1)[0]
 
 
 def displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
     """Matrix (q, n) [1]: displacement along an axis at the quadrature points per unknown of a body."""
-    return (interface.interpolation @ nodal_displacement_matrix(body, interface, axis)).tocsr()
+    return (interface.interpolation_matrix @ nodal_displacement_matrix(body, interface, axis)).tocsr()
 
 
 def nodal_displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
@@ -283,7 +283,7 @@ def nodal_displacement_matrix(body: ElasticBody, interface: Interface, axis: int
     )
 
 
-def _select_supports(body: ElasticBody, stop_all_motions: bool) -> Index:
+def _select_supports(body: ElasticBody, stop_all_motions: bool) -> IndexArray:
     """Three unknowns of a body that stop its rigid-body motions in the contact plane.
 
     stop_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.

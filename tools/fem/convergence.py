@@ -38,21 +38,29 @@ class MeshResult:
     """
 
     refinement: float
-    elements: int
-    unknowns: int
-    values: dict[str, float]
+    element_count: int
+    unknown_count: int
+    result_values: dict[str, float]
 
 
-def refinements(count: int, base: float = 1.0) -> list[float]:
+def refinement_series(mesh_count: int, base_refinement: float = 1.0) -> list[float]:
     """Refinements [1] of `mesh_count` meshes, each REFINEMENT_RATIO times finer than the one before.
 
     base_refinement : refinement [1] of the second mesh, or of the only one
     """
-    return [base * REFINEMENT_RATIO**k for k in range(-1, count - 1)] if count > 1 else [base]
+    return (
+        [base_refinement * REFINEMENT_RATIO**k for k in range(-1, mesh_count - 1)]
+        if mesh_count > 1
+        else [base_refinement]
+    )
 
 
 def run_mesh_study(
-    assembly: Assembly, law: PressureLaw, preload: float, moment: float, refinement_levels: Sequence[float]
+    assembly: Assembly,
+    pressure_law: PressureLaw,
+    preload: float,
+    moment: float,
+    refinement_levels: Sequence[float],
 ) -> tuple[list[MeshResult], JointSolution]:
     """Solve the contact on meshes of increasing refinement [1]; return all results and the last solution.
 
@@ -61,7 +69,7 @@ def run_mesh_study(
     """
 
     def solve_mesh(refinement: float) -> JointSolution:
-        return BoltedContact.from_assembly(assembly, refinement).solve(law, preload, moment)
+        return BoltedContact.from_assembly(assembly, refinement).solve(pressure_law, preload, moment)
 
     *coarser, finest = refinement_levels
     rows = [
@@ -79,29 +87,29 @@ def summarize_solution(solution: JointSolution, refinement: float) -> MeshResult
     joint = solution.joint
     return MeshResult(
         refinement=refinement,
-        elements=int(joint.interface.basis.mesh.nelements),
-        unknowns=sum(body.unknown_count for body in joint.bodies),
-        values=values | solution.stiffness,
+        element_count=int(joint.interface.basis.mesh.nelements),
+        unknown_count=sum(body.unknown_count for body in joint.bodies),
+        result_values=values | solution.stiffness,
     )
 
 
-def relative_changes(rows: Sequence[MeshResult]) -> list[dict[str, float]]:
+def relative_changes(mesh_results: Sequence[MeshResult]) -> list[dict[str, float]]:
     """Relative change [1] of each result from each mesh to the next."""
     return [
-        {name: fine.values[name] / coarse.values[name] - 1.0 for name in RESULT_UNITS}
-        for coarse, fine in pairwise(rows)
+        {name: fine.result_values[name] / coarse.result_values[name] - 1.0 for name in RESULT_UNITS}
+        for coarse, fine in pairwise(mesh_results)
     ]
 
 
-def observed_orders(rows: Sequence[MeshResult]) -> dict[str, float]:
+def observed_orders(mesh_results: Sequence[MeshResult]) -> dict[str, float]:
     """Observed order of convergence [1] of each result from the last three meshes.
 
     nan if the changes do not decrease. Fewer than three meshes give an empty dict.
     """
-    if len(rows) < 3:
+    if len(mesh_results) < 3:
         return {}
-    previous, latest = relative_changes(rows)[-2:]
-    ratio = math.log(rows[-1].refinement / rows[-2].refinement)
+    previous, latest = relative_changes(mesh_results)[-2:]
+    ratio = math.log(mesh_results[-1].refinement / mesh_results[-2].refinement)
     observed = {}
     for name in RESULT_UNITS:
         decreases = 0.0 < abs(latest[name]) < abs(previous[name])
@@ -116,7 +124,7 @@ _POSITION_TOLERANCE = 1e-6
 """Distance [m] below which a mirrored bolt coincides with another bolt."""
 
 
-def first_equivalent_bolts(bolts: Array, has_moment: bool) -> NDArray[np.int64]:
+def first_equivalent_bolts(bolt_positions: Array, has_moment: bool) -> NDArray[np.int64]:
     """For each bolt, index (n) of the first bolt that is equivalent to it by mirror symmetry.
 
     Mirror planes are x = 0 and, without a moment about x, y = 0. The bodies are symmetric about both planes.
@@ -124,30 +132,32 @@ def first_equivalent_bolts(bolts: Array, has_moment: bool) -> NDArray[np.int64]:
 
     bolt_positions : (n, 2) [m]
     """
-    first = np.arange(len(bolts))
+    first = np.arange(len(bolt_positions))
     for mirror in ((-1.0, 1.0),) if has_moment else ((-1.0, 1.0), (1.0, -1.0)):
-        distance = np.hypot(*(bolts[:, None] * mirror - bolts[None]).T).T
+        distance = np.hypot(*(bolt_positions[:, None] * mirror - bolt_positions[None]).T).T
         image = distance.argmin(axis=1)
-        if np.all(distance[np.arange(len(bolts)), image] < _POSITION_TOLERANCE):
+        if np.all(distance[np.arange(len(bolt_positions)), image] < _POSITION_TOLERANCE):
             first = np.minimum(first, first[image])
     return first
 
 
-def check_bolt_symmetry(field: ContactField, bolts: Array, has_moment: bool) -> list[str]:
+def check_bolt_symmetry(field: ContactField, bolt_positions: Array, has_moment: bool) -> list[str]:
     """Warning if the peak pressures around equivalent bolts differ by more than MAX_PEAK_DIFFERENCE.
 
     Returns a list of one message, or an empty list.
     """
-    if not len(bolts):
+    if not len(bolt_positions):
         return []
-    nearest_bolt = np.hypot(*(field.position[:, None] - bolts[None]).T).argmin(axis=0)
-    peak = np.array([np.max(field.pressure[nearest_bolt == i], initial=0.0) for i in range(len(bolts))])
-    group = first_equivalent_bolts(bolts, has_moment)
+    nearest_bolt = np.hypot(*(field.position[:, None] - bolt_positions[None]).T).argmin(axis=0)
+    peak = np.array(
+        [np.max(field.pressure[nearest_bolt == i], initial=0.0) for i in range(len(bolt_positions))]
+    )
+    group = first_equivalent_bolts(bolt_positions, has_moment)
     ratio = peak / np.array([np.min(peak[group == first]) for first in group]).clip(1e-9)
     worst = int(np.argmax(ratio))
     if not ratio[worst] > 1.0 + MAX_PEAK_DIFFERENCE:
         return []
-    x, y = bolts[worst]
+    x, y = bolt_positions[worst]
     return [
         f"the pressure around the bolt at ({x:g}, {y:g}) m is {ratio[worst]:.3g} times that around a bolt "
         "that symmetry makes alike: the mesh is too coarse around the holes, take a larger --refinement"

@@ -74,7 +74,7 @@ def _to_cvxopt(matrix: sp.spmatrix) -> Any:
     return spmatrix(dense(entries.data), rows, columns, entries.shape)
 
 
-Index = NDArray[np.int64]
+IndexArray = NDArray[np.int64]
 
 QUADRATURE_DEGREE = 4
 """Polynomial degree that the quadrature integrates exactly: 3 x 3 x 3 points in an element."""
@@ -123,7 +123,7 @@ class ElasticBody:
         """
         lame, shear = lame_parameters(self.E, self.nu)
         count = self.mesh.nelements
-        return _assemble(
+        return _assemble_global_matrix(
             self.basis,
             [
                 self._element_matrices(slice(i, i + ELEMENTS_PER_BLOCK), lame, shear)
@@ -156,9 +156,11 @@ class ElasticBody:
         )
         rows = functions.transpose(1, 0, 2)
         scalar = self.density * (rows * self.basis.dx[:, None, :]) @ rows.transpose(0, 2, 1)
-        return sp.kron(_assemble(self.basis, [scalar[..., None, None]]), np.eye(3), format="csr")
+        return sp.kron(
+            _assemble_global_matrix(self.basis, [scalar[..., None, None]]), np.eye(3), format="csr"
+        )
 
-    def uniform_load(self, facets: Index) -> Array:
+    def uniform_load(self, facets: IndexArray) -> Array:
         """Nodal load (n) [N/N] of a unit force along z, distributed uniformly over facets."""
         basis = FacetBasis(self.mesh, self.element, facets=facets, intorder=QUADRATURE_DEGREE)
         share = LinearForm(lambda v, w: v).assemble(basis)
@@ -184,15 +186,15 @@ class ElasticBody:
         return np.stack([np.stack(motion, axis=1).ravel() for motion in motions], axis=1)
 
 
-def _assemble(basis: Basis, blocks: list[Array]) -> sp.csr_matrix:
+def _assemble_global_matrix(basis: Basis, element_matrices: list[Array]) -> sp.csr_matrix:
     """Assemble element matrices (m, n, n, k, k) to a global sparse matrix with k x k blocks."""
     dofs = np.asarray(basis.element_dofs.T, dtype=np.int64)
     key = (dofs[:, :, None] * basis.N + dofs[:, None, :]).ravel()
     order = np.argsort(key, kind="stable")
     key = key[order]
     first = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
-    k = blocks[0].shape[-1]
-    data = np.concatenate(blocks).reshape(-1, k * k)[order]
+    k = element_matrices[0].shape[-1]
+    data = np.concatenate(element_matrices).reshape(-1, k * k)[order]
     data = np.add.reduceat(data, first, axis=0).reshape(-1, k, k)
     row, column = np.divmod(key[first], basis.N)
     start = np.searchsorted(row, np.arange(basis.N + 1))

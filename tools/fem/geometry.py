@@ -42,8 +42,8 @@ class BoltGrid:
     def positions(self) -> Array:
         """Bolt positions (n, 2) [m], row by row."""
         rows, columns = int(self.rows), int(self.columns)
-        y = 0.5 * self.row_spacing * _equidistant(rows)
-        x = 0.5 * self.column_spacing * _equidistant(columns)
+        y = 0.5 * self.row_spacing * _equidistant_coordinates(rows)
+        x = 0.5 * self.column_spacing * _equidistant_coordinates(columns)
         edge = np.zeros((rows, columns), dtype=bool)
         edge[[0, -1], :], edge[:, [0, -1]] = True, True
         row, column = np.nonzero(edge | self.inside)
@@ -73,7 +73,7 @@ class BoltList:
 Bolts = BoltGrid | BoltList
 
 
-def _equidistant(count: int) -> Array:
+def _equidistant_coordinates(count: int) -> Array:
     """`count` equidistant coordinates from -1 to 1; 0 for a single one."""
     return np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)
 
@@ -92,16 +92,19 @@ class Layer:
     has_bolt_holes : whether the bolt holes pass through the layer
     """
 
-    bottom: float
-    top: float
-    outline: tuple[float, float]
-    opening: tuple[float, float] = (0.0, 0.0)
+    bottom_distance: float
+    top_distance: float
+    outline_half_lengths: tuple[float, float]
+    opening_half_lengths: tuple[float, float] = (0.0, 0.0)
     has_bolt_holes: bool = False
 
     def is_solid(self, x: Array, y: Array) -> NDArray[np.bool_]:
         """Whether points (...) [m] of the plan view lie in the material of the layer; ignores bolt holes."""
-        inside = (np.abs(x) < self.outline[0]) & (np.abs(y) < self.outline[1])
-        return np.asarray(inside & ~((np.abs(x) < self.opening[0]) & (np.abs(y) < self.opening[1])))
+        inside = (np.abs(x) < self.outline_half_lengths[0]) & (np.abs(y) < self.outline_half_lengths[1])
+        return np.asarray(
+            inside
+            & ~((np.abs(x) < self.opening_half_lengths[0]) & (np.abs(y) < self.opening_half_lengths[1]))
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,8 +231,8 @@ class Assembly:
     def contact_area(self) -> float:
         """Nominal contact area [m2] of the two bodies, without the bolt holes."""
         layers = [body.layers()[0] for body in (self.side1, self.side2)]
-        outer = np.min([layer.outline for layer in layers], axis=0)
-        inner1, inner2 = (np.minimum(layer.opening, outer) for layer in layers)
+        outer = np.min([layer.outline_half_lengths for layer in layers], axis=0)
+        inner1, inner2 = (np.minimum(layer.opening_half_lengths, outer) for layer in layers)
         opening = 4.0 * (inner1.prod() + inner2.prod() - np.minimum(inner1, inner2).prod())
         holes = len(self.bolts.positions) * 0.25 * np.pi * self.bolts.hole_diameter**2
         return float(4.0 * outer.prod() - opening - holes)
@@ -299,17 +302,19 @@ def check_thickness(assembly: Assembly) -> None:
             )
 
 
-def _find_obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
+def _find_obstacle(body: Body, x: float, y: float, head_radius: float) -> str | None:
     """Reason why a bolt head (a disc) does not lie flat on a body; None if it does."""
     flange, *rest = body.layers()
     if isinstance(body, TappedPlate):
         return None  # no head lies on a tapped plate
-    if not _contains_disc(x, y, radius, flange.outline) or _overlaps_disc(x, y, radius, flange.opening):
+    if not _contains_disc(x, y, head_radius, flange.outline_half_lengths) or _overlaps_disc(
+        x, y, head_radius, flange.opening_half_lengths
+    ):
         return f"reaches beyond the {'plate' if isinstance(body, Plate) else 'flange'}"
     if (
         rest
-        and _overlaps_disc(x, y, radius, rest[0].outline)
-        and not _contains_disc(x, y, radius, rest[0].opening)
+        and _overlaps_disc(x, y, head_radius, rest[0].outline_half_lengths)
+        and not _contains_disc(x, y, head_radius, rest[0].opening_half_lengths)
     ):
         return "runs into a wall"
     return None
@@ -334,7 +339,7 @@ def layer_rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:
     known_keys: set[tuple[float, float]] = set()
     for body in (assembly.side1, assembly.side2):
         for layer in body.layers():
-            for half in (layer.outline, layer.opening):
+            for half in (layer.outline_half_lengths, layer.opening_half_lengths):
                 key = (round(half[0], 9), round(half[1], 9))
                 if min(half) > 0.0 and key not in known_keys:
                     known_keys.add(key)

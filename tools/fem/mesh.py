@@ -12,12 +12,12 @@ from skfem import MeshHex, MeshQuad
 
 from jointfmu.quantity import Array
 
-from .elasticity import Index
+from .elasticity import IndexArray
 from .geometry import Assembly, Body, Layer, TappedPlate, layer_rectangles
 
-RELATIVE_SIZE_AT_HOLES = 1.0 / 10.0
+RELATIVE_ELEMENT_SIZE_AT_HOLES = 1.0 / 10.0
 """Edge length of an element at a hole over the circumference of the hole [1], at refinement 1."""
-ELEMENTS_ACROSS = 4
+ELEMENTS_ACROSS_NARROWEST_STRIP = 4
 """Number of elements across the narrowest strip of the contact, at refinement 1."""
 HOLE_WALL_DIAMETER_RATIO = 1.02
 """Diameter within which a facet counts as wall of a hole, over the diameter of the hole [1]."""
@@ -35,7 +35,7 @@ class PlanMesh:
     """
 
     points: Array
-    cells: Index
+    cells: IndexArray
     in_bolt_hole: NDArray[np.bool_]
 
     def is_solid(self, layer: Layer) -> NDArray[np.bool_]:
@@ -59,14 +59,14 @@ def contact_mesh(plan: PlanMesh, in_contact: NDArray[np.bool_]) -> MeshQuad:
 def element_sizes(assembly: Assembly, refinement: float) -> tuple[float, float]:
     """Edge lengths [m] of elements at the holes, and far from them."""
     strips = [_narrowest_strip(body) for body in (assembly.side1, assembly.side2)]
-    at_holes = np.pi * assembly.bolts.hole_diameter * RELATIVE_SIZE_AT_HOLES
-    return at_holes / refinement, max(min(strips) / ELEMENTS_ACROSS, at_holes) / refinement
+    at_holes = np.pi * assembly.bolts.hole_diameter * RELATIVE_ELEMENT_SIZE_AT_HOLES
+    return at_holes / refinement, max(min(strips) / ELEMENTS_ACROSS_NARROWEST_STRIP, at_holes) / refinement
 
 
 def _narrowest_strip(body: Body) -> float:
     """Width [m] of the narrowest strip of the contact face of a body."""
     contact = body.layers()[0]
-    widths = [o - i for o, i in zip(contact.outline, contact.opening, strict=True)]
+    widths = [o - i for o, i in zip(contact.outline_half_lengths, contact.opening_half_lengths, strict=True)]
     return float(min(widths))
 
 
@@ -113,9 +113,9 @@ def _match_hole_areas(points: Array, assembly: Assembly) -> None:
         points[:, rim] += (radius * np.sqrt(np.pi / area) - 1.0) * offset[:, rim]
 
 
-def _draw_plan(model: object, assembly: Assembly) -> None:
+def _draw_plan(gmsh_model: object, assembly: Assembly) -> None:
     """Draw rectangles, holes and heads in gmsh, and split them into faces with common edges."""
-    occ = model.occ  # type: ignore[attr-defined]
+    occ = gmsh_model.occ  # type: ignore[attr-defined]
     faces = [(2, occ.addRectangle(-x, -y, 0.0, 2 * x, 2 * y)) for x, y in layer_rectangles(assembly)]
     for x, y in assembly.bolts.positions:
         for diameter in (assembly.bolts.hole_diameter, assembly.bolts.head_diameter):
@@ -124,9 +124,9 @@ def _draw_plan(model: object, assembly: Assembly) -> None:
     occ.synchronize()
 
 
-def _set_element_sizes(model: object, assembly: Assembly, size_at_holes: float, max_size: float) -> None:
+def _set_element_sizes(gmsh_model: object, assembly: Assembly, size_at_holes: float, max_size: float) -> None:
     """Set the element size in gmsh: smallest at the rims of the holes, growing with the distance to them."""
-    field = model.mesh.field  # type: ignore[attr-defined]
+    field = gmsh_model.mesh.field  # type: ignore[attr-defined]
     # the subdivision of gmsh halves the element size, so twice the size is set
     circles = []
     hole = 0.5 * assembly.bolts.hole_diameter
@@ -147,9 +147,9 @@ def _set_element_sizes(model: object, assembly: Assembly, size_at_holes: float, 
         gmsh.option.setNumber(f"Mesh.{name}", 0)
 
 
-def _read_quadrilaterals(model: object) -> tuple[Array, Index]:
+def _read_quadrilaterals(gmsh_model: object) -> tuple[Array, IndexArray]:
     """Read points (2, n) [m] and counter-clockwise cells (4, m) of the mesh from gmsh."""
-    mesh = model.mesh  # type: ignore[attr-defined]
+    mesh = gmsh_model.mesh  # type: ignore[attr-defined]
     tags, coordinates, _ = mesh.getNodes()
     kinds, _, nodes = mesh.getElements(2)
     if list(kinds) != [3]:
@@ -188,7 +188,7 @@ def body_mesh(plan: PlanMesh, assembly: Assembly, side: int, refinement: float =
     used, cells = np.unique(corners, return_inverse=True)
     points = np.concatenate([np.tile(plan.points, heights.size), np.repeat(heights, count)[None]])
     mesh = MeshHex(np.ascontiguousarray(points[:, used]), np.ascontiguousarray(cells.reshape(8, -1)))
-    return mesh.with_boundaries(_boundaries(mesh, assembly, side))
+    return mesh.with_boundaries(_find_named_boundaries(mesh, assembly, side))
 
 
 def extrusion_levels(body: Body, refinement: float, max_height: float) -> tuple[Array, list[int]]:
@@ -200,21 +200,21 @@ def extrusion_levels(body: Body, refinement: float, max_height: float) -> tuple[
     """
     heights, owner = [0.0], []
     for layer_index, layer in enumerate(body.layers()):
-        thickness = layer.top - layer.bottom
+        thickness = layer.top_distance - layer.bottom_distance
         min_rows = ELEMENTS_THROUGH_THICKNESS if layer_index == 0 else 1
         rows = max(round(min_rows * refinement), int(np.ceil(thickness / max_height - 1e-9)), 1)
-        heights += list(layer.bottom + thickness * np.arange(1, rows + 1) / rows)
+        heights += list(layer.bottom_distance + thickness * np.arange(1, rows + 1) / rows)
         owner += [layer_index] * rows
     return np.array(heights), owner
 
 
-def _hexahedra(lower: Index, upper: Index) -> Index:
+def _hexahedra(lower_corners: IndexArray, upper_corners: IndexArray) -> IndexArray:
     """Corner indices (8, m) in the order of scikit-fem, from the corners (4, m) of lower and upper faces."""
-    (a, b, c, d), (e, f, g, h) = lower, upper
+    (a, b, c, d), (e, f, g, h) = lower_corners, upper_corners
     return np.stack([g, c, f, h, b, d, e, a])
 
 
-def _boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict[str, Index]:
+def _find_named_boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict[str, IndexArray]:
     """Named boundaries of a body mesh (see `body_mesh`), each as indices of facets."""
     bolts, body = assembly.bolts, assembly.side1 if side == 1 else assembly.side2
     head_level = body.clamped_thickness if side == 2 else -body.clamped_thickness

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.quantity import Array
 
-from ..fields.clamped import BoltedInterface
+from ..fields.bolted_interface import BoltedInterface
 from .bolted_contact import BoltedContact, JointSolution
 from .contact import Interface, PressureLaw, displacement_matrix
 from .elasticity import Cholesky, ElasticBody
@@ -39,8 +39,8 @@ class NaturalModes:
     """
 
     frequency: Array
-    shape: tuple[tuple[Array, ...], ...]
-    mass: float
+    mode_shapes: tuple[tuple[Array, ...], ...]
+    assembly_mass: float
 
 
 def compute_modes(
@@ -48,7 +48,7 @@ def compute_modes(
     interface: Interface,
     normal_stiffness: Array,
     tangential_stiffness: Array,
-    count: int = 6,
+    mode_count: int = 6,
 ) -> NaturalModes:
     """Compute the lowest elastic modes of an assembly without supports.
 
@@ -63,7 +63,7 @@ def compute_modes(
         springs = _interface_stiffness(
             bodies, interface, {0: tangential_stiffness, 1: tangential_stiffness, 2: normal_stiffness}
         )
-        motions = _lowest_modes(bodies, springs, RIGID_MODE_COUNT + count)
+        motions = _lowest_modes(bodies, springs, RIGID_MODE_COUNT + mode_count)
     else:
         motions = []
         for stiffness, sign in (
@@ -73,7 +73,7 @@ def compute_modes(
             half = _lowest_modes(
                 bodies,
                 2.0 * _interface_stiffness(bodies, interface, stiffness),
-                RIGID_MODE_COUNT // 2 + count,
+                RIGID_MODE_COUNT // 2 + mode_count,
             )
             motions += [(f, _mirror_shape(shape[0], sign)) for f, shape in half]
         motions.sort(key=lambda motion: motion[0])
@@ -83,14 +83,14 @@ def compute_modes(
             f"the contact leaves more than {RIGID_MODE_COUNT} rigid motions: it does not hold the bodies"
         )
     mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
-    end = RIGID_MODE_COUNT + count
+    end = RIGID_MODE_COUNT + mode_count
     return NaturalModes(
         frequency[RIGID_MODE_COUNT:end], tuple(motion[1] for motion in motions[RIGID_MODE_COUNT:end]), mass
     )
 
 
 def _interface_stiffness(
-    bodies: tuple[ElasticBody, ...], interface: Interface, stiffness: Mapping[int, Array]
+    bodies: tuple[ElasticBody, ...], interface: Interface, stiffness_per_area: Mapping[int, Array]
 ) -> sp.csr_matrix:
     """Stiffness matrix (n, n) [N/m] of the interface.
 
@@ -98,42 +98,42 @@ def _interface_stiffness(
     """
     signs = (1.0, -1.0)[: len(bodies)]
     total: sp.csr_matrix | float = 0.0
-    for axis, density in stiffness.items():
+    for axis, density in stiffness_per_area.items():
         opening = sp.hstack(
             [s * displacement_matrix(body, interface, axis) for s, body in zip(signs, bodies, strict=True)]
         )
-        total = total + opening.T @ sp.diags(interface.area * density) @ opening
+        total = total + opening.T @ sp.diags(interface.quadrature_area * density) @ opening
     return sp.csr_matrix(total)
 
 
 def _lowest_modes(
-    bodies: tuple[ElasticBody, ...], springs: sp.csr_matrix, count: int
+    bodies: tuple[ElasticBody, ...], interface_stiffness: sp.csr_matrix, mode_count: int
 ) -> list[tuple[float, tuple[Array, ...]]]:
     """Lowest frequencies [Hz] and mode shapes, by shift-invert Lanczos.
 
     The shift makes the matrix positive definite in spite of the rigid-body modes.
     """
     mass = sp.block_diag([body.mass for body in bodies], format="csr")
-    stiffness = sp.block_diag([body.stiffness for body in bodies], format="csr") + springs
+    stiffness = sp.block_diag([body.stiffness for body in bodies], format="csr") + interface_stiffness
     shift = -((2.0 * np.pi * SHIFT_FREQUENCY) ** 2)
     factor = Cholesky(stiffness - shift * mass)
     inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
     start = np.random.default_rng(1).standard_normal(stiffness.shape[0])
     squares, shapes = eigsh(
-        stiffness, k=count, M=mass, sigma=shift, OPinv=inverse, v0=start, tol=EIGENSOLVER_TOLERANCE
+        stiffness, k=mode_count, M=mass, sigma=shift, OPinv=inverse, v0=start, tol=EIGENSOLVER_TOLERANCE
     )
     ends = np.cumsum([body.unknown_count for body in bodies])[:-1]
     by_body = [tuple(block.reshape(-1, 3) for block in np.split(shape, ends)) for shape in shapes.T]
     return list(zip(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), by_body, strict=True))
 
 
-def _mirror_shape(shape: Array, sign: float) -> tuple[Array, Array]:
+def _mirror_shape(side2_shape: Array, mirror_sign: float) -> tuple[Array, Array]:
     """Mode shapes (n, 3) of both bodies, of modal mass 1 kg, from the shape of side 2.
 
     Side 1 is the mirror image of side 2 in the plane z = 0, times `mirror_sign` (1 or -1).
     """
-    side2 = np.sqrt(0.5) * shape
-    return sign * side2 * np.array([1.0, 1.0, -1.0]), side2
+    side2 = np.sqrt(0.5) * side2_shape
+    return mirror_sign * side2 * np.array([1.0, 1.0, -1.0]), side2
 
 
 DEFAULT_REFINEMENT = 0.5
@@ -142,7 +142,7 @@ frequencies of the box specimen by less than 1 % (docs/finite_elements_explanati
 
 
 def preloaded_modes(
-    solution: JointSolution, tangential_stiffness_ratio: float, count: int = 6
+    solution: JointSolution, tangential_stiffness_ratio: float, mode_count: int = 6
 ) -> NaturalModes:
     """Natural modes of a preloaded joint: the contact stiffness at each point follows from its pressure.
 
@@ -150,31 +150,37 @@ def preloaded_modes(
     mode_count : number of modes
     """
     return _modes_with_stiffness(
-        solution.joint, solution.contact.stiffness, tangential_stiffness_ratio, count
+        solution.joint, solution.contact.stiffness, tangential_stiffness_ratio, mode_count
     )
 
 
 def uniform_pressure_modes(
-    joint: BoltedContact, law: PressureLaw, force: float, tangential_stiffness_ratio: float, count: int = 6
+    joint: BoltedContact,
+    pressure_law: PressureLaw,
+    total_bolt_force: float,
+    tangential_stiffness_ratio: float,
+    mode_count: int = 6,
 ) -> NaturalModes:
     """Natural modes for a uniform contact pressure: the total bolt force [N] over the contact area.
 
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
     mode_count : number of modes
     """
-    area = joint.interface.area
-    approach = law.inverse(np.asarray(force / area.sum()))
-    stiffness = float(law.derivatives(approach, 1)[1])
-    return _modes_with_stiffness(joint, np.full(area.shape, stiffness), tangential_stiffness_ratio, count)
+    area = joint.interface.quadrature_area
+    approach = pressure_law.inverse(np.asarray(total_bolt_force / area.sum()))
+    stiffness = float(pressure_law.derivatives(approach, 1)[1])
+    return _modes_with_stiffness(
+        joint, np.full(area.shape, stiffness), tangential_stiffness_ratio, mode_count
+    )
 
 
 def compute_frequencies(
     assembly: Assembly,
     joint: BoltedInterface,
     tangential_stiffness_ratio: float,
-    states: Sequence[tuple[float, float]],
+    load_states: Sequence[tuple[float, float]],
     refinement: float = DEFAULT_REFINEMENT,
-    count: int = 6,
+    mode_count: int = 6,
     uniform_pressure: bool = False,
 ) -> Array:
     """Compute the natural frequencies (load states, modes) [Hz] of an assembly in several load states.
@@ -187,25 +193,29 @@ def compute_frequencies(
     law = tabulate_approach(replace(joint, A_0=assembly.contact_area))
     contact = BoltedContact.from_assembly(assembly, refinement)
     rows = []
-    for preload, moment in states:
+    for preload, moment in load_states:
         if uniform_pressure:
             force = float(assembly.bolt_forces(preload, moment).sum())
             rows.append(
-                uniform_pressure_modes(contact, law, force, tangential_stiffness_ratio, count).frequency
+                uniform_pressure_modes(contact, law, force, tangential_stiffness_ratio, mode_count).frequency
             )
         else:
             rows.append(
                 preloaded_modes(
-                    contact.solve(law, preload, moment), tangential_stiffness_ratio, count
+                    contact.solve(law, preload, moment), tangential_stiffness_ratio, mode_count
                 ).frequency
             )
     return np.array(rows)
 
 
 def _modes_with_stiffness(
-    joint: BoltedContact, normal_stiffness: Array, tangential_stiffness_ratio: float, count: int
+    joint: BoltedContact, normal_stiffness: Array, tangential_stiffness_ratio: float, mode_count: int
 ) -> NaturalModes:
     """Natural modes for a normal stiffness per area (q) [N/m3] and the tangential stiffness ratio [1]."""
     return compute_modes(
-        joint.bodies, joint.interface, normal_stiffness, tangential_stiffness_ratio * normal_stiffness, count
+        joint.bodies,
+        joint.interface,
+        normal_stiffness,
+        tangential_stiffness_ratio * normal_stiffness,
+        mode_count,
     )

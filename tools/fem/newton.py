@@ -35,8 +35,8 @@ class EnergyMinimum:
 
     displacement: Array
     approach: Array
-    steps: int
-    factor: Cholesky | None
+    newton_steps: int
+    tangent_factor: Cholesky | None
 
 
 @dataclass(frozen=True)
@@ -53,10 +53,10 @@ class ContactEnergy:
     stiffness: sp.csr_matrix
     load: Array
     approach_matrix: sp.csr_matrix
-    weight: Array
-    law: Callable[[Array], list[Array]]
+    quadrature_area: Array
+    pressure_law: Callable[[Array], list[Array]]
 
-    def minimise(self, offset: Array, initial_minimum: EnergyMinimum | None = None) -> EnergyMinimum:
+    def minimise(self, approach_offset: Array, initial_minimum: EnergyMinimum | None = None) -> EnergyMinimum:
         """Find the minimum of the energy by Newton's method.
 
         approach_offset : (q) [m] approach at zero displacement
@@ -69,23 +69,21 @@ class ContactEnergy:
         """
         K, T = self.stiffness, self.approach_matrix
         u = np.zeros(self.load.size) if initial_minimum is None else initial_minimum.displacement
-        inner, approach = K @ u, offset + T @ u
+        inner, approach = K @ u, approach_offset + T @ u
         total_load = float(np.abs(self.load).sum())
-        factor, slow, last_residual = (
-            None if initial_minimum is None else initial_minimum.factor,
-            False,
-            np.inf,
-        )
+        factor = None if initial_minimum is None else initial_minimum.tangent_factor
+        slow = False
+        last_residual = np.inf
         for step in track_progress(range(MAX_NEWTON_STEPS), "contact"):
-            p, k = self.law(approach)[:2]
-            residual = self.load - inner - T.T @ (self.weight * p)
+            p, k = self.pressure_law(approach)[:2]
+            residual = self.load - inner - T.T @ (self.quadrature_area * p)
             size = float(np.abs(residual).sum()) / total_load
             if size <= RELATIVE_TOLERANCE or (
                 size <= 1e3 * RELATIVE_TOLERANCE and size > 0.5 * last_residual
             ):
                 return EnergyMinimum(u, approach, step, factor)
             last_residual = size
-            spring = self.weight * k
+            spring = self.quadrature_area * k
             if factor is None or slow:
                 factor = Cholesky(K + T.T @ sp.diags_array(spring) @ T)
             accuracy = min(1e-2, max(size, LINEAR_TOLERANCE_RATIO * RELATIVE_TOLERANCE / size))
@@ -102,11 +100,16 @@ class ContactEnergy:
             "load): the loads may not balance"
         )
 
-    def _apply_tangent(self, spring: Array, u: Array) -> Array:
+    def _apply_tangent(self, contact_stiffness: Array, displacement: Array) -> Array:
         """Tangent times displacement u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
-        return np.asarray(self.stiffness @ u + self.approach_matrix.T @ (spring * (self.approach_matrix @ u)))
+        return np.asarray(
+            self.stiffness @ displacement
+            + self.approach_matrix.T @ (contact_stiffness * (self.approach_matrix @ displacement))
+        )
 
-    def _step_length(self, approach: Array, change: Array, linear: float, quadratic: float) -> float:
+    def _step_length(
+        self, approach: Array, approach_change: Array, initial_slope: float, slope_rate: float
+    ) -> float:
         """Exact line search: step length <= 1 at which the slope of the energy along the step vanishes.
 
         A full step is taken if its final slope is at most a tenth of the initial one.
@@ -116,10 +119,12 @@ class ContactEnergy:
         initial_slope, slope_rate : [J] slope of elastic energy minus load work is linear + length * quadratic
         """
 
-        def energy_slope(length: float) -> float:
+        def energy_slope(step_length: float) -> float:
             """Slope of the energy [J] with respect to the step length."""
-            p = self.law(approach + length * change)[0]
-            return linear + length * quadratic + float(change @ (self.weight * p))
+            p = self.pressure_law(approach + step_length * approach_change)[0]
+            return (
+                initial_slope + step_length * slope_rate + float(approach_change @ (self.quadrature_area * p))
+            )
 
         start = energy_slope(0.0)
         if start >= 0.0 or energy_slope(1.0) <= -0.1 * start:
@@ -128,7 +133,7 @@ class ContactEnergy:
 
 
 def _solve_cg(
-    matrix: LinearOperator, right_side: Array, factor: Cholesky, relative_tolerance: float
+    matrix: LinearOperator, right_side: Array, preconditioner: Cholesky, relative_tolerance: float
 ) -> tuple[Array, int]:
     """Solve a linear system by preconditioned conjugate gradients to a relative tolerance.
 
@@ -140,7 +145,7 @@ def _solve_cg(
         nonlocal count
         count += 1
 
-    inverse = LinearOperator(matrix.shape, matvec=factor.solve, dtype=np.float64)
+    inverse = LinearOperator(matrix.shape, matvec=preconditioner.solve, dtype=np.float64)
     solution, _ = cg(
         matrix,
         right_side,

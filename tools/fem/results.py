@@ -11,14 +11,14 @@ from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.quantity import Array
 
 from .. import plots
-from ..columns import FIELD
+from ..columns import FIELD_FILE_KIND
 from ..fields import nodal_result
 from .bolted_contact import JointSolution
-from .elasticity import ElasticBody, Index
+from .elasticity import ElasticBody, IndexArray
 from .modes import NaturalModes
 
 
-def vtu_content(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array]) -> bytes:
+def vtu_content(points: Array, cell_type: str, cells: IndexArray, point_data: Mapping[str, Array]) -> bytes:
     """Content of a VTU file of a mesh, with values at its points.
 
     points     : (k, 3) [m]
@@ -30,16 +30,17 @@ def vtu_content(points: Array, cell_type: str, cells: Index, data: Mapping[str, 
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mesh.vtu"
-        meshio.Mesh(points, [(cell_type, cells)], point_data=dict(data)).write(path)
+        meshio.Mesh(points, [(cell_type, cells)], point_data=dict(point_data)).write(path)
         content = path.read_bytes()
     return content.replace(b"?>", f"?>\n<!-- {PROGRAM_MARK} -->".encode(), 1)
 
 
 def check_field_path(path: str | Path) -> None:
     """Raise ValueError if the suffix of the path is no format of a field. Call before a long calculation."""
-    if Path(path).suffix.lower() not in FIELD.endings:
+    if Path(path).suffix.lower() not in FIELD_FILE_KIND.endings:
         raise ValueError(
-            f"{path}: suffix {Path(path).suffix!r} is no field, allowed are {', '.join(FIELD.endings)}"
+            f"{path}: suffix {Path(path).suffix!r} is no field, allowed are "
+            f"{', '.join(FIELD_FILE_KIND.endings)}"
         )
 
 
@@ -52,7 +53,7 @@ def write_field(solution: JointSolution, path: str | Path) -> None:
         write_bytes(path, contact_vtu(solution))
 
 
-def divide_elements(solution: JointSolution) -> tuple[Array, Index, Array]:
+def divide_elements(solution: JointSolution) -> tuple[Array, IndexArray, Array]:
     """Divide each element of the contact into four: points (k, 2) [m], cells (m, 4), approach (k) [m].
 
     The points are the nodes of the contact and the centres of its elements.
@@ -72,7 +73,7 @@ def divide_elements(solution: JointSolution) -> tuple[Array, Index, Array]:
 def contact_vtu(solution: JointSolution) -> bytes:
     """Content of a VTU file of the contact: quadrilaterals with nodal pressure [Pa] and approach [m]."""
     positions, cells, approach = divide_elements(solution)
-    data = {"pressure": solution.contact.model.law.derivatives(approach, 1)[0], "approach": approach}
+    data = {"pressure": solution.contact.model.pressure_law.derivatives(approach, 1)[0], "approach": approach}
     points = np.column_stack([positions, np.zeros(len(positions))])
     return vtu_content(points, "quad", cells, data)
 
@@ -89,7 +90,7 @@ def draw_pressure(solution: JointSolution, path: str | Path) -> None:
         axes = figure.subplots()
         axes.grid(False)
         triangles = np.concatenate([cells[:, [0, 1, 2]], cells[:, [0, 2, 3]]])
-        pressure = contact.model.law.derivatives(approach, 1)[0] / 1e6
+        pressure = contact.model.pressure_law.derivatives(approach, 1)[0] / 1e6
         triangulation = Triangulation(points[:, 0], points[:, 1], triangles)
         colours = axes.tripcolor(triangulation, pressure, shading="gouraud", cmap="viridis")
         figure.colorbar(colours, label="contact pressure in MPa", shrink=0.8)
@@ -126,7 +127,7 @@ def modes_vtu(bodies: tuple[ElasticBody, ...], modes: NaturalModes) -> bytes:
         meshes.insert(0, (points * np.array([1.0, 1.0, -1.0]), cells))
     n_points_1 = len(meshes[0][0])
     data = {}
-    for i, (frequency, shape) in enumerate(zip(modes.frequency, modes.shape, strict=True), 1):
+    for i, (frequency, shape) in enumerate(zip(modes.frequency, modes.mode_shapes, strict=True), 1):
         displacement = np.concatenate([u[rows] for u, rows in zip(shape, _corner_nodes(bodies), strict=True)])
         data[f"mode {i}, {frequency:.1f} Hz"] = displacement / np.linalg.norm(displacement, axis=1).max()
     points = np.concatenate([points for points, _ in meshes])
@@ -134,13 +135,13 @@ def modes_vtu(bodies: tuple[ElasticBody, ...], modes: NaturalModes) -> bytes:
     return vtu_content(points, "hexahedron", cells, data)
 
 
-def _corner_nodes(bodies: tuple[ElasticBody, ...]) -> tuple[Index, Index]:
+def _corner_nodes(bodies: tuple[ElasticBody, ...]) -> tuple[IndexArray, IndexArray]:
     """Indices of the element corners among the nodes, for side 1 and side 2."""
     corners = [body.basis.nodal_dofs[0] for body in bodies]
     return corners[0], corners[-1]
 
 
-def _orient_hexahedra(points: Array, cells: Index) -> Index:
+def _orient_hexahedra(points: Array, cells: IndexArray) -> IndexArray:
     """Hexahedra (m, 8) with the node order of VTK: the normal of the first face points to the second face."""
     a, b, d, e = (points[cells[:, k]] for k in (0, 1, 3, 4))
     inverted = np.einsum("ij,ij->i", np.cross(b - a, d - a), e - a) < 0.0

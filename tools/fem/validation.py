@@ -7,10 +7,10 @@ from pathlib import Path
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_default
 
-from ..fields.clamped import field_adapter
+from ..fields.bolted_interface import field_adapter
 from ..joint_parts import load_tool_module
-from ..published.reference import read_points, trivial_guesses
-from ..published.validation import ValidatedPoint, compare
+from ..published.reference import compute_trivial_guesses, read_points
+from ..published.validation import ValidatedPoint, compare_point
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,15 +45,15 @@ def compare_natural_frequencies() -> list[ValidatedPoint]:
     ]
 
 
-def _compare_frequencies(joint: str, measurement: MeasuredFrequencies) -> list[ValidatedPoint]:
+def _compare_frequencies(joint_kind: str, measurement: MeasuredFrequencies) -> list[ValidatedPoint]:
     """Compare the measured frequencies of one assembly with finite elements."""
     from . import assembly, modes
 
-    published, values = read_points(measurement.reference_file), load_default(joint).values
+    published, values = read_points(measurement.reference_file), load_default(joint_kind).values
     states = list(dict.fromkeys((p.where["preload"], p.where["moment"]) for p in published))
-    shear = float(field_adapter(joint).shear_ratio(values))
+    shear = float(field_adapter(joint_kind).tangential_stiffness_ratio(values))
     computed = modes.compute_frequencies(assembly.read_assembly(measurement.path), values, shear, states)
     by_state = dict(zip(states, computed.tolist(), strict=True))
     matching = [by_state[p.where["preload"], p.where["moment"]][p.where["mode"] - 1] for p in published]
-    guessed = trivial_guesses(published)
-    return [compare(p, value, guessed.get(p.id)) for p, value in zip(published, matching, strict=True)]
+    guessed = compute_trivial_guesses(published)
+    return [compare_point(p, value, guessed.get(p.id)) for p, value in zip(published, matching, strict=True)]

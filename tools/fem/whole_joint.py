@@ -17,7 +17,7 @@ from jointfmu.quantity import Array
 
 from .bolted_contact import elastic_body, head_loads
 from .contact import Interface, displacement_matrix
-from .elasticity import Cholesky, ElasticBody, Index
+from .elasticity import Cholesky, ElasticBody, IndexArray
 from .geometry import Assembly
 from .mesh import contact_mesh, find_contact_cells, mesh_plan
 
@@ -28,18 +28,18 @@ FACE_TOLERANCE = 1e-6
 """Distance of a node from a face over the size of the body [1], below which the node lies on the face."""
 
 
-def _on_outer_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _is_on_outer_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     """Whether each node lies on the outer face, opposite to the contact."""
     return _is_close(np.abs(body.nodes[2]), float(np.abs(body.nodes[2]).max()))
 
 
-def _on_end_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _is_on_end_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     """Whether each node lies on the end face of the body: at +x for side 2, at -x for side 1."""
     x = body.nodes[0] if side == 2 else -body.nodes[0]
     return _is_close(x, float(x.max()))
 
 
-def _under_heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _is_under_head(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     """Whether each node lies under a bolt head."""
     under_head = np.zeros(body.nodes.shape[1], dtype=bool)
     for name, facets in body.mesh.boundaries.items():
@@ -54,9 +54,9 @@ def _is_close(coordinate: Array, value: float) -> NDArray[np.bool_]:
 
 
 ATTACHMENT_NODES: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
-    "faces": _on_outer_face,
-    "edge": _on_end_face,
-    "heads": _under_heads,
+    "faces": _is_on_outer_face,
+    "edge": _is_on_end_face,
+    "heads": _is_under_head,
 }
 """Kinds of attachment, each with a function (body, side) that gives the mask (nodes) of the rigid nodes:
 the outer face, the end face (side 1 at -x, side 2 at +x), or the areas under the bolt heads."""
@@ -75,10 +75,10 @@ class JointFiniteElements:
     """
 
     bodies: tuple[ElasticBody, ElasticBody]
-    attachment_unknowns: tuple[Index, Index]
+    attachment_unknowns: tuple[IndexArray, IndexArray]
     interface: Interface
     bolt_head_loads: tuple[Array, Array]
-    bolts: Array
+    bolt_positions: Array
 
     @classmethod
     def from_assembly(
@@ -124,7 +124,7 @@ class JointFiniteElements:
             ]
         ).tocsr()
 
-    def compliances(self, springs: Array, bolt_stiffness: float) -> Compliances:
+    def compliances(self, interface_stiffness: Array, bolt_stiffness: float) -> Compliances:
         """Compliances of the complete joint, by their sources: interface, members, bolts.
 
         interface_stiffness : stiffness per area (q, 3) [N/m3] of the interface along x, y, z
@@ -132,14 +132,14 @@ class JointFiniteElements:
 
         Raises RuntimeError if a body can move freely.
         """
-        return self.linearize(springs, bolt_stiffness).compliances()
+        return self.linearize(interface_stiffness, bolt_stiffness).compliances()
 
     @property
     def elongation_matrix(self) -> Array:
         """Matrix (n, bolts) [1]: elongation of each bolt per unknown of both bodies."""
         return np.concatenate([-self.bolt_head_loads[0], self.bolt_head_loads[1]])
 
-    def linearize(self, springs: Array, bolt_stiffness: float) -> "LinearJoint":
+    def linearize(self, interface_stiffness: Array, bolt_stiffness: float) -> "LinearJoint":
         """Linearise the joint, with springs as interface, and solve for unit motions.
 
         Parameters as for `compliances`.
@@ -148,7 +148,7 @@ class JointFiniteElements:
         """
         bodies = sp.block_diag([body.stiffness for body in self.bodies], format="csr")
         opening = [self.relative_displacement_matrix(axis) for axis in AXES]
-        weights = [sp.diags(self.interface.area * springs[:, axis]) for axis in AXES]
+        weights = [sp.diags(self.interface.quadrature_area * interface_stiffness[:, axis]) for axis in AXES]
         contact = sum(b.T @ w @ b for b, w in zip(opening, weights, strict=True))
         shanks = (
             bolt_stiffness * sp.csr_matrix(self.elongation_matrix) @ sp.csr_matrix(self.elongation_matrix.T)
@@ -164,7 +164,7 @@ class JointFiniteElements:
 
     def _solve_unit_motions(
         self, stiffness: sp.csr_matrix
-    ) -> tuple[Array, Array, Index, "Cholesky | MirrorFactorisation"]:
+    ) -> tuple[Array, Array, IndexArray, "Cholesky | MirrorFactorisation"]:
         """Solve for unit translations and rotations of side 2's attachment about the centroid of the contact.
 
         Returns the displacement (n, 6) of the elastic bodies, the displacement (n, 6) of rigid bodies, the
@@ -200,10 +200,10 @@ class MirrorFactorisation:
     mirror_signs : (n) sign of each unknown of the first body in the mirror image
     """
 
-    def __init__(self, matrix: sp.csr_matrix, mirror: Array) -> None:
-        n = len(mirror)
-        diagonal, coupling = matrix[n:, n:], matrix[n:, :n] @ sp.diags(mirror)
-        self._mirror = mirror
+    def __init__(self, matrix: sp.csr_matrix, mirror_signs: Array) -> None:
+        n = len(mirror_signs)
+        diagonal, coupling = matrix[n:, n:], matrix[n:, :n] @ sp.diags(mirror_signs)
+        self._mirror = mirror_signs
         self._symmetric, self._antisymmetric = Cholesky(diagonal + coupling), Cholesky(diagonal - coupling)
 
     def solve(self, right_side: Array) -> Array:
@@ -235,30 +235,33 @@ class LinearJoint:
     contact_matrix: sp.csr_matrix
     bolt_matrix: sp.csr_matrix
     bolt_stiffness: float
-    displacement: Array
+    unit_motion_displacement: Array
     rigid_displacement: Array
-    free_unknowns: Index
-    factor: Cholesky | MirrorFactorisation
+    free_unknowns: IndexArray
+    stiffness_factor: Cholesky | MirrorFactorisation
 
     def solve(self, loads: Array) -> Array:
         """Solve for displacements (n, s) [m] under loads (n, s) [N], with both attachments fixed."""
         displacement = np.zeros_like(loads)
-        displacement[self.free_unknowns] = self.factor.solve(loads[self.free_unknowns])
+        displacement[self.free_unknowns] = self.stiffness_factor.solve(loads[self.free_unknowns])
         return displacement
 
     @property
     def stiffness(self) -> Array:
         """Stiffness matrix (6, 6) [N/m, N, N.m] of the joint about the centroid of its contact."""
         return np.asarray(
-            self.displacement.T
-            @ ((self.contact_matrix + self.body_matrix + self.bolt_matrix) @ self.displacement)
+            self.unit_motion_displacement.T
+            @ ((self.contact_matrix + self.body_matrix + self.bolt_matrix) @ self.unit_motion_displacement)
         )
 
     def compliances(self) -> Compliances:
         """Compliances of the joint about its contact centroid, by source: interface, members, bolts."""
         sources, total = (self.contact_matrix, self.body_matrix, self.bolt_matrix), np.diag(self.stiffness)
         stored = np.stack(
-            [np.sum(self.displacement * (matrix @ self.displacement), axis=0) for matrix in sources]
+            [
+                np.sum(self.unit_motion_displacement * (matrix @ self.unit_motion_displacement), axis=0)
+                for matrix in sources
+            ]
         )
         contact, bolts = (
             np.diag(self.rigid_displacement.T @ (matrix @ self.rigid_displacement))
@@ -266,7 +269,7 @@ class LinearJoint:
         )
         bolt_force = (
             self.bolt_stiffness
-            * (self.joint.elongation_matrix.T @ self.displacement)
+            * (self.joint.elongation_matrix.T @ self.unit_motion_displacement)
             @ np.linalg.inv(self.stiffness)
         )
         return Compliances(stored / total**2, 1.0 / contact, bolts, bolt_force)

@@ -19,10 +19,10 @@ from jointfmu.quantity.refusal import InputRefusal
 from .mesh import NODE_COUNTS, FiniteElementMesh
 from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
-PRESSURE, AREA = "CPRESS", "CNAREA"
-_COORDINATES = ("COOR1", "COOR2", "COOR3")
-_COLUMN = re.compile(r"[A-Z]+\d*(?:\..*)?")
-_SUMMARIES = ("MINIMUM", "MAXIMUM", "TOTAL")
+PRESSURE_COLUMN, AREA_COLUMN = "CPRESS", "CNAREA"
+_COORDINATE_COLUMNS = ("COOR1", "COOR2", "COOR3")
+_COLUMN_NAME_PATTERN = re.compile(r"[A-Z]+\d*(?:\..*)?")
+_SUMMARY_WORDS = ("MINIMUM", "MAXIMUM", "TOTAL")
 
 
 class ListingRow(NamedTuple):
@@ -37,9 +37,9 @@ class ListingRow(NamedTuple):
 
     location: str
     frame: str
-    instance: str
+    part_instance: str
     node: int
-    values: dict[str, float]
+    column_values: dict[str, float]
 
 
 class NodalValues(NamedTuple):
@@ -63,12 +63,14 @@ def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float)
     path, meshes = paths[0], [p for p in paths[1:] if p.suffix.lower() == ".inp"]
     values, left_out = _read_values([p for p in paths if p not in meshes])
     if not values.pressure:
-        raise ValueError(f"{path}: has no contact pressure, a column {PRESSURE} for nodes (Unique Nodal)")
+        raise ValueError(
+            f"{path}: has no contact pressure, a column {PRESSURE_COLUMN} for nodes (Unique Nodal)"
+        )
     if meshes:
         return _result_on_deck(path, meshes[0], values, left_out, length_unit, pressure_unit)
     for table, text in (
         (values.position, "no coordinates, columns COOR1, COOR2 and COOR3 (COORD)"),
-        (values.area, f"no nodal areas, a column {AREA}"),
+        (values.area, f"no nodal areas, a column {AREA_COLUMN}"),
     ):
         if not any(table.values()):
             raise InputRefusal(f"{path}: has {text}; list them too, or give the input deck (.inp)", "beside")
@@ -78,8 +80,8 @@ def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float)
     absent = 0.0 if left_out else np.nan
     return NodalResult(
         path=path,
-        label="node",
-        numbers=np.array([node for _, node in nodes], dtype=np.int64),
+        node_label="node",
+        node_numbers=np.array([node for _, node in nodes], dtype=np.int64),
         position=np.array([values.position[key] for key in nodes]).reshape(-1, 3) * length_unit,
         pressure=np.array([values.pressure.get(key, absent) for key in nodes]) * pressure_unit,
         area=np.array([values.area[key] for key in nodes]) * length_unit**2,
@@ -123,13 +125,18 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
         left_out |= not report
         for row in _report_rows(path, lines) if report else _data_file_rows(path, lines):
             frame = frames.setdefault(row.frame, NodalValues({}, {}, {}))
-            key = row.instance, row.node
-            for name, table in ((PRESSURE, frame.pressure), (AREA, frame.area)):
-                if name in row.values and table.setdefault(key, row.values[name]) != row.values[name]:
+            key = row.part_instance, row.node
+            for name, table in ((PRESSURE_COLUMN, frame.pressure), (AREA_COLUMN, frame.area)):
+                if (
+                    name in row.column_values
+                    and table.setdefault(key, row.column_values[name]) != row.column_values[name]
+                ):
                     raise ValueError(f"{row.location}: node {row.node} has a second {name}, expected one")
-            if all(name in row.values for name in _COORDINATES):
-                frame.position[key] = coordinates[key] = tuple(row.values[name] for name in _COORDINATES)
-            if PRESSURE in row.values:
+            if all(name in row.column_values for name in _COORDINATE_COLUMNS):
+                frame.position[key] = coordinates[key] = tuple(
+                    row.column_values[name] for name in _COORDINATE_COLUMNS
+                )
+            if PRESSURE_COLUMN in row.column_values:
                 last = row.frame
     values = frames.get(last, NodalValues({}, {}, {}))
     return NodalValues(values.pressure, values.area, coordinates | values.position), left_out
@@ -153,7 +160,7 @@ def _report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
                 head, instance = [], text.split(":", 1)[-1].strip().split(".")[0]
         elif text and set(text) == {"-"} and head:
             columns, head = [*columns, *_column_names(location, head)], []
-        elif not text or text.upper().startswith(_SUMMARIES):
+        elif not text or text.upper().startswith(_SUMMARY_WORDS):
             columns = [] if text else columns
         elif columns and NUMBER_PATTERN.fullmatch(text.split()[0]):
             words += text.split()
@@ -165,27 +172,28 @@ def _report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
             head.append(text)
 
 
-def _column_names(location: str, head: Sequence[str]) -> list[str]:
+def _column_names(location: str, head_lines: Sequence[str]) -> list[str]:
     """Read the column names in the head of a table: names in the first line, locations (@Loc 1) in the next.
 
     A name may be followed by the name of a contact pair, as in CPRESS  ASSEMBLY_A/ASSEMBLY_B.
     """
-    words = [word for word in head[0].split() if word not in ("Node", "Label")]
+    words = [word for word in head_lines[0].split() if word not in ("Node", "Label")]
     names: list[str] = []
     for word in words:
-        if names and not _COLUMN.fullmatch(word):
+        if names and not _COLUMN_NAME_PATTERN.fullmatch(word):
             names[-1] += f" {word}"
         else:
             names.append(word)
-    count = sum(line.count("@Loc") for line in head)
+    count = sum(line.count("@Loc") for line in head_lines)
     if count not in (0, len(names)):
         raise ValueError(
             f"{location}: has {count} columns, their names are not told apart: {' '.join(words)}"
         )
     columns = [_standard_name(name) for name in names]
-    if columns.count(PRESSURE) > 1:
+    if columns.count(PRESSURE_COLUMN) > 1:
         raise ValueError(
-            f"{location}: has {columns.count(PRESSURE)} columns {PRESSURE}, expected one contact pair"
+            f"{location}: has {columns.count(PRESSURE_COLUMN)} columns {PRESSURE_COLUMN}, expected one "
+            "contact pair"
         )
     return columns
 
@@ -197,18 +205,20 @@ def _standard_name(name: str) -> str:
 
 
 def _parse_row(
-    location: str, frame: str, instance: str, columns: Sequence[str], words: Sequence[str]
+    location: str, frame: str, part_instance: str, columns: Sequence[str], row_words: Sequence[str]
 ) -> ListingRow:
     """Parse one row: a node and a number for each column. Raises ValueError for any other line."""
-    numbers = words[-len(columns) :]
+    numbers = row_words[-len(columns) :]
     if (
-        not words[0].isdigit()
-        or len(words) != len(columns) + 1
+        not row_words[0].isdigit()
+        or len(row_words) != len(columns) + 1
         or not all(map(NUMBER_PATTERN.fullmatch, numbers))
     ):
-        raise ValueError(f"{location}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
+        raise ValueError(f"{location}: {' '.join(row_words)!r} is no row with a node and {' '.join(columns)}")
     values = [float(word.upper().replace("D", "E")) for word in numbers]
-    return ListingRow(location, frame, instance, int(words[0]), dict(zip(columns, values, strict=True)))
+    return ListingRow(
+        location, frame, part_instance, int(row_words[0]), dict(zip(columns, values, strict=True))
+    )
 
 
 def _data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
@@ -225,15 +235,15 @@ def _data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
             increment, columns = words[1], []
         elif words[0] == "NODE" and "FOOT-" in words:
             columns = [word for word in words if word not in ("NODE", "FOOT-", "STATUS")]
-        elif words[0] in _SUMMARIES or "TABLE" in words:
+        elif words[0] in _SUMMARY_WORDS or "TABLE" in words:
             columns = []
         elif columns and words[0].isdigit() and len(words) > 1:
             numbers = [word for word in words if not word.isalpha()]  # without the status CL or OP
             yield _parse_row(f"{path}: line {number}", f"{step} {increment}", "", columns, numbers)
 
 
-_SOLID_NAME = re.compile(r"(?:AC3D|DC3D|C3D)(\d+)")
-_SHELL_NAME = re.compile(r"(?:S|SC|R3D|M3D|SFM3D|STRI|CPS|CPE|CPEG|CAX)(\d+)")
+_SOLID_NAME_PATTERN = re.compile(r"(?:AC3D|DC3D|C3D)(\d+)")
+_SHELL_NAME_PATTERN = re.compile(r"(?:S|SC|R3D|M3D|SFM3D|STRI|CPS|CPE|CPEG|CAX)(\d+)")
 SOLID_CELLS = {
     4: "tetra",
     5: "pyramid",
@@ -302,11 +312,11 @@ def _data_lines(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
             yield number, keyword, kind, words
 
 
-def _cell_type(parameters: list[str]) -> str:
+def _cell_type(keyword_parameters: list[str]) -> str:
     """Cell type of meshio for the parameter TYPE of *ELEMENT; empty if the element is not supported."""
-    values = (p.split("=")[1].strip().upper() for p in parameters if p.upper().startswith("TYPE"))
+    values = (p.split("=")[1].strip().upper() for p in keyword_parameters if p.upper().startswith("TYPE"))
     name = next(values, "")
-    for pattern, kinds in ((_SOLID_NAME, SOLID_CELLS), (_SHELL_NAME, SHELL_CELLS)):
+    for pattern, kinds in ((_SOLID_NAME_PATTERN, SOLID_CELLS), (_SHELL_NAME_PATTERN, SHELL_CELLS)):
         if match := pattern.match(name):
             return kinds.get(int(match[1]), "")
     return ""

@@ -20,7 +20,7 @@ from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
 _LISTING_ELEMENT_COLUMNS = 6
 """Number of columns before the nodes of an element: number, material, type, constants, system, section."""
-PRESSURE = "PRES"
+PRESSURE_COLUMN = "PRES"
 
 
 def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) -> NodalResult:
@@ -51,7 +51,7 @@ def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) 
     if meshes and values:
         return _result_on_archive(first, meshes[0], values, length_unit, pressure_unit)
     for entries, text in (
-        (values, f"no contact pressure, a table with NODE and {PRESSURE} (PRNSOL,CONT)"),
+        (values, f"no contact pressure, a table with NODE and {PRESSURE_COLUMN} (PRNSOL,CONT)"),
         (coordinates, "no nodes, a table with NODE, X, Y and Z (NLIST)"),
         (elements, "no contact elements, a table with ELEM and NODES (ESEL,S,ENAME,,174 and ELIST)"),
     ):
@@ -61,18 +61,22 @@ def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) 
 
 
 def _result_on_archive(
-    path: Path, archive: Path, values: dict[int, float], length_unit: float, pressure_unit: float
+    path: Path,
+    archive_path: Path,
+    listed_pressures: dict[int, float],
+    length_unit: float,
+    pressure_unit: float,
 ) -> NodalResult:
     """Contact result of listed pressures on the mesh of an archive: faces whose corners all have a value."""
-    mesh = read_archive(archive)
-    if stray := mesh.unknown_nodes(node for node, value in values.items() if value):
-        raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {archive}")
-    return mesh.nodal_result(path, values, length_unit, pressure_unit)
+    mesh = read_archive(archive_path)
+    if stray := mesh.unknown_nodes(node for node, value in listed_pressures.items() if value):
+        raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {archive_path}")
+    return mesh.nodal_result(path, listed_pressures, length_unit, pressure_unit)
 
 
 def _nodal_result(
     path: Path,
-    values: dict[int, float],
+    listed_pressures: dict[int, float],
     coordinates: dict[int, tuple[float, ...]],
     elements: Sequence[Sequence[int]],
     length_unit: float,
@@ -82,8 +86,8 @@ def _nodal_result(
     used = sorted({node for element in elements for node in element if node})
     if missing := [node for node in used if node not in coordinates]:
         raise ValueError(f"{path}: node {missing[0]} of a contact element is not listed (NLIST)")
-    if stray := sorted(values.keys() - set(used)):
-        loaded = [node for node in stray if values[node] != 0.0]
+    if stray := sorted(listed_pressures.keys() - set(used)):
+        loaded = [node for node in stray if listed_pressures[node] != 0.0]
         if loaded:
             raise ValueError(f"{path}: node {loaded[0]} has a pressure and is in no listed element (ELIST)")
     faces: dict[str, list[list[int]]] = {}
@@ -99,10 +103,10 @@ def _nodal_result(
     mesh = FiniteElementMesh.from_elements(path, names, np.array([coordinates[name] for name in used]), faces)
     return NodalResult(
         path=path,
-        label="node",
-        numbers=names,
+        node_label="node",
+        node_numbers=names,
         position=mesh.position * length_unit,
-        pressure=mesh.nodal_values(values) * pressure_unit,
+        pressure=mesh.nodal_values(listed_pressures) * pressure_unit,
         faces=mesh.faces(),
     )
 
@@ -145,33 +149,34 @@ def _parse_numbers(line: str) -> list[float] | None:
 
 
 def _classify_row(
-    head: list[str], numbers: list[float], location: str, previous: str
+    column_names: list[str], row_numbers: list[float], location: str, previous_content: str
 ) -> tuple[str, list[float]]:
     """Content of a row (see `_listing_rows`) and its relevant numbers, from the head of its table.
 
     previous_content : content of the row before
     """
-    if head[0] == "ELEM":
-        if not all(x % 1.0 == 0.0 for x in numbers):
+    if column_names[0] == "ELEM":
+        if not all(x % 1.0 == 0.0 for x in row_numbers):
             return "", []
-        if len(numbers) > _LISTING_ELEMENT_COLUMNS:
-            return "element", numbers
-        return ("more", numbers) if previous in ("element", "more") else ("", [])
-    if PRESSURE in head and "X" not in head:
-        if len(numbers) != len(head):
+        if len(row_numbers) > _LISTING_ELEMENT_COLUMNS:
+            return "element", row_numbers
+        return ("more", row_numbers) if previous_content in ("element", "more") else ("", [])
+    if PRESSURE_COLUMN in column_names and "X" not in column_names:
+        if len(row_numbers) != len(column_names):
             raise ValueError(
-                f"{location}: has {len(numbers)} numbers, its table {len(head)}: {' '.join(head)}"
+                f"{location}: has {len(row_numbers)} numbers, its table {len(column_names)}: "
+                f"{' '.join(column_names)}"
             )
-        return "pressure", [numbers[0], numbers[head.index(PRESSURE)]]
-    if head[1:4] == ["X", "Y", "Z"]:
-        if len(numbers) < 4:
-            raise ValueError(f"{location}: has {len(numbers)} numbers, expected NODE, X, Y and Z")
-        return "place", numbers[:4]
+        return "pressure", [row_numbers[0], row_numbers[column_names.index(PRESSURE_COLUMN)]]
+    if column_names[1:4] == ["X", "Y", "Z"]:
+        if len(row_numbers) < 4:
+            raise ValueError(f"{location}: has {len(row_numbers)} numbers, expected NODE, X, Y and Z")
+        return "place", row_numbers[:4]
     return "", []
 
 
-CONTACT_TYPES = (173, 174)
-SOLID_TYPES = (45, 62, 64, 65, 72, 73, 90, 92, 95, 185, 186, 187, 285)
+CONTACT_ELEMENT_TYPES = (173, 174)
+SOLID_ELEMENT_TYPES = (45, 62, 64, 65, 72, 73, 90, 92, 95, 185, 186, 187, 285)
 """Numbers of the ANSYS element types that are read; others are ignored."""
 _ARCHIVE_ELEMENT_COLUMNS = 10
 """Count of numbers before the nodes of an element in an archive."""
@@ -199,13 +204,13 @@ def read_archive(path: Path) -> FiniteElementMesh:
     """
     archive = _open_archive(path)
     types = np.asarray(archive.etype)
-    chosen = np.isin(types, CONTACT_TYPES)
+    chosen = np.isin(types, CONTACT_ELEMENT_TYPES)
     if not np.any(chosen):
-        chosen = np.isin(types, SOLID_TYPES)
+        chosen = np.isin(types, SOLID_ELEMENT_TYPES)
     rows: dict[str, list[list[int]]] = {}
     for i in np.flatnonzero(chosen):
         kind, nodes = _convert_element(
-            archive.elem[i][_ARCHIVE_ELEMENT_COLUMNS:].tolist(), int(types[i]) in CONTACT_TYPES
+            archive.elem[i][_ARCHIVE_ELEMENT_COLUMNS:].tolist(), int(types[i]) in CONTACT_ELEMENT_TYPES
         )
         if not kind:
             number = archive.elem[i][8]

@@ -35,16 +35,18 @@ class ContactPlane:
     The y axis of the joint completes a right-handed system.
     """
 
-    normal: str = "z"
-    rows: str | None = None
-    side: str | None = None
+    normal_axis: str = "z"
+    bolt_row_axis: str | None = None
+    body_side: str | None = None
 
     def axis_indices(self) -> tuple[int, int, int]:
         """Indices of the joint's x, y and normal among the file's axes; ValueError if rows equals normal."""
-        n = AXES.index(self.normal)
-        x = (n + 1) % 3 if self.rows is None else AXES.index(self.rows)
+        n = AXES.index(self.normal_axis)
+        x = (n + 1) % 3 if self.bolt_row_axis is None else AXES.index(self.bolt_row_axis)
         if x == n:
-            raise ValueError(f"rows = {self.rows!r} is the normal too, allowed are the two other axes")
+            raise ValueError(
+                f"rows = {self.bolt_row_axis!r} is the normal too, allowed are the two other axes"
+            )
         return x, 3 - n - x, n
 
     def project(self, position: Array) -> Array:
@@ -65,15 +67,15 @@ class ContactSurface:
     pressure      : (n) [Pa]
     """
 
-    result: NodalResult
-    index: NodeIndices
+    source_result: NodalResult
+    node_indices: NodeIndices
     area: Array
     position: Array
     pressure: Array
 
-    def describe_node(self, i: int) -> str:
+    def describe_node(self, contact_node: int) -> str:
         """File and number of a node of the contact, for messages."""
-        return self.result.describe_node(int(self.index[i]))
+        return self.source_result.describe_node(int(self.node_indices[contact_node]))
 
     def select_field(self, selected: NDArray[np.bool_]) -> ContactField:
         """Pressure field of the selected nodes, from a mask (n)."""
@@ -117,8 +119,8 @@ def _check_surface(contact: ContactSurface) -> None:
     if coincident:
         first, second = min(coincident)
         raise ValueError(
-            f"{contact.describe_node(second)}: is at the same place as {contact.result.label} "
-            f"{contact.result.numbers[contact.index[first]]}; expected each place once"
+            f"{contact.describe_node(second)}: is at the same place as {contact.source_result.node_label} "
+            f"{contact.source_result.node_numbers[contact.node_indices[first]]}; expected each place once"
         )
 
 
@@ -135,7 +137,8 @@ def _contact_faces(result: NodalResult, plane: ContactPlane) -> list[NodeIndices
     if np.any(off_plane[loaded]):
         i = int(loaded[np.argmax(off_plane[loaded])])
         raise InputRefusal(
-            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m off the plane {plane.normal} = "
+            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m off the plane "
+            f"{plane.normal_axis} = "
             f"{level:.6g} m; expected a plane contact and its normal",
             "normal",
         )
@@ -155,9 +158,9 @@ def _contact_faces(result: NodalResult, plane: ContactPlane) -> list[NodeIndices
     return faces
 
 
-def _check_not_line(result: NodalResult, loaded: NodeIndices) -> None:
+def _check_not_line(result: NodalResult, loaded_nodes: NodeIndices) -> None:
     """Raise ValueError if the contact is a line, as in a two-dimensional model."""
-    offset = result.position[loaded] - result.position[loaded[0]]
+    offset = result.position[loaded_nodes] - result.position[loaded_nodes[0]]
     farthest = offset[np.argmax(np.sum(offset**2, axis=1))]
     size = float(np.linalg.norm(farthest))
     distance = np.linalg.norm(np.cross(offset, farthest), axis=1) if size else np.zeros(1)
@@ -175,19 +178,23 @@ def _body_of_node(result: NodalResult) -> NDArray[np.int64]:
     )
 
 
-def _select_bodies(result: NodalResult, loaded: NodeIndices, height: Array, plane: ContactPlane) -> list[int]:
+def _select_bodies(
+    result: NodalResult, loaded_nodes: NodeIndices, node_height: Array, plane: ContactPlane
+) -> list[int]:
     """Numbers of the bodies with pressure; only those on `plane.side` if a side is given.
 
     A body lies above the plane if the mean height of its nodes is positive.
     """
     body = _body_of_node(result)
-    with_pressure: list[int] = np.unique(body[loaded]).tolist()
-    if plane.side is None:
+    with_pressure: list[int] = np.unique(body[loaded_nodes]).tolist()
+    if plane.body_side is None:
         return with_pressure
-    sign = 1.0 if plane.side == "above" else -1.0
-    selected = [number for number in with_pressure if sign * float(np.mean(height[body == number])) > 0.0]
+    sign = 1.0 if plane.body_side == "above" else -1.0
+    selected = [
+        number for number in with_pressure if sign * float(np.mean(node_height[body == number])) > 0.0
+    ]
     if not selected:
-        raise ValueError(f"{result.path}: no body {plane.side} the plane has a pressure")
+        raise ValueError(f"{result.path}: no body {plane.body_side} the plane has a pressure")
     return selected
 
 

@@ -57,22 +57,22 @@ def _read_text(path: Path) -> str:
     return data.decode("latin-1")
 
 
-def _block_lines(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
+def _block_lines(lines: list[str], start_line: int) -> Iterator[tuple[int, str]]:
     """Lines of a block as (line number, line): those after `start_line`, up to the end of the block."""
-    for number in range(start + 1, len(lines)):
+    for number in range(start_line + 1, len(lines)):
         if lines[number].startswith(" -3"):
             return
         yield number, lines[number]
 
 
-def _find_block(path: Path, lines: list[str], key: str, content: str) -> int:
+def _find_block(path: Path, lines: list[str], block_key: str, content_name: str) -> int:
     """Line number of the last block with this key; ValueError if there is none or if it is binary.
 
     content_name : name of the content in the message
     """
-    starts = [i for i, line in enumerate(lines) if line.startswith(key)]
+    starts = [i for i, line in enumerate(lines) if line.startswith(block_key)]
     if not starts:
-        raise ValueError(f"{path}: has no {content}, expected a block {key.strip()}")
+        raise ValueError(f"{path}: has no {content_name}, expected a block {block_key.strip()}")
     if lines[starts[-1]].rstrip().endswith(("2", "3")):
         raise ValueError(f"{path}: line {starts[-1] + 1}: is binary, expected an ASCII .frd file")
     return starts[-1]
@@ -88,7 +88,7 @@ def _read_nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]
     return np.array(names, dtype=np.int64), np.array(coordinates)
 
 
-def _parse_row(path: Path, number: int, line: str, min_count: int) -> tuple[int, list[float]]:
+def _parse_row(path: Path, line_index: int, line: str, min_count: int) -> tuple[int, list[float]]:
     """Node number and values of a line -1: I10 after the key, then E12.5 without blanks between.
 
     Raises ValueError if the line has fewer than `min_count` values.
@@ -99,7 +99,7 @@ def _parse_row(path: Path, number: int, line: str, min_count: int) -> tuple[int,
     except ValueError:
         values = []
     if len(values) < min_count or not line.startswith(" -1") or not all(map(isfinite, values)):
-        raise ValueError(f"{path}: line {number + 1}: {line[:60]!r} is no node with {min_count} numbers")
+        raise ValueError(f"{path}: line {line_index + 1}: {line[:60]!r} is no node with {min_count} numbers")
     return name, values
 
 

@@ -5,21 +5,21 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.friction import reduce_patches
-from jointfmu.mechanics.footprint.shape import (
+from jointfmu.mechanics.footprint.distribution import (
     BOLT_MEAN_NAMES,
     MAX_PATCHES,
     PressureDistribution,
-    field_entries,
     moment_pressure,
+    nodal_field_entries,
     position_means,
 )
+from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, build_parameter_set
 from jointfmu.quantity.refusal import InputRefusal
 
 from .. import plots
-from .clamped import BoltedInterface, field_adapter
+from .bolted_interface import BoltedInterface, field_adapter
 from .nodal_result import ContactField
 from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
 
@@ -31,15 +31,15 @@ _REPLACED_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
 """Prefixes of the entries that a field replaces. Bodies are replaced too: they belong to another contact."""
 
 
-def with_field(
+def insert_field(
     file: ParameterFile,
     field: ContactField,
     preload: float,
-    source: str,
+    field_source: str,
     moment_field: ContactField | None = None,
     moment: float | None = None,
-    bolts: Array | None = None,
-    tolerance: float = FORCE_TOLERANCE,
+    bolt_positions: Array | None = None,
+    force_tolerance: float = FORCE_TOLERANCE,
 ) -> tuple[ParameterFile, Reduction]:
     """Replace the pressure distribution and the contact area of a bolted joint by a computed field.
 
@@ -63,16 +63,16 @@ def with_field(
     bolt force by more than the tolerance, if the two fields have different nodes, or if the moment of the
     pressure is far from the given moment.
     """
-    pressures = field_adapter(file.joint).pressures
-    shape = pressure_shape(file.values, field, preload, moment_field, moment, tolerance)
+    pressures = field_adapter(file.joint).nodal_pressures
+    shape = pressure_shape(file.values, field, preload, moment_field, moment, force_tolerance)
     reduction = reduce_field(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
-    initial = reduction.shape if shape.share.size > MAX_KEPT_NODES else None
+    initial = reduction.reduced_shape if shape.area_share.size > MAX_KEPT_NODES else None
     patches = reduce_patches(shape, MAX_PATCHES, initial)
-    lists = field_entries(reduction.shape) | field_entries(patches)
+    lists = nodal_field_entries(reduction.reduced_shape) | nodal_field_entries(patches)
     new_values: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     new_values["A_0"] = float(np.sum(field.area))
-    if bolts is not None:
-        positions = bolts - field.centroid
+    if bolt_positions is not None:
+        positions = bolt_positions - field.centroid
         bolt_means = position_means(positions)
         new_values |= {
             f"field.{name}": value for name, value in zip(BOLT_MEAN_NAMES, bolt_means, strict=True)
@@ -80,7 +80,8 @@ def with_field(
         new_values |= {f"field.each_bolt_{a}": tuple(positions[:, i].tolist()) for i, a in enumerate("xy")}
     old_values = {n: v for n, v in file.values_by_name.items() if not n.startswith(_REPLACED_PREFIXES)}
     text = (
-        f"{source}, {preload:g} N per bolt; {reduction.point_count} points for {reduction.node_count} nodes"
+        f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for "
+        f"{reduction.node_count} nodes"
     )
     return replace(
         file,
@@ -90,7 +91,7 @@ def with_field(
         sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED_PREFIXES)}
         | dict.fromkeys(new_values, text)
         | {
-            "A_0": f"{source}, sum of the nodal areas",
+            "A_0": f"{field_source}, sum of the nodal areas",
             "field.tilt": f"{text}; {_describe_moment_rule(moment_field, moment)}",
         },
     ), reduction
@@ -109,7 +110,7 @@ def pressure_shape(
     preload: float,
     moment_field: ContactField | None = None,
     moment: float | None = None,
-    tolerance: float = FORCE_TOLERANCE,
+    force_tolerance: float = FORCE_TOLERANCE,
 ) -> PressureDistribution:
     """Pressure shape of a joint with all nodes of a field. Parameters as for `insert_field`.
 
@@ -117,7 +118,7 @@ def pressure_shape(
     force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =
     L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p is the centre of pressure.
     """
-    scale = _force_ratio(joint, field, preload, "the field", tolerance)
+    scale = _force_ratio(joint, field, preload, "the field", force_tolerance)
     area = float(np.sum(field.area))
     share, position = field.area / area, field.position - field.centroid
     mean = preload * joint.n_bolts / area
@@ -127,7 +128,7 @@ def pressure_shape(
         return PressureDistribution(share, position, equal, tilt)
     if moment is None or not np.isfinite(moment) or moment == 0.0:
         raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
-    scale = _force_ratio(joint, moment_field, preload, "the field with a moment", tolerance)
+    scale = _force_ratio(joint, moment_field, preload, "the field with a moment", force_tolerance)
     _check_same_nodes(field, moment_field)
     added = scale * moment_field.pressure - mean * equal
     moment_ratio = area * float(share @ (added * position[:, 1])) / moment
@@ -141,18 +142,19 @@ def pressure_shape(
 
 
 def _force_ratio(
-    joint: BoltedInterface, field: ContactField, preload: float, name: str, tolerance: float
+    joint: BoltedInterface, field: ContactField, preload: float, field_name: str, force_tolerance: float
 ) -> float:
     """Total bolt force over the force of the field [1]. ValueError if it differs from 1 by > tolerance."""
-    if not 0.0 < tolerance < 1.0:
-        raise InputRefusal(f"force_tolerance = {tolerance:g} is outside (0, 1)", "force_tolerance")
+    if not 0.0 < force_tolerance < 1.0:
+        raise InputRefusal(f"force_tolerance = {force_tolerance:g} is outside (0, 1)", "force_tolerance")
     if not 0.0 < preload < np.inf:
         raise ValueError(f"preload = {preload:g} N is outside (0, inf)")
     expected = preload * joint.n_bolts
-    if not abs(field.force / expected - 1.0) <= tolerance:
+    if not abs(field.force / expected - 1.0) <= force_tolerance:
         raise InputRefusal(
-            f"the force of {name} is {field.force:.6g} N, expected {expected:.6g} N within "
-            f"{100.0 * tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; a larger tolerance scales "
+            f"the force of {field_name} is {field.force:.6g} N, expected {expected:.6g} N within "
+            f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; a larger "
+            "tolerance scales "
             "it to theirs",
             "force_tolerance",
         )
@@ -187,12 +189,12 @@ def draw_field(field: ContactField, reduction: Reduction, path: str | Path) -> N
         nodes = left.scatter(*position.T, c=1e-6 * field.pressure, s=size, cmap="viridis", lw=0.0)
         figure.colorbar(nodes, ax=left, label="pressure [MPa]", shrink=0.85)
         left.set_title(f"{field.area.size} nodes, {field.force / 1e3:.4g} kN", loc="left", fontsize=10)
-        shape = reduction.shape
+        shape = reduction.reduced_shape
         mean = field.force / float(np.sum(field.area))
         points = right.scatter(
             *(1e3 * shape.position.T),
             c=1e-6 * mean * shape.preload_shape,
-            s=np.clip(2000.0 * shape.share, 4.0, 400.0),
+            s=np.clip(2000.0 * shape.area_share, 4.0, 400.0),
             cmap="viridis",
             alpha=0.75,
         )

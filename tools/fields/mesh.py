@@ -70,10 +70,10 @@ def _quadrilateral_integrals(corners: Array) -> Array:
     return total
 
 
-_TETRA = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
-_WEDGE = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (0, 2, 5, 3))
-_PYRAMID = ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 3, 4))
-_BRICK = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 3, 7, 4))
+_TETRA_FACES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
+_WEDGE_FACES = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (0, 2, 5, 3))
+_PYRAMID_FACES = ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 3, 4))
+_BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 3, 7, 4))
 _TETRA_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 _WEDGE_EDGES = ((0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5))
 _PYRAMID_EDGES = ((0, 1), (1, 2), (2, 3), (0, 3), (0, 4), (1, 4), (2, 4), (3, 4))
@@ -81,16 +81,16 @@ _BRICK_EDGES = (
     *((0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7)),
     *((0, 4), (1, 5), (2, 6), (3, 7)),
 )
-_Pairs = tuple[tuple[int, ...], ...]
-VOLUME_CELLS: dict[str, tuple[int, _Pairs, _Pairs]] = {
-    "tetra": (4, _TETRA, ()),
-    "tetra10": (4, _TETRA, _TETRA_EDGES),
-    "wedge": (6, _WEDGE, ()),
-    "wedge15": (6, _WEDGE, _WEDGE_EDGES),
-    "pyramid": (5, _PYRAMID, ()),
-    "pyramid13": (5, _PYRAMID, _PYRAMID_EDGES),
-    "hexahedron": (8, _BRICK, ()),
-    "hexahedron20": (8, _BRICK, _BRICK_EDGES),
+_NodeTuples = tuple[tuple[int, ...], ...]
+VOLUME_CELLS: dict[str, tuple[int, _NodeTuples, _NodeTuples]] = {
+    "tetra": (4, _TETRA_FACES, ()),
+    "tetra10": (4, _TETRA_FACES, _TETRA_EDGES),
+    "wedge": (6, _WEDGE_FACES, ()),
+    "wedge15": (6, _WEDGE_FACES, _WEDGE_EDGES),
+    "pyramid": (5, _PYRAMID_FACES, ()),
+    "pyramid13": (5, _PYRAMID_FACES, _PYRAMID_EDGES),
+    "hexahedron": (8, _BRICK_FACES, ()),
+    "hexahedron20": (8, _BRICK_FACES, _BRICK_EDGES),
 }
 """{cell type: (number of corners, corners of each face, edges in the order of their mid-side nodes)}."""
 SURFACE_CELLS = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
@@ -114,9 +114,9 @@ def boundary_faces(cells: Mapping[str, NodeIndices]) -> list[NodeIndices]:
     return [_unshared_faces(np.concatenate(blocks), size) for size, blocks in by_size.items()]
 
 
-def _cell_faces(name: str) -> list[tuple[int, ...]]:
+def _cell_faces(cell_type: str) -> list[tuple[int, ...]]:
     """Node indices of each face of a cell type: corners, then mid-side nodes."""
-    corners, faces, edges = VOLUME_CELLS[name]
+    corners, faces, edges = VOLUME_CELLS[cell_type]
     middle = {tuple(sorted(edge)): corners + i for i, edge in enumerate(edges)}
     if not middle:
         return list(faces)
@@ -125,9 +125,9 @@ def _cell_faces(name: str) -> list[tuple[int, ...]]:
     ]
 
 
-def _unshared_faces(faces: NodeIndices, size: int) -> NodeIndices:
+def _unshared_faces(faces: NodeIndices, face_node_count: int) -> NodeIndices:
     """Select the faces, of (k, size), that occur only once."""
-    keys = np.sort(faces[:, : CORNER_COUNTS[size]], axis=1)
+    keys = np.sort(faces[:, : CORNER_COUNTS[face_node_count]], axis=1)
     _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[count == 1])])
 
@@ -151,7 +151,7 @@ class FiniteElementMesh:
     cells        : {cell type of meshio: (k, m) indices of nodes in these arrays}, surfaces or volumes
     """
 
-    numbers: NDArray[np.int64]
+    node_numbers: NDArray[np.int64]
     position: Array
     cells: Mapping[str, NodeIndices]
 
@@ -159,23 +159,25 @@ class FiniteElementMesh:
     def from_elements(
         cls,
         path: Path,
-        numbers: NDArray[np.int64],
+        node_numbers: NDArray[np.int64],
         position: Array,
         elements: Mapping[str, Sequence[Sequence[int]]],
     ) -> "FiniteElementMesh":
         """Mesh from {cell type: node numbers of each cell}; ValueError if a node is not defined."""
-        order = np.argsort(numbers)
+        order = np.argsort(node_numbers)
         cells = {}
         for kind, corners in elements.items():
             wanted = np.array(corners, dtype=np.int64)
-            index = order[np.minimum(np.searchsorted(numbers, wanted, sorter=order), numbers.size - 1)]
-            if np.any(missing := numbers[index] != wanted):
+            index = order[
+                np.minimum(np.searchsorted(node_numbers, wanted, sorter=order), node_numbers.size - 1)
+            ]
+            if np.any(missing := node_numbers[index] != wanted):
                 raise ValueError(
                     f"{path}: node {wanted[missing][0]} of an element is not there; expected elements of the "
                     "nodes in the file"
                 )
             cells[kind] = index.astype(np.intp)
-        return cls(numbers, position, cells)
+        return cls(node_numbers, position, cells)
 
     def faces(self) -> list[NodeIndices]:
         """Surface cells, or the boundary faces of the volume cells."""
@@ -183,15 +185,15 @@ class FiniteElementMesh:
 
     def body_of_node(self) -> NDArray[np.int64]:
         """Number (n) of the body of each node."""
-        return label_bodies(self.cells, self.numbers.size)
+        return label_bodies(self.cells, self.node_numbers.size)
 
     def nodal_values(self, listed_values: Mapping[int, float]) -> Array:
         """Nodal values (n) from {node number: value}; NaN for nodes without a value."""
-        return np.array([listed_values.get(name, np.nan) for name in self.numbers.tolist()])
+        return np.array([listed_values.get(name, np.nan) for name in self.node_numbers.tolist()])
 
-    def unknown_nodes(self, nodes: Iterable[int]) -> set[int]:
+    def unknown_nodes(self, node_numbers: Iterable[int]) -> set[int]:
         """Node numbers that the mesh does not have."""
-        return set(nodes) - set(self.numbers.tolist())
+        return set(node_numbers) - set(self.node_numbers.tolist())
 
     def nodal_result(
         self,
@@ -211,8 +213,8 @@ class FiniteElementMesh:
         p = self.nodal_values(listed_values)
         return NodalResult(
             path=path,
-            label="node",
-            numbers=self.numbers,
+            node_label="node",
+            node_numbers=self.node_numbers,
             position=self.position * length_unit,
             pressure=p * pressure_unit,
             faces=self.faces() if omits_open_nodes else faces_with_values(self.faces(), p),
@@ -221,9 +223,9 @@ class FiniteElementMesh:
         )
 
 
-def faces_with_values(faces: Sequence[NodeIndices], values: Array) -> list[NodeIndices]:
+def faces_with_values(faces: Sequence[NodeIndices], nodal_values: Array) -> list[NodeIndices]:
     """Faces whose corners all have a value, from nodal values (n) with NaN for none."""
-    has_value = np.isfinite(values)
+    has_value = np.isfinite(nodal_values)
     selected = [
         block[np.all(has_value[block[:, : CORNER_COUNTS[block.shape[1]]]], axis=1)] for block in faces
     ]

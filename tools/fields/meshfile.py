@@ -20,7 +20,9 @@ from .mesh import (
 from .nodal_result import NodalResult
 
 
-def read_mesh(path: Path, length_unit: float, pressure_unit: float, data: str | None) -> NodalResult:
+def read_mesh(
+    path: Path, length_unit: float, pressure_unit: float, point_data_name: str | None
+) -> NodalResult:
     """Read a nodal contact result from the point data of a mesh.
 
     length_unit, pressure_unit : units of the file in SI units
@@ -30,7 +32,7 @@ def read_mesh(path: Path, length_unit: float, pressure_unit: float, data: str | 
     message lists the existing ones), a cell type is not supported.
     """
     mesh = _read_meshio(path)
-    values = _select_values(path, mesh.point_data, data)
+    values = _select_values(path, mesh.point_data, point_data_name)
     position = np.asarray(mesh.points, dtype=np.float64)
     position = np.pad(position, ((0, 0), (0, 3 - position.shape[1])))
     cells: dict[str, Any] = {}
@@ -46,8 +48,8 @@ def read_mesh(path: Path, length_unit: float, pressure_unit: float, data: str | 
         raise ValueError(f"{path}: has no cells with faces, expected the contact's faces or the bodies")
     return NodalResult(
         path=path,
-        label="node",
-        numbers=np.arange(len(position), dtype=np.int64),
+        node_label="node",
+        node_numbers=np.arange(len(position), dtype=np.int64),
         position=position * length_unit,
         pressure=values * pressure_unit,
         faces=boundary_faces(cells),
@@ -55,7 +57,7 @@ def read_mesh(path: Path, length_unit: float, pressure_unit: float, data: str | 
     )
 
 
-def is_supported(path: Path) -> bool:
+def is_format_supported(path: Path) -> bool:
     """Whether meshio can read files with this suffix. True if meshio is missing: the reader then raises."""
     try:
         from meshio import extension_to_filetypes
@@ -82,17 +84,17 @@ def _read_meshio(path: Path) -> Any:
         ) from None
 
 
-def _select_values(path: Path, point_data: dict[str, Any], data: str | None) -> Array:
+def _select_values(path: Path, point_data: dict[str, Any], point_data_name: str | None) -> Array:
     """Nodal values (n) of the selected point data or component."""
     arrays = {name: np.asarray(value) for name, value in point_data.items()}
     listed = [f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in arrays.items()]
     available = ", ".join(listed) or "none"
-    if data is None:
+    if point_data_name is None:
         raise InputRefusal(
             f"{path}: state the point data that is the pressure; there are {available}", "data"
         )
-    name, _, component = data.partition(":")
-    name, component = (data, "") if data in arrays else (name, component)
+    name, _, component = point_data_name.partition(":")
+    name, component = (point_data_name, "") if point_data_name in arrays else (name, component)
     if name not in arrays:
         raise ValueError(f"{path}: has no point data {name!r}; there are {available}")
     value = arrays[name].reshape(len(arrays[name]), -1)
@@ -100,6 +102,7 @@ def _select_values(path: Path, point_data: dict[str, Any], data: str | None) -> 
         component = "1"
     if not component.isdigit() or not 1 <= int(component) <= value.shape[1]:
         raise ValueError(
-            f"{path}: {data!r} is no component of {name}; expected {name}:1 to {name}:{value.shape[1]}"
+            f"{path}: {point_data_name!r} is no component of {name}; expected {name}:1 to "
+            f"{name}:{value.shape[1]}"
         )
     return np.asarray(value[:, int(component) - 1], dtype=np.float64)

@@ -78,8 +78,8 @@ class NodalResult:
     """
 
     path: Path
-    label: str
-    numbers: NDArray[np.int64]
+    node_label: str
+    node_numbers: NDArray[np.int64]
     position: Array
     pressure: Array
     area: Array | None = None
@@ -87,9 +87,9 @@ class NodalResult:
     body_of_node: NDArray[np.int64] | None = None
     omits_open_nodes: bool = False
 
-    def describe_node(self, i: int) -> str:
+    def describe_node(self, node_index: int) -> str:
         """File and number of the node with an index, for messages."""
-        return f"{self.path}: {self.label} {self.numbers[i]}"
+        return f"{self.path}: {self.node_label} {self.node_numbers[node_index]}"
 
 
 COLUMN_UNITS: Mapping[str, UnitSizes] = {
@@ -106,8 +106,8 @@ def read_csv(path: Path) -> NodalResult:
     quantities = {name: table.require_column(name, COLUMN_UNITS) for name in COLUMN_UNITS}
     return NodalResult(
         path=path,
-        label="line",
-        numbers=np.array(table.lines, dtype=np.int64),
+        node_label="line",
+        node_numbers=np.array(table.line_numbers, dtype=np.int64),
         position=np.column_stack([quantities["x"], quantities["y"], np.zeros_like(quantities["x"])]),
         pressure=quantities["pressure"],
         area=quantities["area"],

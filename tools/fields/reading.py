@@ -12,7 +12,7 @@ from . import abaqus, ansys, frd, meshfile, nodal_result
 from .contact_surface import OPEN_NODE_OPTIONS, ContactPlane, ContactSurface, extract_surface
 from .nodal_result import LENGTH_UNITS, PRESSURE_UNITS, ContactField, NodalResult
 
-FORMATS = ("csv", "mesh", "ansys", "abaqus", "frd")
+FIELD_FORMATS = ("csv", "mesh", "ansys", "abaqus", "frd")
 FORMAT_BY_SUFFIX = {
     ".csv": "csv",
     ".frd": "frd",
@@ -43,9 +43,9 @@ class FieldReader:
     format: str | None = None
     length_unit: str | None = None
     pressure_unit: str | None = None
-    data: str | None = None
+    point_data_name: str | None = None
     companion_files: Sequence[Path] = ()
-    plane: ContactPlane = ContactPlane()
+    contact_plane: ContactPlane = ContactPlane()
     open_nodes: str = OPEN_NODE_OPTIONS[0]
 
     def read_field(
@@ -83,16 +83,18 @@ class FieldReader:
 
     def _read_surface(self, path: Path, companion_files: Sequence[Path]) -> ContactSurface:
         """Read a file and extract the contact surface."""
-        return extract_surface(self._read_result(path, companion_files), self.plane)
+        return extract_surface(self._read_result(path, companion_files), self.contact_plane)
 
     def _read_result(self, path: Path, companion_files: Sequence[Path]) -> NodalResult:
         """Read a nodal result with the reader of its format; ValueError for options that do not apply."""
         format = self.format or FORMAT_BY_SUFFIX.get(path.suffix.lower(), "mesh")
-        if format == "mesh" and not self.format and not meshfile.is_supported(path):
+        if format == "mesh" and not self.format and not meshfile.is_format_supported(path):
             text = f"suffix {path.suffix!r} is of no format known here"
-            raise InputRefusal(f"{path}: {text}; state the format, one of {', '.join(FORMATS)}", "format")
+            raise InputRefusal(
+                f"{path}: {text}; state the format, one of {', '.join(FIELD_FORMATS)}", "format"
+            )
         for value, subject, name, formats in (
-            (self.data, "point data are", "data", ("mesh",)),
+            (self.point_data_name, "point data are", "data", ("mesh",)),
             (companion_files, "further listings are", "beside", tuple(LISTING_READERS)),
         ):
             if value and format not in formats:
@@ -106,7 +108,7 @@ class FieldReader:
             return LISTING_READERS[format]([path, *companion_files], length, pressure)
         if format == "frd":
             return frd.read_frd(path, length, pressure)
-        return meshfile.read_mesh(path, length, pressure, self.data)
+        return meshfile.read_mesh(path, length, pressure, self.point_data_name)
 
     def _unit_sizes(self, path: Path) -> tuple[float, float]:
         """Units of length and pressure in SI units; ValueError if one is missing."""
@@ -125,9 +127,9 @@ class FieldReader:
         for value, name in (
             (self.length_unit, "length"),
             (self.pressure_unit, "pressure"),
-            (self.plane.side, "side"),
-            (self.plane.rows, "rows"),
-            (None if self.plane.normal == "z" else self.plane.normal, "normal"),
+            (self.contact_plane.body_side, "side"),
+            (self.contact_plane.bolt_row_axis, "rows"),
+            (None if self.contact_plane.normal_axis == "z" else self.contact_plane.normal_axis, "normal"),
         ):
             if value is not None:
                 text = f"{path}: {name} = {value!r}: a CSV file states units and plane in its heading"

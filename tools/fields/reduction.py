@@ -16,17 +16,17 @@ import numpy as np
 from scipy.linalg import qr, solve_triangular
 from scipy.optimize import nnls
 
-from jointfmu.mechanics.footprint.patches import find_peak_nodes
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import find_peak_nodes
 from jointfmu.mechanics.footprint.reproducible import round_distribution, round_to_digits
-from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from .clamped import BoltedInterface, PressureFunction
+from .bolted_interface import BoltedInterface, PressureFunction
 from .nodal_result import NodeIndices
 from .sums import (
-    PRELOAD_RANGE,
-    SEED,
+    PRELOAD_RATIO_RANGE,
+    RANDOM_SEED,
     LoadCase,
     LoadSums,
     SumFunctions,
@@ -41,7 +41,7 @@ GROUPS_PER_SUM = 2
 """Number of groups of nodes over number of independent sums [1]."""
 
 
-def recombine(values: Array, weights: Array, transform: Array) -> tuple[NodeIndices, Array]:
+def recombine(values: Array, weights: Array, orthogonal_transform: Array) -> tuple[NodeIndices, Array]:
     """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
 
     values               : (n, d) of the functions at the nodes
@@ -54,15 +54,13 @@ def recombine(values: Array, weights: Array, transform: Array) -> tuple[NodeIndi
     while selected.size > count:
         bounds = np.linspace(0, selected.size, min(GROUPS_PER_SUM * count, selected.size) + 1).astype(np.intp)
         sums = [weights[a:b] @ values[a:b] for a, b in pairwise(bounds)]
-        vectors = (np.array(sums) @ transform).T
+        vectors = (np.array(sums) @ orthogonal_transform).T
         factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
         node_factors = np.repeat(factors, np.diff(bounds))
         positive = node_factors > 0.0
-        selected, weights, values = (
-            selected[positive],
-            (weights * node_factors)[positive],
-            values[positive],
-        )
+        selected = selected[positive]
+        weights = (weights * node_factors)[positive]
+        values = values[positive]
     return selected, weights
 
 
@@ -70,14 +68,14 @@ RELATIVE_TOLERANCE = 1e-6
 """Largest relative deviation of a sum [1] of a reduced field."""
 LARGE_FIELD_TOLERANCE = 1e-5
 """Largest relative deviation of a sum [1] of a reduced field with more than MAX_KEPT_NODES nodes."""
-GOAL_RATIO, ACCEPTANCE_RATIO, ADDITION_RATIO = 0.05, 0.6, 0.15
+GOAL_DEVIATION_RATIO, ACCEPTED_DEVIATION_RATIO, ADDED_CASE_DEVIATION_RATIO = 0.05, 0.6, 0.15
 """Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
 (the margin is for untested ones); deviation from which a test load case is added to the selection."""
 ROUNDING_BITS = 25
 """Number of bits to which nodes are rounded for the selection: 3e-8, less than the goal."""
 MIN_PIVOT_RATIO = 7e-9
 """Smallest pivot of an independent sum over the largest pivot [1]; sums below it are dependent."""
-COUNT_FACTOR = 0.93
+SUM_COUNT_FACTOR = 0.93
 """Factor [1] on the number of kept sums, and so of points, from one attempt to the next."""
 INITIAL_RANDOM_LOADS = 100
 """Number of quasi-random load cases in the selection from the start."""
@@ -88,11 +86,11 @@ MAX_UNREDUCED_NODES = 60
 """Largest number of nodes of a field that is not reduced."""
 MAX_KEPT_NODES = 3000
 """Largest number of nodes that are all kept if no reduction meets the tolerance."""
-SAMPLE_SIZE = 3000
+SAMPLE_NODE_COUNT = 3000
 """Number of sample nodes for finding the independent sums."""
 TEST_LOAD_RANGE, MAX_TEST_EVALUATIONS = (60, 300), 3e6
 """Smallest and largest number of test load cases per round; largest number of test load cases times nodes."""
-MAX_ROUNDS = 8
+MAX_SELECTION_ROUNDS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,26 +110,29 @@ class Reduction:
         1
     """
 
-    shape: PressureDistribution
+    reduced_shape: PressureDistribution
     full_shape: PressureDistribution
-    deviation: float = 0.0
-    test_count: int = 0
-    moment_ratio: float = 1.0
-    deviation_beyond: float = 0.0
+    largest_deviation: float = 0.0
+    test_case_count: int = 0
+    max_tested_moment_ratio: float = 1.0
+    deviation_above_tested_moments: float = 0.0
 
     @property
     def point_count(self) -> int:
         """Number of reduced points."""
-        return int(self.shape.share.size)
+        return int(self.reduced_shape.area_share.size)
 
     @property
     def node_count(self) -> int:
         """Number of nodes of the field."""
-        return int(self.full_shape.share.size)
+        return int(self.full_shape.area_share.size)
 
 
 def reduce_field(
-    joint: BoltedInterface, shape: PressureDistribution, preload: float, pressures: PressureFunction
+    joint: BoltedInterface,
+    pressure_shape: PressureDistribution,
+    preload: float,
+    nodal_pressures: PressureFunction,
 ) -> Reduction:
     """Reduce a pressure shape to the fewest points that keep its sums within RELATIVE_TOLERANCE.
 
@@ -144,22 +145,24 @@ def reduce_field(
 
     Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
     """
-    nodes = shape.share.size
+    nodes = pressure_shape.area_share.size
     if nodes <= MAX_UNREDUCED_NODES:
-        return Reduction(shape, shape)
-    sums = SumFunctions.from_joint(joint, preload, pressures)
+        return Reduction(pressure_shape, pressure_shape)
+    sums = SumFunctions.from_joint(joint, preload, nodal_pressures)
     # sorted by pressure, neighbouring nodes are close on the pressure curve: its evaluation is faster
-    order = np.argsort(round_to_digits(shape.preload_shape), kind="stable")
-    unrounded = shape.select_nodes(order)
-    shape = round_distribution(unrounded, ROUNDING_BITS)
-    sample = np.random.default_rng(SEED).choice(
+    order = np.argsort(round_to_digits(pressure_shape.preload_shape), kind="stable")
+    unrounded = pressure_shape.select_nodes(order)
+    pressure_shape = round_distribution(unrounded, ROUNDING_BITS)
+    sample = np.random.default_rng(RANDOM_SEED).choice(
         nodes,
-        min(SAMPLE_SIZE, nodes),
+        min(SAMPLE_NODE_COUNT, nodes),
         replace=False,
-        p=sums.sample_probability(shape, max_moment_ratio(joint, shape)),
+        p=sums.sample_probability(pressure_shape, max_moment_ratio(joint, pressure_shape)),
     )
-    reduction = _search_points(sums, shape, shape.select_nodes(sample), unrounded)
-    if reduction is not None and (nodes > MAX_KEPT_NODES or reduction.deviation <= RELATIVE_TOLERANCE):
+    reduction = _search_points(sums, pressure_shape, pressure_shape.select_nodes(sample), unrounded)
+    if reduction is not None and (
+        nodes > MAX_KEPT_NODES or reduction.largest_deviation <= RELATIVE_TOLERANCE
+    ):
         return reduction
     if nodes <= MAX_KEPT_NODES:
         return Reduction(unrounded, unrounded)
@@ -171,10 +174,10 @@ def reduce_field(
 
 
 def _search_points(
-    sums: SumFunctions,
-    shape: PressureDistribution,
-    sample: PressureDistribution,
-    unrounded: PressureDistribution,
+    sum_functions: SumFunctions,
+    rounded_shape: PressureDistribution,
+    sample_shape: PressureDistribution,
+    unrounded_shape: PressureDistribution,
 ) -> Reduction | None:
     """Search points that keep the sums within LARGE_FIELD_TOLERANCE; None if there are none.
 
@@ -184,46 +187,53 @@ def _search_points(
     sample_shape    : sample of these nodes, for finding the independent sums
     unrounded_shape : pressure shape of all nodes
     """
-    limit = max_moment_ratio(sums.joint, shape)
-    loads, tests = (
-        random_load_cases(limit),
-        int(np.clip(MAX_TEST_EVALUATIONS / shape.share.size, *TEST_LOAD_RANGE)),
-    )
+    limit = max_moment_ratio(sum_functions.joint, rounded_shape)
+    loads = random_load_cases(limit)
+    tests = int(np.clip(MAX_TEST_EVALUATIONS / rounded_shape.area_share.size, *TEST_LOAD_RANGE))
     system = _SumSystem.from_loads(
-        sums,
-        shape,
-        unrounded,
-        sample,
-        sums.compute_sums(shape, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOADS)]),
+        sum_functions,
+        rounded_shape,
+        unrounded_shape,
+        sample_shape,
+        sum_functions.compute_sums(
+            rounded_shape, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOADS)]
+        ),
     )
     best, best_deviation = None, LARGE_FIELD_TOLERANCE
-    for _ in track_progress(range(MAX_ROUNDS), "points", MAX_ROUNDS):
+    for _ in track_progress(range(MAX_SELECTION_ROUNDS), "points", MAX_SELECTION_ROUNDS):
         points = system.find_points()
         if points is None:
             break
-        test_sums = sums.compute_sums(shape, list(islice(loads, tests)))
-        deviations = sums.deviations(points, test_sums)
+        test_sums = sum_functions.compute_sums(rounded_shape, list(islice(loads, tests)))
+        deviations = sum_functions.sum_deviations(points, test_sums)
         worst = float(np.max(deviations))
         if worst <= best_deviation:
             best, best_deviation = points, worst
-        if worst <= ACCEPTANCE_RATIO * RELATIVE_TOLERANCE:
+        if worst <= ACCEPTED_DEVIATION_RATIO * RELATIVE_TOLERANCE:
             break
-        system.add_loads(test_sums.select(deviations > ADDITION_RATIO * RELATIVE_TOLERANCE))
+        system.add_load_cases(test_sums.select(deviations > ADDED_CASE_DEVIATION_RATIO * RELATIVE_TOLERANCE))
     if best is None:
         return None
-    deviation_beyond = _deviation_beyond(sums, shape, best, limit)
-    return Reduction(best, unrounded, best_deviation, tests, limit, deviation_beyond)
+    deviation_beyond = _deviation_above_tested_moments(sum_functions, rounded_shape, best, limit)
+    return Reduction(best, unrounded_shape, best_deviation, tests, limit, deviation_beyond)
 
 
-def _deviation_beyond(
-    sums: SumFunctions, shape: PressureDistribution, points: PressureDistribution, moment_limit: float
+def _deviation_above_tested_moments(
+    sum_functions: SumFunctions,
+    pressure_shape: PressureDistribution,
+    reduced_points: PressureDistribution,
+    moment_limit: float,
 ) -> float:
     """Largest deviation [1] at moment ratios from `moment_limit` to 1 (a row of bolts loses its force)."""
     if moment_limit >= 1.0:
         return 0.0
     moments = np.linspace(moment_limit, 1.0, 6)[1:].tolist()
-    loads = [LoadCase(p, sign * m, 0.0) for p in PRELOAD_RANGE for m in moments for sign in (-1.0, 1.0)]
-    return float(np.max(sums.deviations(points, sums.compute_sums(shape, loads))))
+    loads = [LoadCase(p, sign * m, 0.0) for p in PRELOAD_RATIO_RANGE for m in moments for sign in (-1.0, 1.0)]
+    return float(
+        np.max(
+            sum_functions.sum_deviations(reduced_points, sum_functions.compute_sums(pressure_shape, loads))
+        )
+    )
 
 
 @dataclass(slots=True)
@@ -239,44 +249,56 @@ class _SumSystem:
     sketch_matrix   : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
     """
 
-    sums: SumFunctions
-    shape: PressureDistribution
-    unrounded: PressureDistribution
-    sample: PressureDistribution
-    mixing: Array
+    sum_functions: SumFunctions
+    rounded_shape: PressureDistribution
+    unrounded_shape: PressureDistribution
+    sample_shape: PressureDistribution
+    mixing_matrix: Array
     load_sums: LoadSums
     balance_scale: Array
-    sketch: Array
+    sketch_matrix: Array
 
     @classmethod
     def from_loads(
         cls,
-        sums: SumFunctions,
-        shape: PressureDistribution,
-        unrounded: PressureDistribution,
-        sample: PressureDistribution,
+        sum_functions: SumFunctions,
+        rounded_shape: PressureDistribution,
+        unrounded_shape: PressureDistribution,
+        sample_shape: PressureDistribution,
         load_sums: LoadSums,
     ) -> "_SumSystem":
         """System of the balance and of the sums in initial load cases."""
-        scale = np.maximum(np.max(np.abs(balance_functions(shape)), axis=0), np.finfo(float).tiny)
-        mixing = np.random.default_rng(SEED).standard_normal((SKETCH_ROWS, sample.share.size))
-        mixing *= np.sqrt(sample.share / SKETCH_ROWS)
-        sketch = mixing @ np.concatenate(
-            [balance_functions(sample) / scale, sums.function_values(sample, load_sums)], axis=1
+        scale = np.maximum(np.max(np.abs(balance_functions(rounded_shape)), axis=0), np.finfo(float).tiny)
+        mixing = np.random.default_rng(RANDOM_SEED).standard_normal(
+            (SKETCH_ROWS, sample_shape.area_share.size)
         )
-        return cls(sums, shape, unrounded, sample, mixing, load_sums, scale, sketch)
+        mixing *= np.sqrt(sample_shape.area_share / SKETCH_ROWS)
+        sketch = mixing @ np.concatenate(
+            [balance_functions(sample_shape) / scale, sum_functions.function_values(sample_shape, load_sums)],
+            axis=1,
+        )
+        return cls(
+            sum_functions, rounded_shape, unrounded_shape, sample_shape, mixing, load_sums, scale, sketch
+        )
 
-    def add_loads(self, load_sums: LoadSums) -> None:
+    def add_load_cases(self, load_sums: LoadSums) -> None:
         """Add the sums in more load cases."""
-        self.sketch = np.concatenate(
-            [self.sketch, self.mixing @ self.sums.function_values(self.sample, load_sums)], axis=1
+        self.sketch_matrix = np.concatenate(
+            [
+                self.sketch_matrix,
+                self.mixing_matrix @ self.sum_functions.function_values(self.sample_shape, load_sums),
+            ],
+            axis=1,
         )
         self.load_sums = self.load_sums.concatenate(load_sums)
 
-    def function_values(self, shape: PressureDistribution) -> Array:
+    def function_values(self, pressure_shape: PressureDistribution) -> Array:
         """Values (n, r) of all functions at the nodes of a shape."""
         return np.concatenate(
-            [balance_functions(shape) / self.balance_scale, self.sums.function_values(shape, self.load_sums)],
+            [
+                balance_functions(pressure_shape) / self.balance_scale,
+                self.sum_functions.function_values(pressure_shape, self.load_sums),
+            ],
             axis=1,
         )
 
@@ -286,26 +308,28 @@ class _SumSystem:
         The nodes with the highest pressure (`find_peak_nodes`) are always kept, with their own share.
         """
         independent, turn = self._independent_sums()
-        fixed = find_peak_nodes(self.shape)
+        fixed = find_peak_nodes(self.rounded_shape)
         try:
             candidates, share = self._select_groups(independent, turn, fixed)
             selected, share = recombine(self._selected_values(candidates, independent), share, turn)
         except RuntimeError:  # round-off
             return None
         selected = candidates[selected]
-        values = self.function_values(self.shape.select_nodes(selected))
+        values = self.function_values(self.rounded_shape.select_nodes(selected))
         target = np.concatenate(
             [
-                self.shape.share @ balance_functions(self.shape) / self.balance_scale,
-                self.load_sums.total.ravel(),
+                self.rounded_shape.area_share @ balance_functions(self.rounded_shape) / self.balance_scale,
+                self.load_sums.total_sums.ravel(),
             ]
         )
-        target -= self.shape.share[fixed] @ self.function_values(self.shape.select_nodes(fixed))
+        target -= self.rounded_shape.area_share[fixed] @ self.function_values(
+            self.rounded_shape.select_nodes(fixed)
+        )
         best, count = None, independent.size
-        tolerance = ACCEPTANCE_RATIO * LARGE_FIELD_TOLERANCE
+        tolerance = ACCEPTED_DEVIATION_RATIO * LARGE_FIELD_TOLERANCE
         while count > 1 and np.max(np.abs(share @ values - target)) <= tolerance:
-            best, tolerance = (selected, share), GOAL_RATIO * RELATIVE_TOLERANCE
-            count = int(COUNT_FACTOR * count)
+            best, tolerance = (selected, share), GOAL_DEVIATION_RATIO * RELATIVE_TOLERANCE
+            count = int(SUM_COUNT_FACTOR * count)
             try:
                 fewer, share = recombine(values[:, independent[:count]], share, turn[:count, :count])
             except RuntimeError:
@@ -313,27 +337,30 @@ class _SumSystem:
             selected, values = selected[fewer], values[fewer]
         if best is None:
             return None
-        points = self.unrounded.select_nodes(np.concatenate([fixed, best[0]]))
-        return _correct_balance(points, np.concatenate([self.shape.share[fixed], best[1]]))
+        points = self.unrounded_shape.select_nodes(np.concatenate([fixed, best[0]]))
+        return _correct_balance(points, np.concatenate([self.rounded_shape.area_share[fixed], best[1]]))
 
     def _select_groups(
-        self, functions: NodeIndices, transform: Array, fixed: NodeIndices
+        self, function_indices: NodeIndices, orthogonal_transform: Array, fixed_nodes: NodeIndices
     ) -> tuple[NodeIndices, Array]:
         """Select few groups of nodes, with shares that keep the sums of all nodes except the fixed ones.
 
         Returns the nodes of these groups and their shares.
         """
-        share = self.shape.share.copy()
-        share[fixed] = 0.0
+        share = self.rounded_shape.area_share.copy()
+        share[fixed_nodes] = 0.0
         group = np.arange(share.size) // nodes_per_group(share.size)
         old_share = np.asarray(np.bincount(group, share), dtype=np.float64)
         nonempty = np.flatnonzero(old_share)
-        sums = self._group_sums(functions)
+        sums = self._group_sums(function_indices)
         np.subtract.at(
-            sums, group[fixed], self.shape.share[fixed, None] * self._selected_values(fixed, functions)
+            sums,
+            group[fixed_nodes],
+            self.rounded_shape.area_share[fixed_nodes, None]
+            * self._selected_values(fixed_nodes, function_indices),
         )
         selected, new_share = recombine(
-            sums[nonempty] / old_share[nonempty, None], old_share[nonempty], transform
+            sums[nonempty] / old_share[nonempty, None], old_share[nonempty], orthogonal_transform
         )
         scale = np.zeros(old_share.size)
         scale[nonempty[selected]] = new_share / old_share[nonempty[selected]]
@@ -341,42 +368,44 @@ class _SumSystem:
         nodes = np.flatnonzero(share)
         return nodes, share[nodes]
 
-    def _group_sums(self, functions: NodeIndices) -> Array:
+    def _group_sums(self, function_indices: NodeIndices) -> Array:
         """Sums (g, k) of the selected functions over groups of nodes."""
-        share, count = self.shape.share[:, None], self.balance_scale.size
-        is_balance = functions < count
-        load, function = np.divmod(functions[~is_balance] - count, 9)
-        values = (balance_functions(self.shape) / self.balance_scale)[:, functions[is_balance]]
-        out = np.empty((self.load_sums.groups.shape[2], functions.size))
+        share, count = self.rounded_shape.area_share[:, None], self.balance_scale.size
+        is_balance = function_indices < count
+        load, function = np.divmod(function_indices[~is_balance] - count, 9)
+        values = (balance_functions(self.rounded_shape) / self.balance_scale)[:, function_indices[is_balance]]
+        out = np.empty((self.load_sums.group_sums.shape[2], function_indices.size))
         out[:, is_balance] = np.add.reduceat(
             share * values, np.arange(0, share.size, nodes_per_group(share.size))
         )
-        out[:, ~is_balance] = self.load_sums.groups[load, function].T
+        out[:, ~is_balance] = self.load_sums.group_sums[load, function].T
         return out
 
-    def _selected_values(self, nodes: NodeIndices, functions: NodeIndices) -> Array:
+    def _selected_values(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
         """Values (n, k) of the selected functions at nodes."""
-        shape, count = self.shape.select_nodes(nodes), self.balance_scale.size
-        is_balance = functions < count
-        out = np.empty((nodes.size, functions.size))
-        out[:, is_balance] = (balance_functions(shape) / self.balance_scale)[:, functions[is_balance]]
-        out[:, ~is_balance] = self.sums.selected_values(shape, self.load_sums, functions[~is_balance] - count)
+        shape, count = self.rounded_shape.select_nodes(node_indices), self.balance_scale.size
+        is_balance = function_indices < count
+        out = np.empty((node_indices.size, function_indices.size))
+        out[:, is_balance] = (balance_functions(shape) / self.balance_scale)[:, function_indices[is_balance]]
+        out[:, ~is_balance] = self.sum_functions.selected_function_values(
+            shape, self.load_sums, function_indices[~is_balance] - count
+        )
         return out
 
     def _independent_sums(self) -> tuple[NodeIndices, Array]:
         """Indices of independent sums, the largest pivot first, and the matrix that orthogonalises them."""
-        triangle, order = qr(self.sketch, mode="r", pivoting=True)
+        triangle, order = qr(self.sketch_matrix, mode="r", pivoting=True)
         size = np.abs(np.diag(triangle))
         count = int(np.sum(size > MIN_PIVOT_RATIO * size[0]))
         return order[:count], solve_triangular(triangle[:count, :count], np.eye(count))
 
 
-def _correct_balance(shape: PressureDistribution, weights: Array) -> PressureDistribution:
+def _correct_balance(pressure_shape: PressureDistribution, node_weights: Array) -> PressureDistribution:
     """Select the nodes with a share > 0 and correct the balance of the field to round-off."""
-    points = shape.select_nodes(np.flatnonzero(weights > 0.0))
-    share = weights[weights > 0.0] / np.sum(weights)
+    points = pressure_shape.select_nodes(np.flatnonzero(node_weights > 0.0))
+    share = node_weights[node_weights > 0.0] / np.sum(node_weights)
     return PressureDistribution(
-        share=share,
+        area_share=share,
         position=points.position - share @ points.position,
         preload_shape=points.preload_shape / (share @ points.preload_shape),
         moment_shape=points.moment_shape - share @ points.moment_shape,

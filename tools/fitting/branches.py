@@ -11,8 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import trapezoid
-from scipy.signal import find_peaks
 
 from jointfmu.quantity import Array
 
@@ -55,26 +53,28 @@ class Loops:
 
     motion: Array
     force: Array
-    branch: NDArray[np.int64]
-    start: Array
-    start_deviation: Array
-    run: NDArray[np.int64]
-    areas: Sequence[tuple[float, float]]
+    branch_index: NDArray[np.int64]
+    start_motion: Array
+    start_motion_deviation: Array
+    run_index: NDArray[np.int64]
+    widest_loops: Sequence[tuple[float, float]]
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
         """Noise group (n) of each sample: the index of its run."""
-        return self.run
+        return self.run_index
 
     @property
-    def scale(self) -> Array:
+    def residual_scale(self) -> Array:
         """Scale (n) of the force residuals: range of the force in the run of each sample."""
-        return np.array([np.ptp(self.force[self.run == k]) for k in range(self.run[-1] + 1)])[self.run]
+        return np.array([np.ptp(self.force[self.run_index == k]) for k in range(self.run_index[-1] + 1)])[
+            self.run_index
+        ]
 
     @property
     def nuisance_count(self) -> int:
         """Number of nuisance parameters: force and motion at each turning point, and the rest position."""
-        return 2 * self.start.size + 1
+        return 2 * self.start_motion.size + 1
 
     @property
     def rest_stiffness(self) -> float:
@@ -83,42 +83,51 @@ class Loops:
         Each branch is approximated by a parabola.
         """
         slopes = []
-        for k, start in enumerate(self.start):
-            distance, force = self.motion[self.branch == k] - start, self.force[self.branch == k]
+        for k, start in enumerate(self.start_motion):
+            distance, force = self.motion[self.branch_index == k] - start, self.force[self.branch_index == k]
             slopes.append(float(np.polyfit(np.abs(distance), np.sign(distance) * force, 2)[1]))
         return max(slopes)
 
-    def fit_turning_points(self, law: HysteresisLaw, scale: Array) -> tuple[Array, Array, Array]:
+    def fit_turning_points(self, law: HysteresisLaw, residual_scale: Array) -> tuple[Array, Array, Array]:
         """Fit the turning points to the samples: force and motion (branches) there, and residual force (n).
 
         Linear least squares for each branch. `residual_scale` (n) are the standard deviations of the force;
         the motion at the turning point has the standard deviation `start_motion_deviation`.
         """
         residual, derivative = self._force_residuals(law, 0.0), self._force_residuals(law, 1.0)
-        derivative = (derivative - residual) / self.start_deviation[self.branch]
-        force, mean_derivative = self._means(residual), self._means(derivative)
-        residual, derivative = residual - force[self.branch], derivative - mean_derivative[self.branch]
-        weight = scale**-2.0
-        shift = -self._sums(weight * residual * derivative) / (
-            self._sums(weight * derivative**2) + self.start_deviation**-2.0
+        derivative = (derivative - residual) / self.start_motion_deviation[self.branch_index]
+        force, mean_derivative = self._branch_means(residual), self._branch_means(derivative)
+        residual = residual - force[self.branch_index]
+        derivative = derivative - mean_derivative[self.branch_index]
+        weight = residual_scale**-2.0
+        shift = -self._branch_sums(weight * residual * derivative) / (
+            self._branch_sums(weight * derivative**2) + self.start_motion_deviation**-2.0
         )
-        return force + mean_derivative * shift, self.start + shift, residual + derivative * shift[self.branch]
+        return (
+            force + mean_derivative * shift,
+            self.start_motion + shift,
+            residual + derivative * shift[self.branch_index],
+        )
 
-    def rest_position(self, law: HysteresisLaw, scale: Array) -> float:
+    def rest_position(self, law: HysteresisLaw, residual_scale: Array) -> float:
         """Rest position: motion at which the elastic force is zero, by least squares (Gauss-Newton).
 
         The search starts at zero or in the middle of the motion, whichever fits better. If the law is linear
         there, the result is the start.
         """
-        if law.elastic is None:
+        if law.elastic_spring is None:
             return 0.0
-        force = law.elastic.force
-        without_friction = self._force_residuals(replace(law, elastic=None), 0.0)
+        force = law.elastic_spring.force
+        without_friction = self._force_residuals(replace(law, elastic_spring=None), 0.0)
         size = float(np.ptp(self.motion))
 
-        def misfit(rest: float) -> Array:
-            residual = without_friction - force(self.motion - rest) + force(self.start - rest)[self.branch]
-            return np.asarray((residual - self._means(residual)[self.branch]) / scale)
+        def misfit(rest_motion: float) -> Array:
+            residual = (
+                without_friction
+                - force(self.motion - rest_motion)
+                + force(self.start_motion - rest_motion)[self.branch_index]
+            )
+            return np.asarray((residual - self._branch_means(residual)[self.branch_index]) / residual_scale)
 
         middle = 0.5 * float(np.max(self.motion) + np.min(self.motion))
         position = min((0.0, middle), key=lambda rest: float(np.sum(misfit(rest) ** 2)))
@@ -129,30 +138,34 @@ class Loops:
             position += size * float(np.clip(step, -0.5, 0.5))
         return position
 
-    def residuals(self, law: HysteresisLaw, scale: Array) -> Array:
+    def residuals(self, law: HysteresisLaw, residual_scale: Array) -> Array:
         """Residuals against a law, over their standard deviations [1].
 
         These are the force errors (n), then the shifts of the turning points (branches).
         """
-        _, start, residual = self.fit_turning_points(law.shift_rest(self.rest_position(law, scale)), scale)
-        return np.concatenate([residual / scale, (start - self.start) / self.start_deviation])
+        _, start, residual = self.fit_turning_points(
+            law.shift_rest(self.rest_position(law, residual_scale)), residual_scale
+        )
+        return np.concatenate(
+            [residual / residual_scale, (start - self.start_motion) / self.start_motion_deviation]
+        )
 
-    def _force_residuals(self, law: HysteresisLaw, deviations: float) -> Array:
+    def _force_residuals(self, law: HysteresisLaw, start_shift: float) -> Array:
         """Force (n) minus the force change by the law since the turning point.
 
         The turning points are shifted by `start_shift` standard deviations [1] of their motion.
         """
         return self.force - law.force_change(
-            self.motion, (self.start + deviations * self.start_deviation)[self.branch]
+            self.motion, (self.start_motion + start_shift * self.start_motion_deviation)[self.branch_index]
         )
 
-    def _sums(self, values: Array) -> Array:
+    def _branch_sums(self, values: Array) -> Array:
         """Sum (branches) of values (n) over each branch."""
-        return np.asarray(np.bincount(self.branch, values), dtype=np.float64)
+        return np.asarray(np.bincount(self.branch_index, values), dtype=np.float64)
 
-    def _means(self, values: Array) -> Array:
+    def _branch_means(self, values: Array) -> Array:
         """Mean (branches) of values (n) over each branch."""
-        return np.asarray(self._sums(values) / np.bincount(self.branch))
+        return np.asarray(self._branch_sums(values) / np.bincount(self.branch_index))
 
 
 def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
@@ -184,24 +197,24 @@ def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     return Loops(
         motion=np.concatenate([branch[0] for branch in branches]),
         force=np.concatenate([branch[1] for branch in branches]),
-        branch=np.repeat(np.arange(len(branches)), sizes),
-        start=np.array([branch[2] for branch in branches]),
-        start_deviation=np.array([branch[3] for branch in branches]),
-        run=np.repeat([branch[4] for branch in branches], sizes),
-        areas=areas,
+        branch_index=np.repeat(np.arange(len(branches)), sizes),
+        start_motion=np.array([branch[2] for branch in branches]),
+        start_motion_deviation=np.array([branch[3] for branch in branches]),
+        run_index=np.repeat([branch[4] for branch in branches], sizes),
+        widest_loops=areas,
     )
 
 
 def _branches_of_run(
-    motion: Array, force: Array, ends: Sequence[int]
+    motion: Array, force: Array, branch_ends: Sequence[int]
 ) -> Iterator[tuple[Array, Array, float, float]]:
     """Yield for each branch of a run: motion, force, motion at the turning point and its standard deviation.
 
     branch_ends : indices of the turning points, and of the last sample
     """
     deviation = noise_deviation(motion)
-    turns = [turning_value(motion, k, deviation) for k in ends]
-    for k, (first, last) in enumerate(pairwise(ends)):
+    turns = [refine_turning_point(motion, k, deviation) for k in branch_ends]
+    for k, (first, last) in enumerate(pairwise(branch_ends)):
         u, F = motion[first + 1 : last + 1], force[first + 1 : last + 1]
         inside = np.abs(u - turns[k]) <= (abs(turns[k - 1] - turns[k]) if k else np.inf)
         if np.count_nonzero(inside) >= MIN_BRANCH_SAMPLES:
@@ -220,12 +233,14 @@ def find_turning_points(motion: Array) -> NDArray[np.int64]:
 
 def find_reversals(signal: Array, prominence: float) -> NDArray[np.int64]:
     """Find the indices at which a signal reverses by at least `prominence`."""
+    from scipy.signal import find_peaks  # slow to import, and most commands import this module
+
     return np.sort(
         np.concatenate([find_peaks(sign * signal, prominence=prominence)[0] for sign in (1.0, -1.0)])
     )
 
 
-def turning_value(motion: Array, index: int, deviation: float) -> float:
+def refine_turning_point(motion: Array, sample_index: int, motion_noise: float) -> float:
     """Motion at the turning point at sample `sample_index`: vertex of a parabola through the nearest samples.
 
     motion_noise : standard deviation of the noise of the motion
@@ -233,16 +248,16 @@ def turning_value(motion: Array, index: int, deviation: float) -> float:
     The parabola uses the samples within TURNING_POINT_WIDTH deviations of the turning point.
     The extreme sample itself would overestimate the motion, because of its noise.
     """
-    distinct = np.abs(motion - motion[index]) > TURNING_POINT_WIDTH * deviation
-    before, after = np.flatnonzero(distinct[:index]), np.flatnonzero(distinct[index:])
+    distinct = np.abs(motion - motion[sample_index]) > TURNING_POINT_WIDTH * motion_noise
+    before, after = np.flatnonzero(distinct[:sample_index]), np.flatnonzero(distinct[sample_index:])
     width = min(
-        index - int(before[-1]) if before.size else index,
-        int(after[0]) if after.size else motion.size - 1 - index,
+        sample_index - int(before[-1]) if before.size else sample_index,
+        int(after[0]) if after.size else motion.size - 1 - sample_index,
     )
     if width < 2:
-        return float(motion[index])
+        return float(motion[sample_index])
     offsets = np.arange(-width, width + 1)
-    c, b, a = np.polyfit(offsets, motion[index - width : index + width + 1], 2)
+    c, b, a = np.polyfit(offsets, motion[sample_index - width : sample_index + width + 1], 2)
     return float(a - b**2 / (4.0 * c) if c else a)
 
 
@@ -256,13 +271,17 @@ def noise_deviation(signal: Array) -> float:
     return float(np.median(np.abs(np.diff(signal, 2))) / 0.6745 / np.sqrt(6.0))
 
 
-def _check_sign(name: str, motion: Array, force: Array) -> None:
+def _check_sign(message_prefix: str, motion: Array, force: Array) -> None:
     """Raise ValueError if the force falls as the motion rises."""
     if np.sum((motion - motion.mean()) * (force - force.mean())) <= 0.0:
-        raise ValueError(f"{name}the force falls as the motion rises; reverse the sign of one column")
+        raise ValueError(
+            f"{message_prefix}the force falls as the motion rises; reverse the sign of one column"
+        )
 
 
-def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -> list[tuple[float, float]]:
+def _check_energy(
+    message_prefix: str, motion: Array, force: Array, branch_ends: Sequence[int]
+) -> list[tuple[float, float]]:
     """Check that the loops of a run dissipate energy; return the widest closed loop.
 
     Returns its area [J] and range of motion, as a list of one or no element.
@@ -271,8 +290,8 @@ def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -
 
     Raises ValueError if the loops create more energy (mean negative area) than noise explains.
     """
-    branches = [(motion[a : b + 1], force[a : b + 1]) for a, b in pairwise(ends)]
-    loops = [loop for first, second in pairwise(branches) if (loop := _area(first, second))]
+    branches = [(motion[a : b + 1], force[a : b + 1]) for a, b in pairwise(branch_ends)]
+    loops = [loop for first, second in pairwise(branches) if (loop := _area_between_branches(first, second))]
     if not loops:
         return []
     areas, ranges, _ = np.array(loops).T
@@ -283,25 +302,32 @@ def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -
     )
     if area < -max(MAX_CREATED_ENERGY * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
         raise ValueError(
-            f"{name}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the force has to "
+            f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the "
+            "force has to "
             "lead the motion; reverse the order of the rows if they run back in time"
         )
     closed = [(work, common) for work, common, longer in loops if common >= MIN_COMMON_RANGE * longer]
     return [max(closed, key=lambda loop: loop[1])] if closed else []
 
 
-def _area(first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[float, float, float] | None:
+def _area_between_branches(
+    first_branch: tuple[Array, Array], second_branch: tuple[Array, Array]
+) -> tuple[float, float, float] | None:
     """Area [J] between two consecutive branches, their common range of motion, range of the longer branch.
 
     Each branch: motion, force. None if the branches have no common range, or too few samples.
     """
-    (u, F), (v, G) = (first, second) if first[0][-1] > first[0][0] else (second, first)
+    (u, F), (v, G) = (
+        (first_branch, second_branch)
+        if first_branch[0][-1] > first_branch[0][0]
+        else (second_branch, first_branch)
+    )
     low, high = max(u.min(), v.min()), min(u.max(), v.max())
     if not high > low or min(u.size, v.size) < MIN_BRANCH_SAMPLES:
         return None
     grid = np.linspace(low, high, _GRID_POINTS)
     up, down = (np.interp(grid, *sort_points(x, y)) for x, y in ((u, F), (v, G)))
-    return float(trapezoid(up - down, grid)), float(high - low), float(max(np.ptp(u), np.ptp(v)))
+    return float(np.trapezoid(up - down, grid)), float(high - low), float(max(np.ptp(u), np.ptp(v)))
 
 
 def sort_points(x: Array, y: Array) -> tuple[Array, Array]:

@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 
 from jointfmu.quantity import Array
 
@@ -30,7 +29,7 @@ MIN_WINDOWS = 4
 """Minimum number of windows of a measurement."""
 MIN_SIGNAL_TO_NOISE = 4.0
 """Amplitude over the standard deviation of the residuals [1], below which a window is not used."""
-FREQUENCY_ERROR, DAMPING_ERROR = 8e-3, 1e-1
+FREQUENCY_ERROR_FACTOR, DAMPING_ERROR_FACTOR = 8e-3, 1e-1
 """Relative error of frequency and of damping in a window without noise, over the square of the logarithmic
 decrement over the window [1]. Source: simulated decays of known laws."""
 RECORD_END_FRACTION = 0.2
@@ -49,12 +48,12 @@ class DecayPoints:
 
     amplitude: Array
     frequency: Array
-    damping: Array
-    frequency_spread: Array
-    damping_spread: Array
+    damping_ratio: Array
+    frequency_deviation: Array
+    damping_deviation: Array
 
 
-def analyse_decay(time: Array, motion: Array, name: str = "") -> DecayPoints:
+def analyse_decay(time: Array, motion: Array, message_prefix: str = "") -> DecayPoints:
     """Compute frequency and damping over the amplitude, from time (n) [s] and motion (n) [m or rad].
 
     Raises ValueError, whose message begins with `message_prefix`: time does not rise, too few samples or
@@ -62,24 +61,26 @@ def analyse_decay(time: Array, motion: Array, name: str = "") -> DecayPoints:
     """
     if np.any(np.diff(time) <= 0.0):
         row = int(np.argmax(np.diff(time) <= 0.0)) + 1
-        raise ValueError(f"{name}time does not rise at its value {row + 1}; expected rising times")
+        raise ValueError(f"{message_prefix}time does not rise at its value {row + 1}; expected rising times")
     frequency = _main_frequency(time, motion)
     step = float(np.median(np.diff(time)))
     if not frequency * step * MIN_SAMPLES_PER_PERIOD <= 1.0:
         raise ValueError(
-            f"{name}has {1.0 / (frequency * step):.3g} samples a period, at least "
+            f"{message_prefix}has {1.0 / (frequency * step):.3g} samples a period, at least "
             f"{MIN_SAMPLES_PER_PERIOD} are needed"
         )
     largest = time[int(np.argmax(np.abs(motion - np.median(motion))))]
     if largest > time[-1] - RECORD_END_FRACTION * (time[-1] - time[0]):
         raise ValueError(
-            f"{name}the motion is largest at {largest:.3g} s, near its end: the joint creates energy, "
+            f"{message_prefix}the motion is largest at {largest:.3g} s, near its end: the joint "
+            "creates energy, "
             "expected is a decay; reverse the order of the rows if they run back in time"
         )
     windows = list(_fit_windows(time, motion, 2.0 * np.pi * frequency))
     if len(windows) < MIN_WINDOWS:
         raise ValueError(
-            f"{name}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand out of the "
+            f"{message_prefix}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand "
+            "out of the "
             f"noise, at least {MIN_WINDOWS} are needed"
         )
     amplitude, w, s, w_deviation, s_deviation, length = np.array(windows).T
@@ -89,8 +90,8 @@ def analyse_decay(time: Array, motion: Array, name: str = "") -> DecayPoints:
         amplitude,
         undamped / (2.0 * np.pi),
         damping,
-        np.hypot(w_deviation / w, FREQUENCY_ERROR * decrement**2),
-        np.hypot(s_deviation / undamped, DAMPING_ERROR * damping * decrement**2),
+        np.hypot(w_deviation / w, FREQUENCY_ERROR_FACTOR * decrement**2),
+        np.hypot(s_deviation / undamped, DAMPING_ERROR_FACTOR * damping * decrement**2),
     )
 
 
@@ -132,47 +133,63 @@ def _fit_windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, 
             yield size * amplitude, w, s, *deviations, length
 
 
-def _fit_window(first: Array, t: Array, u: Array) -> Array:
+def _fit_window(start_values: Array, window_time: Array, signal: Array) -> Array:
     """Fit w, s and their rates (4) in one window; `start_values` (2) are the start values of w and s.
 
     `window_time` (n) and all results are made dimensionless with the length of the window. w and s are first
     fitted with zero rates, then all four together.
     """
-    constant = scipy.optimize.least_squares(
-        lambda x: _window_residual(np.append(x, [0.0, 0.0]), t, u), first
+    from scipy.optimize import least_squares  # slow to import, and most commands import this module
+
+    constant = least_squares(
+        lambda x: _window_residual(np.append(x, [0.0, 0.0]), window_time, signal), start_values
     ).x
     start = np.append(constant, [0.0, 0.0])
-    return np.asarray(scipy.optimize.least_squares(lambda x: _window_residual(x, t, u), start).x)
+    return np.asarray(least_squares(lambda x: _window_residual(x, window_time, signal), start).x)
 
 
-def _window_residual(shape: Array, t: Array, u: Array) -> Array:
+def _window_residual(window_parameters: Array, window_time: Array, signal: Array) -> Array:
     """Residuals (n) of the linear fit of c, d, A, B to a signal (n).
 
     window_parameters : w, s and their rates (4)
     """
-    matrix = _design_matrix(shape, t)
-    return np.asarray(u - matrix @ np.linalg.lstsq(matrix, u)[0])
+    matrix = _design_matrix(window_parameters, window_time)
+    return np.asarray(signal - matrix @ np.linalg.lstsq(matrix, signal)[0])
 
 
-def _design_matrix(shape: Array, t: Array) -> Array:
+def _design_matrix(window_parameters: Array, window_time: Array) -> Array:
     """Design matrix (n, 4) of c, d, A, B: ones, time, decaying cosine, decaying sine.
 
     window_parameters : w, s and their rates (4)
     """
-    w, s, w_rate, s_rate = shape
-    angle, decay = (w + 0.5 * w_rate * t) * t, np.exp(-(s + 0.5 * s_rate * t) * t)
-    return np.stack([np.ones_like(t), t, decay * np.cos(angle), decay * np.sin(angle)], axis=1)
+    w, s, w_rate, s_rate = window_parameters
+    angle = (w + 0.5 * w_rate * window_time) * window_time
+    decay = np.exp(-(s + 0.5 * s_rate * window_time) * window_time)
+    return np.stack(
+        [np.ones_like(window_time), window_time, decay * np.cos(angle), decay * np.sin(angle)], axis=1
+    )
 
 
-def _standard_deviations(shape: Array, A: float, B: float, t: Array, noise: float) -> tuple[float, float]:
+def _standard_deviations(
+    window_parameters: Array, A: float, B: float, window_time: Array, noise: float
+) -> tuple[float, float]:
     """Standard deviations of w and s, dimensionless with the length of the window.
 
     A, B  : amplitudes of cosine and sine
     noise : standard deviation of the residuals
     """
-    ones, _, cos, sin = _design_matrix(shape, t).T
+    ones, _, cos, sin = _design_matrix(window_parameters, window_time).T
     d_angle, d_decay = B * cos - A * sin, -(A * cos + B * sin)  # derivatives of u in angle and decay
-    columns = [ones, t, cos, sin, t * d_angle, t * d_decay, t**2 * d_angle, t**2 * d_decay]
+    columns = [
+        ones,
+        window_time,
+        cos,
+        sin,
+        window_time * d_angle,
+        window_time * d_decay,
+        window_time**2 * d_angle,
+        window_time**2 * d_decay,
+    ]
     jacobian = np.stack(columns, axis=1)
     size = np.linalg.norm(jacobian, axis=0)
     covariance = noise**2 * np.linalg.pinv((jacobian / size).T @ (jacobian / size))

@@ -23,15 +23,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from jointfmu.quantity import Array
 
 from .decay import DecayPoints
 
-Force = Callable[[Array], Array]
-_ANGLE, _WEIGHT = np.polynomial.legendre.leggauss(64)
-_ANGLE, _WEIGHT = 0.5 * np.pi * (1.0 + _ANGLE), 0.5 * np.pi * _WEIGHT
+ForceFunction = Callable[[Array], Array]
+_HALF_CYCLE_ANGLES, _HALF_CYCLE_WEIGHTS = np.polynomial.legendre.leggauss(64)
+_HALF_CYCLE_ANGLES = 0.5 * np.pi * (1.0 + _HALF_CYCLE_ANGLES)
+_HALF_CYCLE_WEIGHTS = 0.5 * np.pi * _HALF_CYCLE_WEIGHTS
 """Gauss-Legendre angles (64) [rad] from 0 to pi, and their weights: half an oscillation u = a cos(angle)."""
 _MAX_SECANT_STEPS, _MAX_DECREMENT = 12, 3.0
 """Number of secant iterations for the logarithmic decrement of half a period, and upper limit of it [1]."""
@@ -41,8 +41,8 @@ _MAX_SECANT_STEPS, _MAX_DECREMENT = 12, 3.0
 class NonlinearSpring:
     """Nonlinear elastic spring: force E(u), an odd function, and energy V(u), an even function."""
 
-    force: Force
-    energy: Force
+    force: ForceFunction
+    energy: ForceFunction
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,28 +55,31 @@ class HysteresisLaw:
     viscous_damping : viscous damping [N.s/m or N.m.s/rad]; acts in vibrations only
     """
 
-    friction: Force
-    friction_work: Force
-    elastic: NonlinearSpring | None = None
-    viscous: float = 0.0
+    friction: ForceFunction
+    friction_work: ForceFunction
+    elastic_spring: NonlinearSpring | None = None
+    viscous_damping: float = 0.0
 
-    def force_change(self, motion: Array, start: Array) -> Array:
+    def force_change(self, motion: Array, turning_motion: Array) -> Array:
         """Change (...) of the force from the turning points to motions (...), by Masing's rule.
 
         turning_motion : motion (...) at the turning points
         """
-        distance = motion - start
+        distance = motion - turning_motion
         change = np.copysign(2.0 * self.friction(0.5 * np.abs(distance)), distance)
-        if self.elastic is None:
+        if self.elastic_spring is None:
             return change
-        return np.asarray(change + self.elastic.force(motion) - self.elastic.force(start))
+        return np.asarray(
+            change + self.elastic_spring.force(motion) - self.elastic_spring.force(turning_motion)
+        )
 
-    def shift_rest(self, rest: float) -> "HysteresisLaw":
+    def shift_rest(self, rest_motion: float) -> "HysteresisLaw":
         """Copy of the law, shifted so that its elastic force is zero at the motion `rest_motion`."""
-        if self.elastic is None:
+        if self.elastic_spring is None:
             return self
-        force, energy = self.elastic.force, self.elastic.energy
-        return replace(self, elastic=NonlinearSpring(lambda u: force(u - rest), lambda u: energy(u - rest)))
+        force, energy = self.elastic_spring.force, self.elastic_spring.energy
+        moved = NonlinearSpring(lambda u: force(u - rest_motion), lambda u: energy(u - rest_motion))
+        return replace(self, elastic_spring=moved)
 
     def equivalent_spring(self, amplitude: Array) -> tuple[Array, Array]:
         """Equivalent stiffness (n) and loss factor (n) [1] of closed loops about rest with amplitudes (n).
@@ -86,9 +89,9 @@ class HysteresisLaw:
         because both branches contribute equally.
         """
         a = amplitude[:, None]
-        motion = a * np.cos(_ANGLE)
+        motion = a * np.cos(_HALF_CYCLE_ANGLES)
         force = self.force_change(motion, np.broadcast_to(a, motion.shape))
-        stiffness = 2.0 / (np.pi * amplitude) * ((force * np.cos(_ANGLE)) @ _WEIGHT)
+        stiffness = 2.0 / (np.pi * amplitude) * ((force * np.cos(_HALF_CYCLE_ANGLES)) @ _HALF_CYCLE_WEIGHTS)
         return stiffness, self.loop_area(amplitude) / (np.pi * stiffness * amplitude**2)
 
     def loop_area(self, amplitude: Array) -> Array:
@@ -119,21 +122,25 @@ class HysteresisLaw:
         omega = self._frequency(half_distance, self._decrement(half_distance, 0.0 * half_distance)) / np.sqrt(
             inertia
         )
-        return omega, self._decrement(half_distance, 0.25 * np.pi * self.viscous * omega)
+        return omega, self._decrement(half_distance, 0.25 * np.pi * self.viscous_damping * omega)
 
-    def _decrement(self, half_distance: Array, viscous: Array) -> Array:
+    def _decrement(self, half_distance: Array, viscous_slope: Array) -> Array:
         """Logarithmic decrement b (n) [1] of half a period, by the secant method.
 
         viscous_slope : viscous part (n) of G over h, pi d omega/4
         """
 
         def dissipated_force(distance: Array) -> Array:
-            return np.asarray(2.0 * self.friction_work(distance) / distance + viscous * distance)
+            return np.asarray(2.0 * self.friction_work(distance) / distance + viscous_slope * distance)
 
-        def energy_residual(b: Array) -> Array:
-            first, second = half_distance * np.exp(0.5 * b), half_distance * np.exp(-0.5 * b)
+        def energy_residual(decrement: Array) -> Array:
+            first, second = half_distance * np.exp(0.5 * decrement), half_distance * np.exp(-0.5 * decrement)
             dissipated = dissipated_force(first) + dissipated_force(second) - 2.0 * self.friction(first)
-            return np.asarray(dissipated - self._released_energy(first, b) - self._released_energy(second, b))
+            return np.asarray(
+                dissipated
+                - self._released_energy(first, decrement)
+                - self._released_energy(second, decrement)
+            )
 
         low, high = np.zeros_like(half_distance), np.full_like(half_distance, 1e-3)
         at_low, at_high = energy_residual(low), energy_residual(high)
@@ -143,31 +150,33 @@ class HysteresisLaw:
             at_low, at_high = at_high, energy_residual(high)
         return high
 
-    def _frequency(self, half_distance: Array, b: Array) -> Array:
+    def _frequency(self, half_distance: Array, decrement: Array) -> Array:
         """Angular frequency (n) [rad/s] of free vibration with a unit inertia.
 
         half_distance : h (n), half the distance between two consecutive turning points
         decrement     : logarithmic decrement b (n) [1] of half a period
         """
-        start = 2.0 * half_distance / (1.0 + np.exp(-b))
-        distance = half_distance[:, None] * (1.0 - np.cos(_ANGLE))
+        start = 2.0 * half_distance / (1.0 + np.exp(-decrement))
+        distance = half_distance[:, None] * (1.0 - np.cos(_HALF_CYCLE_ANGLES))
         force = 2.0 * self.friction_work(half_distance) / half_distance - self._released_energy(
-            half_distance, b
+            half_distance, decrement
         )
         speed_squared = 2.0 * (force[:, None] * distance - 4.0 * self.friction_work(0.5 * distance))
-        if self.elastic is not None:
-            V = self.elastic.energy
+        if self.elastic_spring is not None:
+            V = self.elastic_spring.energy
             speed_squared += 2.0 * (V(start)[:, None] - V(start[:, None] - distance))
         speed = np.sqrt(np.maximum(speed_squared, 1e-300))
-        return np.asarray(np.pi / ((half_distance[:, None] * np.sin(_ANGLE) / speed) @ _WEIGHT))
+        return np.asarray(
+            np.pi / ((half_distance[:, None] * np.sin(_HALF_CYCLE_ANGLES) / speed) @ _HALF_CYCLE_WEIGHTS)
+        )
 
-    def _released_energy(self, half_distance: Array, b: Array) -> Array:
+    def _released_energy(self, half_distance: Array, decrement: Array) -> Array:
         """Elastic energy released between two turning points, over their distance 2 h: D (n) [N or N.m]."""
-        if self.elastic is None:
+        if self.elastic_spring is None:
             return np.zeros_like(half_distance)
-        start = 2.0 * half_distance / (1.0 + np.exp(-b))
-        V = self.elastic.energy
-        return np.asarray((V(start) - V(start * np.exp(-b))) / (2.0 * half_distance))
+        start = 2.0 * half_distance / (1.0 + np.exp(-decrement))
+        V = self.elastic_spring.energy
+        return np.asarray((V(start) - V(start * np.exp(-decrement))) / (2.0 * half_distance))
 
 
 AMPLITUDE_SEARCH_FACTOR = 30.0
@@ -181,33 +190,35 @@ _TABLE_POINTS, _MAX_BISECTIONS = 80, 50
 class Oscillator:
     """Oscillator of one degree of freedom: hysteresis law, mass or inertia, structural damping ratio [1]."""
 
-    law: HysteresisLaw
+    hysteresis_law: HysteresisLaw
     inertia: float
-    damping: float = 0.0
+    damping_ratio: float = 0.0
 
     def free_vibration(self, amplitude: Array) -> tuple[Array, Array]:
         """Frequency (n) [Hz] and damping ratio (n) [1] of free vibration at amplitudes (n)."""
-        omega, decrement = self.law.decay(amplitude, self.inertia)
-        return omega / (2.0 * np.pi), decrement / np.hypot(np.pi, decrement) + self.damping
+        omega, decrement = self.hysteresis_law.decay(amplitude, self.inertia)
+        return omega / (2.0 * np.pi), decrement / np.hypot(np.pi, decrement) + self.damping_ratio
 
     def response_amplitude(self, frequency: Array, force: Array, measured_amplitude: Array) -> Array:
         """Amplitude (n) of forced vibration under force amplitudes (n) at frequencies (n) [Hz].
 
         measured_amplitude : amplitudes; the result is searched within a factor of AMPLITUDE_SEARCH_FACTOR
         """
+        from scipy.interpolate import CubicSpline  # slow to import, and most commands import this module
+
         ends = (
             float(np.log(measured_amplitude.min() / AMPLITUDE_SEARCH_FACTOR)),
             float(np.log(measured_amplitude.max() * AMPLITUDE_SEARCH_FACTOR)),
         )
         grid = np.linspace(ends[0], ends[1], _TABLE_POINTS)
-        stiffness, loss = self.law.equivalent_spring(np.exp(grid))
+        stiffness, loss = self.hysteresis_law.equivalent_spring(np.exp(grid))
         table = CubicSpline(grid, np.stack([stiffness, loss], axis=1))
         w = 2.0 * np.pi * frequency
         low, high = np.full(w.shape, ends[0]), np.full(w.shape, ends[1])
         for _ in range(_MAX_BISECTIONS):
             middle = 0.5 * (low + high)
             K, eta = table(middle).T
-            linear = self.law.viscous * w + 2.0 * self.damping * w * np.sqrt(
+            linear = self.hysteresis_law.viscous_damping * w + 2.0 * self.damping_ratio * w * np.sqrt(
                 np.maximum(K, 0.0) * self.inertia
             )  # viscous damping and structural damping, as a stiffness in phase with the velocity
             required = np.exp(middle) * np.hypot(K - self.inertia * w**2, K * eta + linear)
@@ -219,32 +230,32 @@ class Oscillator:
 class FreeVibration:
     """Measured frequency and damping ratio of free vibration as functions of the amplitude."""
 
-    points: DecayPoints
+    decay_points: DecayPoints
 
     nuisance_count = 0
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
         """Noise group (2 n) of each residual: 0 for frequencies, 1 for damping ratios."""
-        return np.repeat([0, 1], self.points.amplitude.size)
+        return np.repeat([0, 1], self.decay_points.amplitude.size)
 
     @property
-    def scale(self) -> Array:
+    def residual_scale(self) -> Array:
         """Standard deviations (2 n) [1] of the misfits, up to a factor for each noise group."""
-        return np.concatenate([self.points.frequency_spread, self.points.damping_spread])
+        return np.concatenate([self.decay_points.frequency_deviation, self.decay_points.damping_deviation])
 
-    def misfit(self, model: Oscillator) -> Array:
+    def misfit(self, oscillator: Oscillator) -> Array:
         """Misfits (2 n) [1] of an oscillator.
 
         Frequencies: data over model minus 1; then damping ratios: data minus model.
         """
-        frequency, damping = model.free_vibration(self.points.amplitude)
-        data = self.points
-        return np.concatenate([data.frequency / frequency - 1.0, data.damping - damping])
+        frequency, damping = oscillator.free_vibration(self.decay_points.amplitude)
+        data = self.decay_points
+        return np.concatenate([data.frequency / frequency - 1.0, data.damping_ratio - damping])
 
-    def residuals(self, model: Oscillator, scale: Array) -> Array:
+    def residuals(self, oscillator: Oscillator, residual_scale: Array) -> Array:
         """Misfits of an oscillator over their standard deviations `residual_scale`."""
-        return self.misfit(model) / scale
+        return self.misfit(oscillator) / residual_scale
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,14 +274,16 @@ class ForcedResponse:
         return np.zeros(self.amplitude.size, dtype=np.int64)
 
     @property
-    def scale(self) -> Array:
+    def residual_scale(self) -> Array:
         """Standard deviations (n) [1] of the misfits, up to a common factor."""
         return np.ones(self.amplitude.size)
 
-    def misfit(self, model: Oscillator) -> Array:
+    def misfit(self, oscillator: Oscillator) -> Array:
         """Misfits (n) [1] of an oscillator: logarithm of measured over computed amplitude."""
-        return np.log(self.amplitude / model.response_amplitude(self.frequency, self.force, self.amplitude))
+        return np.log(
+            self.amplitude / oscillator.response_amplitude(self.frequency, self.force, self.amplitude)
+        )
 
-    def residuals(self, model: Oscillator, scale: Array) -> Array:
+    def residuals(self, oscillator: Oscillator, residual_scale: Array) -> Array:
         """Misfits of an oscillator over their standard deviations `residual_scale`."""
-        return self.misfit(model) / scale
+        return self.misfit(oscillator) / residual_scale

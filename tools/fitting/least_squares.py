@@ -26,11 +26,11 @@ DIFFERENCE_STEP = 1e-4
 
 Tabulated laws have errors of 1e-8; with this step they cause errors of 1e-4 of the derivatives.
 """
-TOLERANCE = 1e-8
+CONVERGENCE_TOLERANCE = 1e-8
 """Relative change of cost or parameters at which a fit ends [1]."""
 MAX_EVALUATIONS = 300
 """Maximum number of function evaluations of one fit, without those for the Jacobian."""
-RIDGE = 0.01
+RIDGE_WEIGHT = 0.01
 """Weight of the regularisation towards the start values: standard deviations of a residual per unit of a
 logarithm [1]. Too weak to move determined parameters, strong enough to hold undetermined parameters."""
 BOUND_DISTANCE = 1e-6
@@ -43,16 +43,16 @@ class Unknown:
 
     name: str
     unit: str
-    start: float
-    low: float
-    high: float
+    start_value: float
+    lower_bound: float
+    upper_bound: float
 
     def __post_init__(self) -> None:
-        if not self.low < self.start < self.high or self.start <= 0.0:
+        if not self.lower_bound < self.start_value < self.upper_bound or self.start_value <= 0.0:
             unit = "" if self.unit == "1" else f" {self.unit}"
             raise ValueError(
-                f"{self.name} = {self.start:g}{unit} cannot be fitted from there: a fit in logarithms "
-                f"starts inside ({max(self.low, 0.0):g}, {self.high:g}){unit}"
+                f"{self.name} = {self.start_value:g}{unit} cannot be fitted from there: a fit in logarithms "
+                f"starts inside ({max(self.lower_bound, 0.0):g}, {self.upper_bound:g}){unit}"
             )
 
 
@@ -76,11 +76,11 @@ class Solution:
     noise: float
     jacobian: Array
     covariance: Array
-    at_bound: tuple[str, ...]
-    refusal: str | None
+    names_at_bound: tuple[str, ...]
+    refusal_message: str | None
 
     @property
-    def deviations(self) -> dict[str, float]:
+    def relative_deviations(self) -> dict[str, float]:
         """{name: relative standard deviation [1]}, equal to the standard deviation of the logarithm."""
         root = np.sqrt(np.diag(self.covariance))
         return {u.name: float(d) for u, d in zip(self.unknowns, root, strict=True)}
@@ -102,7 +102,7 @@ def solve(
     *,
     noise: float | None = None,
     nuisance_count: int = 0,
-    tolerance: float = TOLERANCE,
+    tolerance: float = CONVERGENCE_TOLERANCE,
 ) -> Solution:
     """Minimise the sum of squared residuals over the unknowns.
 
@@ -132,7 +132,7 @@ def solve(
         )
     current = first
     for _ in range(2 if noise is None else 1):  # the first fit estimates the noise
-        model.ridge = RIDGE * (_root_mean_square(current) if noise is None else noise)
+        model.ridge = RIDGE_WEIGHT * (_root_mean_square(current) if noise is None else noise)
         result = least_squares(
             model,
             logs,
@@ -160,14 +160,14 @@ def solve(
         noise=noise,
         jacobian=jacobian,
         covariance=covariance(jacobian, noise),
-        at_bound=tuple(name for name, on_bound in zip(model.names, at_bound, strict=True) if on_bound),
-        refusal=model.refusal if model.retreated else None,
+        names_at_bound=tuple(name for name, on_bound in zip(model.names, at_bound, strict=True) if on_bound),
+        refusal_message=model.refusal if model.retreated else None,
     )
 
 
 def select_start(
     unknowns: Sequence[Unknown],
-    starts: Mapping[str, Sequence[float]],
+    alternative_starts: Mapping[str, Sequence[float]],
     evaluate_start: Callable[[dict[str, float]], tuple[Mapping[str, float], float]],
 ) -> Sequence[Unknown]:
     """Select the start values with the lowest cost; return the unknowns with these start values.
@@ -179,13 +179,13 @@ def select_start(
     If the model refuses all points, the unknowns keep their own starts.
     """
     best, least = unknowns, np.inf
-    for point in product(*((u.start, *starts.get(u.name, ())) for u in unknowns)):
+    for point in product(*((u.start_value, *alternative_starts.get(u.name, ())) for u in unknowns)):
         try:
             values, cost = evaluate_start(dict(zip((u.name for u in unknowns), point, strict=True)))
         except (ValueError, RuntimeError):
             continue
-        if cost < least and all(u.low < values[u.name] < u.high for u in unknowns):
-            least, best = cost, [replace(u, start=values[u.name]) for u in unknowns]
+        if cost < least and all(u.lower_bound < values[u.name] < u.upper_bound for u in unknowns):
+            least, best = cost, [replace(u, start_value=values[u.name]) for u in unknowns]
     return best
 
 
@@ -199,10 +199,10 @@ class _LogarithmicModel:
 
     def __init__(self, unknowns: tuple[Unknown, ...], residuals: Residuals) -> None:
         self.names = [u.name for u in unknowns]
-        self.start = np.log([u.start for u in unknowns])
+        self.start = np.log([u.start_value for u in unknowns])
         with np.errstate(divide="ignore"):
-            self.low = np.log([max(u.low, 0.0) for u in unknowns]) + 1e-9
-            self.high = np.log([u.high for u in unknowns]) - 1e-9
+            self.low = np.log([max(u.lower_bound, 0.0) for u in unknowns]) + 1e-9
+            self.high = np.log([u.upper_bound for u in unknowns]) - 1e-9
         self.residuals = residuals
         self.ridge = 0.0
         self.size = 0
@@ -260,7 +260,7 @@ EXCHANGE_TOLERANCE, MAX_SECANT_STEPS = 1e-10, 40
 
 
 @dataclass(frozen=True, slots=True)
-class Exchange:
+class UnknownExchange:
     """Replacement of an unknown by a derived quantity during a fit.
 
     exchanged_name : name of the unknown that is replaced
@@ -270,30 +270,32 @@ class Exchange:
     quantity_label : name of the quantity
     """
 
-    name: str
+    exchanged_name: str
     quantity: Callable[[Mapping[str, float]], float]
     unit: str
-    label: str
+    quantity_label: str
 
-    def unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
+    def derived_unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
         """Unknown for the derived quantity, with the value at the start values of `unknowns` as its start."""
-        start = self.quantity({name: u.start for name, u in unknowns.items()})
-        return Unknown(self.label, self.unit, start, 0.0, np.inf)
+        start = self.quantity({name: u.start_value for name, u in unknowns.items()})
+        return Unknown(self.quantity_label, self.unit, start, 0.0, np.inf)
 
-    def restore_unknowns(self, values: Mapping[str, float], start: float) -> dict[str, float]:
+    def restore_unknowns(self, values: Mapping[str, float], start_value: float) -> dict[str, float]:
         """Convert values with the derived quantity to values of the original unknowns, by the secant method.
 
         start_value : of the exchanged unknown, for the secant method
 
         Raises ValueError if no value of the replaced unknown gives the quantity.
         """
-        rest = {name: value for name, value in values.items() if name != self.label}
-        target = float(np.log(values[self.label]))
+        rest = {name: value for name, value in values.items() if name != self.quantity_label}
+        target = float(np.log(values[self.quantity_label]))
 
-        def logarithmic_error(log: float) -> float:
-            return float(np.log(self.quantity({**rest, self.name: float(np.exp(log))}))) - target
+        def logarithmic_error(log_value: float) -> float:
+            return (
+                float(np.log(self.quantity({**rest, self.exchanged_name: float(np.exp(log_value))}))) - target
+            )
 
-        low, high = float(np.log(start)), float(np.log(start)) + DIFFERENCE_STEP
+        low, high = float(np.log(start_value)), float(np.log(start_value)) + DIFFERENCE_STEP
         at_low, at_high = logarithmic_error(low), logarithmic_error(high)
         for _ in range(MAX_SECANT_STEPS):
             if abs(at_high) <= EXCHANGE_TOLERANCE or at_high == at_low:
@@ -302,15 +304,18 @@ class Exchange:
             low, high = high, high + float(np.clip(step, -5.0, 5.0))
             at_low, at_high = at_high, logarithmic_error(high)
         if abs(at_high) > 1e3 * EXCHANGE_TOLERANCE:
-            raise ValueError(f"no {self.name} gives {self.label} = {values[self.label]:g} {self.unit}")
-        return {**rest, self.name: float(np.exp(high))}
+            raise ValueError(
+                f"no {self.exchanged_name} gives {self.quantity_label} = "
+                f"{values[self.quantity_label]:g} {self.unit}"
+            )
+        return {**rest, self.exchanged_name: float(np.exp(high))}
 
     def restore_solution(self, solution: Solution, unknowns: Mapping[str, Unknown]) -> Solution:
         """Transform a solution with the derived quantity into a solution with the original unknowns."""
-        restored = self.restore_unknowns(solution.values, unknowns[self.name].start)
+        restored = self.restore_unknowns(solution.values, unknowns[self.exchanged_name].start_value)
         values = {name: restored[name] for name in unknowns}
         transformation = np.eye(len(values))
-        index = [u.name for u in solution.unknowns].index(self.label)
+        index = [u.name for u in solution.unknowns].index(self.quantity_label)
         transformation[index] = self._logarithmic_derivatives(values)
         jacobian = solution.jacobian @ transformation
         return replace(
@@ -324,8 +329,8 @@ class Exchange:
     def _logarithmic_derivatives(self, values: Mapping[str, float]) -> Array:
         """Derivatives (k) [1] of the quantity with respect to the values, all in logarithms."""
 
-        def perturbed_quantity(name: str, by: float) -> float:
-            return float(np.log(self.quantity({**values, name: values[name] * float(np.exp(by))})))
+        def perturbed_quantity(name: str, log_step: float) -> float:
+            return float(np.log(self.quantity({**values, name: values[name] * float(np.exp(log_step))})))
 
         return np.array(
             [

@@ -47,17 +47,17 @@ class ColumnNames:
     force_units, motion_units : {unit: size in SI units} allowed for each, SI unit first
     """
 
-    force: str
-    motion: str
-    forces: UnitSizes
-    motions: UnitSizes
+    force_column: str
+    motion_column: str
+    force_units: UnitSizes
+    motion_units: UnitSizes
 
     @property
     def columns(self) -> Mapping[str, UnitSizes]:
         """{column: {unit: size in SI units}} of all columns that a measurement file may have."""
         return {
-            self.motion: self.motions,
-            self.force: self.forces,
+            self.motion_column: self.motion_units,
+            self.force_column: self.force_units,
             "time": unit_sizes("s", "ms"),
             "frequency": unit_sizes("Hz", "kHz"),
             "damping": unit_sizes("1"),
@@ -67,9 +67,11 @@ class ColumnNames:
     @property
     def si_units(self) -> tuple[str, str]:
         """SI unit of the force and SI unit of the motion."""
-        return next(iter(self.forces)), next(iter(self.motions))
+        return next(iter(self.force_units)), next(iter(self.motion_units))
 
-    def check_level(self, path: Path, ratio: float, units: Mapping[str, str], start: ParameterFile) -> None:
+    def check_stiffness_ratio(
+        self, path: Path, stiffness_ratio: float, stated_units: Mapping[str, str], start_file: ParameterFile
+    ) -> None:
         """Check that the measured stiffness is near the stiffness of the start values.
 
         stiffness_ratio : measured stiffness over stiffness of the start values [1]
@@ -78,16 +80,17 @@ class ColumnNames:
 
         Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
         """
-        if 1.0 / WRONG_UNIT_RATIO < ratio < WRONG_UNIT_RATIO:
+        if 1.0 / WRONG_UNIT_RATIO < stiffness_ratio < WRONG_UNIT_RATIO:
             return
         raise InputRefusal(
-            f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, "
+            f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, "
             f"allowed are {1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
-            f"{self.likely_unit(ratio, units)}; if both are right, start from a joint of its size",
+            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units)}; if both are right, "
+            "start from a joint of its size",
             "params",
         )
 
-    def likely_unit(self, ratio: float, units: Mapping[str, str]) -> str:
+    def describe_likely_unit_error(self, stiffness_ratio: float, stated_units: Mapping[str, str]) -> str:
         """Describe the unit error that best explains a wrong ratio of stiffnesses, as text.
 
         stiffness_ratio : measured stiffness over stiffness of the start values [1]
@@ -96,9 +99,15 @@ class ColumnNames:
         If a wrong unit of either column explains the ratio equally well, the text names both.
         """
         explanations = []
-        for column, power, own in ((self.motion, -1.0, self.motions), (self.force, 1.0, self.forces)):
-            stated, text = measured_in(units[column], own), f"where the heading says {units[column]}"
-            errors = {unit: abs(np.log(ratio * (size / stated) ** power)) for unit, size in own.items()}
+        for column, power, own in (
+            (self.motion_column, -1.0, self.motion_units),
+            (self.force_column, 1.0, self.force_units),
+        ):
+            stated = measured_in(stated_units[column], own)
+            text = f"where the heading says {stated_units[column]}"
+            errors = {
+                unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in own.items()
+            }
             unit = min(errors, key=errors.__getitem__)
             explanations.append((float(errors[unit]), f"the {column} is in {unit}, {text}"))
         smallest = min(explanations)[0]
@@ -107,7 +116,7 @@ class ColumnNames:
         return "likely " + ", or ".join(text for error, text in explanations if error < smallest + 1e-6)
 
 
-def read_columns(path: str | Path, heads: ColumnNames) -> tuple[str, columns.Columns]:
+def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, columns.Columns]:
     """Read a measurement file: its kind, recognised by its columns, and the columns.
 
     kind "loops"    : columns motion, force
@@ -117,20 +126,29 @@ def read_columns(path: str | Path, heads: ColumnNames) -> tuple[str, columns.Col
 
     Raises ValueError, one line, for any other set of columns.
     """
-    table = columns.read_columns(path, heads.columns, MIN_ROWS, COLUMN_SYNONYMS)
-    table.require_column(heads.motion, heads.columns)
+    table = columns.read_columns(path, column_names.columns, MIN_ROWS, COLUMN_SYNONYMS)
+    table.require_column(column_names.motion_column, column_names.columns)
     present = set(table.columns)
-    if {"frequency", heads.force} <= present:
-        return "response", table.check_positive((heads.motion, "frequency", heads.force), heads.columns)
+    if {"frequency", column_names.force_column} <= present:
+        return "response", table.check_positive(
+            (column_names.motion_column, "frequency", column_names.force_column), column_names.columns
+        )
     if {"frequency", "damping"} <= present:
-        return "backbone", table.check_positive((heads.motion, "frequency", "damping"), heads.columns)
-    if "frequency" not in present and heads.force in present:
+        return "backbone", table.check_positive(
+            (column_names.motion_column, "frequency", "damping"), column_names.columns
+        )
+    if "frequency" not in present and column_names.force_column in present:
         return "loops", table
     if "frequency" not in present and "time" in present:
         return "decay", table
-    expected = (heads.force,), ("time",), ("frequency", heads.force), ("frequency", "damping")
+    expected = (
+        (column_names.force_column,),
+        ("time",),
+        ("frequency", column_names.force_column),
+        ("frequency", "damping"),
+    )
     raise ValueError(
-        f"{table.path}: has {', '.join(table.columns)} alone; expected {heads.motion} with "
+        f"{table.path}: has {', '.join(table.columns)} alone; expected {column_names.motion_column} with "
         f"{', or with '.join(' and '.join(names) for names in expected)}"
     )
 
@@ -158,9 +176,9 @@ class Measurement:
 
     path: Path
     kind: str
-    heads: ColumnNames
+    column_names: ColumnNames
     data: Loops | FreeVibration | ForcedResponse
-    units: Mapping[str, str]
+    stated_units: Mapping[str, str]
 
     @property
     def motion(self) -> Array:
@@ -169,7 +187,7 @@ class Measurement:
             case Loops():
                 return self.data.motion
             case FreeVibration():
-                return self.data.points.amplitude
+                return self.data.decay_points.amplitude
             case ForcedResponse():
                 return self.data.amplitude
 
@@ -186,7 +204,7 @@ class Measurement:
         if isinstance(self.data, Loops):
             return self.data.rest_stiffness
         if isinstance(self.data, FreeVibration):
-            frequency = self.data.points.frequency[np.argmin(self.data.points.amplitude)]
+            frequency = self.data.decay_points.frequency[np.argmin(self.data.decay_points.amplitude)]
         else:
             amplitude = np.where(self.data.force == self.data.force.min(), self.data.amplitude, 0.0)
             frequency = self.data.frequency[np.argmax(amplitude)]  # resonance at the smallest force
@@ -196,34 +214,52 @@ class Measurement:
     @property
     def range_text(self) -> str:
         """Range of the data as text: kind of the measurement and largest amplitude."""
-        return f"{self.kind} up to {self.heads.motion} {self.amplitude:.4g} {self.heads.si_units[1]}"
+        return (
+            f"{self.kind} up to {self.column_names.motion_column} {self.amplitude:.4g} "
+            f"{self.column_names.si_units[1]}"
+        )
 
 
-def read_measurement(path: str | Path, columns: ColumnNames) -> Measurement:
+def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement:
     """Read a measurement file and evaluate it; see `read_columns` for its columns.
 
     Raises ValueError, one line that begins with the path.
     """
-    kind, table = read_columns(path, columns)
+    kind, table = read_columns(path, column_names)
     records = split_runs(table)
     data: Loops | FreeVibration | ForcedResponse
     try:
         if kind == "loops":
-            data = cut_branches([(name, run[columns.motion], run[columns.force]) for name, run in records])
+            data = cut_branches(
+                [
+                    (name, run[column_names.motion_column], run[column_names.force_column])
+                    for name, run in records
+                ]
+            )
         elif kind == "decay":
             data = FreeVibration(
-                _join_points([analyse_decay(run["time"], run[columns.motion], name) for name, run in records])
+                _join_points(
+                    [
+                        analyse_decay(run["time"], run[column_names.motion_column], name)
+                        for name, run in records
+                    ]
+                )
             )
         elif kind == "backbone":
-            a, f, damping = (table.columns[name] for name in (columns.motion, "frequency", "damping"))
+            a, f, damping = (
+                table.columns[name] for name in (column_names.motion_column, "frequency", "damping")
+            )
             data = FreeVibration(DecayPoints(a, f, damping, np.ones_like(f), damping))
         else:
             data = ForcedResponse(
-                *(table.columns[name] for name in ("frequency", columns.force, columns.motion))
+                *(
+                    table.columns[name]
+                    for name in ("frequency", column_names.force_column, column_names.motion_column)
+                )
             )
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
-    return Measurement(table.path, kind, columns, data, table.units)
+    return Measurement(table.path, kind, column_names, data, table.units)
 
 
 def _join_points(records: Sequence[DecayPoints]) -> DecayPoints:

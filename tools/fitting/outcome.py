@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-MAX_DEVIATION = 0.2
+MAX_RELATIVE_DEVIATION = 0.2
 """Standard deviation of the logarithm of a parameter [1], up to which it counts as determined: about 20 %."""
 INTERVAL_FRACTION = 0.1
 """Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
@@ -46,8 +46,8 @@ class Combination:
     """
 
     exponents: Mapping[str, float]
-    deviation: float
-    determined: bool
+    relative_deviation: float
+    is_determined: bool
 
     def __str__(self) -> str:
         return " ".join(
@@ -57,9 +57,11 @@ class Combination:
 
 def max_deviation(unknown: Unknown) -> float:
     """Standard deviation of the logarithm [1], up to which a parameter counts as determined."""
-    if unknown.low <= 0.0 or not np.isfinite(unknown.high):
-        return MAX_DEVIATION
-    return min(MAX_DEVIATION, INTERVAL_FRACTION * float(np.log(unknown.high / unknown.low)))
+    if unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
+        return MAX_RELATIVE_DEVIATION
+    return min(
+        MAX_RELATIVE_DEVIATION, INTERVAL_FRACTION * float(np.log(unknown.upper_bound / unknown.lower_bound))
+    )
 
 
 def combinations(solution: Solution) -> list[Combination]:
@@ -85,13 +87,13 @@ def combinations(solution: Solution) -> list[Combination]:
 def undetermined_names(solution: Solution) -> list[str]:
     """Names of the parameters that the data do not determine, or that are on a bound."""
     without_effect = {
-        name for c in combinations(solution) if not np.isfinite(c.deviation) for name in c.exponents
+        name for c in combinations(solution) if not np.isfinite(c.relative_deviation) for name in c.exponents
     }
     return [
         u.name
         for u in solution.unknowns
-        if solution.deviations[u.name] > max_deviation(u)
-        or u.name in solution.at_bound
+        if solution.relative_deviations[u.name] > max_deviation(u)
+        or u.name in solution.names_at_bound
         or u.name in without_effect
     ]
 
@@ -121,12 +123,12 @@ class Picture:
     other_laws         : {name: (x, y)} of the curves of other laws, for comparison
     """
 
-    x: Array
-    y: Array
+    data_x: Array
+    data_y: Array
     misfit: Array
-    line: tuple[Array, Array]
-    labels: tuple[str, str, str]
-    highlighted: NDArray[np.bool_] | None = None
+    law_curve: tuple[Array, Array]
+    axis_labels: tuple[str, str, str]
+    highlighted_points: NDArray[np.bool_] | None = None
     other_laws: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
 
@@ -149,11 +151,11 @@ class FitResult:
     facts: Facts
     pictures: Sequence[Picture]
     notes: Sequence[str] = ()
-    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    confidence_intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
-    def rows(self) -> list[dict[str, Any]]:
+    def unknown_rows(self) -> list[dict[str, Any]]:
         """Table of the unknowns: name, value, unit, relative standard deviation, whether it is determined."""
-        undetermined, deviations = undetermined_names(self.solution), self.solution.deviations
+        undetermined, deviations = undetermined_names(self.solution), self.solution.relative_deviations
         return [
             {
                 "name": u.name,
@@ -161,7 +163,11 @@ class FitResult:
                 "unit": u.unit,
                 "relative_deviation": _finite_or_none(deviations[u.name]),
                 "determined": u.name not in undetermined,
-                **({"interval": list(self.intervals[u.name])} if u.name in self.intervals else {}),
+                **(
+                    {"interval": list(self.confidence_intervals[u.name])}
+                    if u.name in self.confidence_intervals
+                    else {}
+                ),
             }
             for u in self.solution.unknowns
         ]
@@ -169,7 +175,7 @@ class FitResult:
     def rejection_reason(self) -> str | None:
         """Reason to reject the fit, as text; None if the fit is accepted."""
         names = [u.name for u in self.solution.unknowns]
-        if names and {*names} == {*self.solution.at_bound}:
+        if names and {*names} == {*self.solution.names_at_bound}:
             return f"{', '.join(names)} ended on a bound, nothing else was fitted"
         if (height := self.solution.values.get(HEIGHT_PARAMETER, 0.0)) > MAX_HEIGHT:
             return (
@@ -178,7 +184,7 @@ class FitResult:
                 "high; what lies in series with the joint may be missing (--series-stiffness)"
             )
         count = len(undetermined_names(self.solution))
-        if names and count == len(names) and not any(c.determined for c in combinations(self.solution)):
+        if names and count == len(names) and not any(c.is_determined for c in combinations(self.solution)):
             return f"the data determine none of {', '.join(names)}, nor a combination of them"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
@@ -203,31 +209,32 @@ class FitResult:
             lines.append(f"the data do not determine {', '.join(names)}: other values fit as well")
             ranked = combinations(self.solution)
             for combination in ranked:
-                if combination.determined:
+                if combination.is_determined:
                     lines.append(
                         f"the combination {combination} is determined within "
-                        f"{format_deviation(combination.deviation)}"
+                        f"{format_deviation(combination.relative_deviation)}"
                     )
                 elif len(combination.exponents) > 1:
                     lines.append(
-                        f"the combination {combination} stays open: {format_deviation(combination.deviation)}"
+                        f"the combination {combination} stays open: "
+                        f"{format_deviation(combination.relative_deviation)}"
                     )
-        lines += [f"{name} ended on its bound" for name in self.solution.at_bound]
-        if self.solution.refusal:
-            lines.append(f"the fit ended where the model refuses: {self.solution.refusal}")
+        lines += [f"{name} ended on its bound" for name in self.solution.names_at_bound]
+        if self.solution.refusal_message:
+            lines.append(f"the fit ended where the model refuses: {self.solution.refusal_message}")
         return lines + list(self.notes)
 
     def document(self) -> dict[str, Any]:
         """Result of the fit as one JSON object."""
         return {
             "joint": self.parameters.joint,
-            "unknowns": self.rows(),
+            "unknowns": self.unknown_rows(),
             "correlation": [[_finite_or_none(x) for x in row] for row in self.solution.correlation.tolist()],
             "combinations": [
                 {
                     "exponents": dict(combination.exponents),
-                    "relative_deviation": _finite_or_none(combination.deviation),
-                    "determined": combination.determined,
+                    "relative_deviation": _finite_or_none(combination.relative_deviation),
+                    "determined": combination.is_determined,
                 }
                 for combination in combinations(self.solution)
             ],
@@ -275,8 +282,8 @@ def _finite_or_none(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def unknowns(
-    start: ParameterFile, names: Sequence[str], bounds: Mapping[str, tuple[float, float]]
+def make_unknowns(
+    start_file: ParameterFile, names: Sequence[str], bounds: Mapping[str, tuple[float, float]]
 ) -> list[Unknown]:
     """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
 
@@ -284,8 +291,8 @@ def unknowns(
 
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
-    values, result = start.values_by_name, []
-    declared = {n: f for n, f in flat_fields(type(start.values)) if isinstance(values.get(n), float)}
+    values, result = start_file.values_by_name, []
+    declared = {n: f for n, f in flat_fields(type(start_file.values)) if isinstance(values.get(n), float)}
     for name in names:
         if name not in declared:
             raise ValueError(f"{name!r} is no parameter to fit; allowed are {', '.join(declared)}")
@@ -297,18 +304,18 @@ def unknowns(
     return result
 
 
-def predictor(
-    start: ParameterFile, predict: Callable[[Any], Array]
+def make_predictor(
+    start_file: ParameterFile, predict_values: Callable[[Any], Array]
 ) -> Callable[[Mapping[str, float]], Array]:
     """Make the function {name: value} of the unknowns -> predictions; other parameters as in `start_file`.
 
     predict_values : function of the parameter set
     """
-    return lambda values: predict(start.with_values(values, "calibration", "fit").values)
+    return lambda values: predict_values(start_file.with_values(values, "calibration", "fit").values)
 
 
 def fitted_parameters(
-    start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
+    start_file: ParameterFile, values: Mapping[str, float], origin: str, data_name: str, range_text: str
 ) -> ParameterFile:
     """Copy of a parameter file with fitted values; their source states data, range and date.
 
@@ -320,31 +327,37 @@ def fitted_parameters(
     Raises ValueError if SOURCE_DATE_EPOCH is no number of seconds.
     """
     today = build_time().date().isoformat()
-    file = start.with_values(values, origin, f"fitted to {data}, {today}, {span}")
-    return replace(file, name=f"fitted to {data}")
+    file = start_file.with_values(values, origin, f"fitted to {data_name}, {today}, {range_text}")
+    return replace(file, name=f"fitted to {data_name}")
 
 
-def figure_size(outcome: FitResult) -> tuple[float, float]:
+def figure_size(fit_result: FitResult) -> tuple[float, float]:
     """Width and height of the figure [inch]."""
-    return 3.6 * (1 + len(outcome.pictures)), 5.6
+    return 3.6 * (1 + len(fit_result.pictures)), 5.6
 
 
-def draw_fit(figure: "Figure", outcome: FitResult) -> None:
+def draw_fit(figure: "Figure", fit_result: FitResult) -> None:
     """Draw the plots of a fit side by side: data and law above, misfit below."""
-    pictures = outcome.pictures
+    pictures = fit_result.pictures
     all_axes = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
     for (above, below), picture in zip(all_axes.T, pictures, strict=True):
-        x, y = picture.x, picture.y
-        above.plot(*picture.line, color=plots.BLUE, label="fitted law")
+        x, y = picture.data_x, picture.data_y
+        above.plot(*picture.law_curve, color=plots.BLUE, label="fitted law")
         for (name, line), color in zip(picture.other_laws.items(), (plots.GREEN, plots.GREY), strict=False):
             above.plot(*line, "--", color=color, lw=1.0, label=name)
         above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
         below.axhline(0.0, color=plots.BLUE, lw=1.0)
         below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)
-        if picture.highlighted is not None:
+        if picture.highlighted_points is not None:
             for axes, values in ((above, y), (below, picture.misfit)):
-                axes.plot(x[picture.highlighted], values[picture.highlighted], "o", color=plots.RED, ms=7)
-        above.set_ylabel(picture.labels[1])
-        below.set_xlabel(picture.labels[0])
-        below.set_ylabel(picture.labels[2])
+                axes.plot(
+                    x[picture.highlighted_points],
+                    values[picture.highlighted_points],
+                    "o",
+                    color=plots.RED,
+                    ms=7,
+                )
+        above.set_ylabel(picture.axis_labels[1])
+        below.set_xlabel(picture.axis_labels[0])
+        below.set_ylabel(picture.axis_labels[2])
         above.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)

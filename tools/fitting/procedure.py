@@ -34,16 +34,16 @@ class Procedure:
     description: str
     takes_file: bool
     takes_several_files: bool = False
-    column: str = ""
+    identifying_column: str = ""
     options: Sequence[Option] = ()
     run: "Callable[..., FitResult]"
 
 
-def lazy_fit(module: str) -> "Callable[..., FitResult]":
+def lazy_fit(module_name: str) -> "Callable[..., FitResult]":
     """Function that loads a module when called, and calls the function `fit` of this module."""
 
     def run(*arguments: object, **options: object) -> "FitResult":
-        result: FitResult = import_module(module).fit(*arguments, **options)
+        result: FitResult = import_module(module_name).fit(*arguments, **options)
         return result
 
     return run
@@ -59,7 +59,7 @@ def fit_procedures() -> dict[str, dict[str, Procedure]]:
     return result
 
 
-DAMPING_RATIO = Option(
+DAMPING_RATIO_OPTION = Option(
     "damping_ratio",
     "of the structure, beside the joint [1]; to fit it, free damping_ratio",
     default=0.0,

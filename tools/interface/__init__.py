@@ -17,7 +17,7 @@ drive = create_maker(
     "drive",
     KINDS["harmonic_drive"],
     'jointfmu.drive("CSG-25-100").values["T2"]  # N.m\n48.0',
-    first="catalogue",
+    first_option="catalogue",
 )
 bolted_joint = create_maker(
     "bolted_joint",

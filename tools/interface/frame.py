@@ -152,7 +152,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
 
         Raises ValueError if the file may not or cannot be written.
         """
-        check_output(path, columns.TABLE, force)
+        check_output(path, columns.TABLE_FILE_KIND, force)
         heads = [(name, self.units[name]) for name in self]
         write_text(Path(path), columns.format_table(heads, list(self.values())))
         return Path(path)
@@ -190,5 +190,5 @@ def run(
     """
     points = {name: np.atleast_1d(np.asarray(x, dtype=np.float64)) for name, x in inputs.items()}
     clock = None if time is None else np.asarray(time, dtype=np.float64)
-    result = ramp.drive(fmu, points, clock, settings)
+    result = ramp.run_paths(fmu, points, clock, settings)
     return Frame(result.columns, result.units, result.messages)

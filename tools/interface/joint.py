@@ -16,9 +16,9 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 
 from .. import plots
 from ..command_line.common import require_package
-from ..judgement import find_height
+from ..judgement import find_rms_height
 from ..pressure import judge_file
-from ..ramps.ramp import broadcast
+from ..ramps.ramp import broadcast_columns
 from ..shown import format_quantity, list_entries
 from .frame import Frame, Table, TableDisplay
 from .law import Law
@@ -75,7 +75,7 @@ class Joint(TableDisplay):
         parameters = KINDS[self.file.joint].extract_law(self.file.values)
         if parameters is None:
             raise ValueError(f"{self.name}: law = {self.file.law!r} is of no interface")
-        return Law(self.file.law, parameters, find_height(self.file))
+        return Law(self.file.law, parameters, find_rms_height(self.file))
 
     @property
     def warnings(self) -> list[str]:
@@ -193,7 +193,7 @@ class Joint(TableDisplay):
             raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
         rest = {name: self.file.start_value(name) for name in names}
         columns = {name: np.ravel(np.asarray(value, dtype=np.float64)) for name, value in inputs.items()}
-        columns, count = broadcast(columns, model.name)
+        columns, count = broadcast_columns(columns, model.name)
         for variable in model.inputs:
             outside = [x for x in columns.get(variable.name, ()) if not variable.interval.contains(x)]
             if outside:
@@ -220,8 +220,8 @@ class Joint(TableDisplay):
             from ..report.joint import loop_figure, ramp_figure
         course = LoadHistory(self.model(fmu), self.file)
         panels = list(ramp_figure(course).panels)
-        loops = course.compute_loops() if course.model.loop else None
-        if loops and any(loop.loss for loop in loops.loops):
+        loops = course.compute_loops() if course.model.load_cycle else None
+        if loops and any(loop.energy_loss for loop in loops.loops):
             panels += loop_figure(course, loops).panels
         figure = plots.create_figure((4.4 * len(panels), 3.8))
         draw_panels(figure, panels)

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.contact.interface import at_largest_spot, at_pressure
+from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
 from jointfmu.contact.laws import LAWS
 from jointfmu.quantity import Array, flat_fields, flatten_parameters
 
 from .. import plots
 from ..judgement import assess_law
 from ..laws import LAW_COLUMN_UNITS, LAW_COLUMNS, build_law_parameters, known_surface_height
-from ..ramps.ramp import broadcast
+from ..ramps.ramp import broadcast_columns
 from ..shown import format_quantity
 from .frame import Frame, Table, TableDisplay
 
@@ -56,13 +56,13 @@ class Law(TableDisplay):
     def at_pressure(self, pressure: ArrayLike) -> Frame:
         """Evaluate the law at nominal pressures (n) [Pa]: F, K_N, K_T, A_r for the nominal area A_0.
 
-        The `messages` of the result warn if level or range of the law are doubtful. Arrays of parameters are
-        not judged.
+        The `messages` of the result warn if the stiffness is implausible, or if a pressure is outside the
+        range of the law. Arrays of parameters are not judged.
 
         Raises ValueError for a pressure that is negative, NaN, infinite or not representable, or arrays of
         different lengths.
         """
-        state = at_pressure(self.parameters, self._to_column("pressure", pressure))
+        state = evaluate_at_pressure(self.parameters, self._to_column("pressure", pressure))
         if many := ", ".join(self._array_parameters):
             return self._build_frame(state, (f"level and range are not judged for arrays of {many}",))
         return self._build_frame(
@@ -71,7 +71,9 @@ class Law(TableDisplay):
 
     def at_largest_spot(self, area: ArrayLike) -> Frame:
         """Evaluate the law for areas (n) [m2] of the largest contact spot."""
-        return self._build_frame(at_largest_spot(self.parameters, self._to_column("largest_spot", area)), ())
+        return self._build_frame(
+            evaluate_at_largest_spot(self.parameters, self._to_column("largest_spot", area)), ()
+        )
 
     @property
     def _array_parameters(self) -> dict[str, Array]:
@@ -80,7 +82,7 @@ class Law(TableDisplay):
     def _to_column(self, name: str, values: ArrayLike) -> Array:
         """Convert values to an array (n) or (1). Raises ValueError if parameters have another length."""
         column = np.ravel(np.asarray(values, dtype=np.float64))
-        broadcast({name: column, **self._array_parameters}, f"law {self.name}")
+        broadcast_columns({name: column, **self._array_parameters}, f"law {self.name}")
         return column
 
     def _build_frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:

@@ -39,7 +39,7 @@ _MAKER_DOCSTRING = """Make {}.
     >>> import jointfmu
     >>> {}
 """
-_FLAG_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
+_OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
 
 
 def create_joint(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
@@ -76,7 +76,7 @@ def load(source: str | Path) -> Joint:
     )
 
 
-def make_from_drawing(drawing: NewJointCommand, option_values: Mapping[str, object]) -> Joint:
+def make_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str, object]) -> Joint:
     """Make the joint of a drawing.
 
     option_values : {option: value}, in the forms that `_to_command_line_value` accepts
@@ -84,12 +84,14 @@ def make_from_drawing(drawing: NewJointCommand, option_values: Mapping[str, obje
     Raises ValueError for an unknown or missing option, or an impossible value. The message names options as
     on the command line.
     """
-    options = {option.name: option for option in drawing.options}
+    options = {option.name: option for option in joint_command.options}
     if unknown := [name for name in option_values if name not in options]:
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(options)}")
-    if missing := [o.name for o in drawing.options if o.is_required and option_values.get(o.name) is None]:
+    if missing := [
+        o.name for o in joint_command.options if o.is_required and option_values.get(o.name) is None
+    ]:
         raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].help_text}")
-    new: NewJoint = drawing.make_joint(
+    new: NewJoint = joint_command.make_joint(
         {name: _to_command_line_value(o, option_values.get(name)) for name, o in options.items()}
     )
     return create_joint(new.file, new.facts, new.warnings)
@@ -101,7 +103,7 @@ def _use_python_names() -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        raise ValueError(_FLAG_PATTERN.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
+        raise ValueError(_OPTION_PATTERN.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
 
 
 def _to_command_line_value(option: Option, value: Any) -> object:
@@ -135,14 +137,16 @@ def _format_value(value: Any) -> str:
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
-def create_maker(name: str, kind: JointKind, example: str, first: str | None = None) -> Callable[..., Joint]:
+def create_maker(
+    name: str, kind: JointKind, example: str, first_option: str | None = None
+) -> Callable[..., Joint]:
     """Create the public function that makes a joint from its drawing.
 
     The signature and the docstring of the function list the options of the drawing.
 
-    name    : name of the function
-    example : call of the function and its result, as in a doctest
-    first   : option that may be passed as the first positional argument
+    name         : name of the function
+    example      : call of the function and its result, as in a doctest
+    first_option : option that may be passed as the first positional argument
     """
     drawing: NewJointCommand = load_tool_module(kind, "new").NEW  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
@@ -152,11 +156,11 @@ def create_maker(name: str, kind: JointKind, example: str, first: str | None = N
         with _use_python_names():
             return make_from_drawing(drawing, arguments)
 
-    ordered = sorted(drawing.options, key=lambda option: option.name != first)
+    ordered = sorted(drawing.options, key=lambda option: option.name != first_option)
     parameters = [
         inspect.Parameter(
             option.name,
-            positional if option.name == first else keyword,
+            positional if option.name == first_option else keyword,
             default=inspect.Parameter.empty if option.is_required else False if option.is_flag else None,
         )
         for option in ordered
@@ -204,7 +208,7 @@ class Fit(TableDisplay):
                 else format_deviation(row["relative_deviation"]),
                 "yes" if row["determined"] else "no",
             )
-            for row in self.outcome.rows()
+            for row in self.outcome.unknown_rows()
         ]
         doubt = self.outcome.rejection_reason()
         lines = [f"warning: the fit does not determine the joint: {doubt}"] if doubt else []

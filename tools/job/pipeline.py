@@ -21,14 +21,14 @@ from ..report.figure import Figure
 from ..report.page import build_figures, write_report
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay
-from ..systems.ringing import Ringing, examples
+from ..systems.ringing import FreeVibration, simulate_examples
 from ..systems.ssp import build_systems
 from ..systems.system import System
 from .checks import (
     Check,
     check_decays,
+    check_free_vibrations,
     check_ramp,
-    check_ringing,
     compare_flavour,
     compute_published_points,
     run_default_ramp,
@@ -41,30 +41,30 @@ class JobResult:
 
     fmi2_folder : folder of the FMUs of FMI 2.0
     fmu_paths   : FMUs of the joints, of all flavours
-    systems     : system files (.ssp) and the FMUs that they add
+    system_files : system files (.ssp) and the FMUs that they add
     problems    : errors, one line each
     ramps       : {FMU: its load ramp}
     proofs      : results of the experiments of each FMU
     checks      : numerical checks of the ramps, resonances and decays
-    rows        : published points, computed by the package
-    fmu_rows    : published points, computed by running FMUs
-    ringing, decays : {system: simulated free vibrations}
-    arms        : {name: robot arm, its simulated columns}
+    validated_points : published points, computed by the package
+    fmu_validated_points : published points, computed by running FMUs
+    free_vibrations, decays : {system: simulated free vibrations}
+    arm_results : {name: robot arm, its simulated columns}
     figures     : {joint: figures of the report}
     """
 
     fmi2_folder: Path
     fmu_paths: list[Path] = field(default_factory=list)
-    systems: list[Path] = field(default_factory=list)
+    system_files: list[Path] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
     proofs: list[Proof] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
-    rows: list[validation.ValidatedPoint] = field(default_factory=list)
-    fmu_rows: list[validation.ValidatedPoint] = field(default_factory=list)
-    ringing: dict[str, list[Ringing]] = field(default_factory=dict)
+    validated_points: list[validation.ValidatedPoint] = field(default_factory=list)
+    fmu_validated_points: list[validation.ValidatedPoint] = field(default_factory=list)
+    free_vibrations: dict[str, list[FreeVibration]] = field(default_factory=dict)
     decays: dict[str, list[Decay]] = field(default_factory=dict)
-    arms: dict[str, tuple[System, dict[str, Array]]] = field(default_factory=dict)
+    arm_results: dict[str, tuple[System, dict[str, Array]]] = field(default_factory=dict)
     figures: dict[str, list[Figure]] = field(default_factory=dict)
 
     @property
@@ -80,12 +80,14 @@ class JobResult:
             for c in self.checks
             if not c.is_passed
         ]
-        met = {(r.point.paper, r.point.id) for r in self.rows if r.passed}
-        worse = [r for r in self.fmu_rows if not r.passed and (r.point.paper, r.point.id) in met]
-        for source, rows in (("package", validation.missed_points(self.rows)), ("FMU", worse)):
+        met = {(r.point.paper, r.point.id) for r in self.validated_points if r.has_passed}
+        worse = [
+            r for r in self.fmu_validated_points if not r.has_passed and (r.point.paper, r.point.id) in met
+        ]
+        for source, rows in (("package", validation.missed_points(self.validated_points)), ("FMU", worse)):
             lines += [
                 f"{r.point.paper}: {r.point.id} by the {source}: published {r.point.value}, "
-                f"computed {r.computed:.6g}"
+                f"computed {r.computed_value:.6g}"
                 for r in rows
             ]
         return lines
@@ -105,26 +107,31 @@ def run_job(out_folder: Path) -> JobResult:
     outcome = JobResult(folder)
     with worker_processes() as pool:
         outcome.fmu_paths = build([], list(FLAVOURS), None, out_folder, pool=pool)
-        outcome.systems = build_systems(out_folder, joints=False, pool=pool)
-        components = [path for path in outcome.systems if path.suffix == ".fmu"]
-        arms, ringdowns = pool.submit(cosimulation.arms, folder), pool.submit(decays.examples, folder)
-        ringing = pool.submit(examples, folder)
+        outcome.system_files = build_systems(out_folder, build_joints=False, pool=pool)
+        components = [path for path in outcome.system_files if path.suffix == ".fmu"]
+        arms = pool.submit(cosimulation.simulate_arms, folder)
+        ringdowns = pool.submit(decays.simulate_examples, folder)
+        ringing = pool.submit(simulate_examples, folder)
         page = pool.submit(write_laboratory, out_folder / "report" / "laboratory.html")
         paths = [*outcome.fmu_paths, *components]
-        examined = pool.map(_examine, paths)
+        examined = pool.map(_validate_and_prove, paths)
         _compare_ramps(outcome, out_folder)
-        outcome.arms, outcome.decays, outcome.ringing = arms.result(), ringdowns.result(), ringing.result()
+        outcome.arm_results, outcome.decays, outcome.free_vibrations = (
+            arms.result(),
+            ringdowns.result(),
+            ringing.result(),
+        )
         outcome.figures = build_figures(outcome)  # while other processes prove the FMUs
         for problems, proof in track_progress(examined, "validate and prove", len(paths)):
             outcome.problems += problems
             outcome.proofs.append(proof)
-        outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
+        outcome.checks += [*check_free_vibrations(outcome.free_vibrations), *check_decays(outcome.decays)]
         write_report(out_folder / "report" / "index.html", outcome)
         page.result()
     return outcome
 
 
-def _examine(path: Path) -> tuple[list[str], Proof]:
+def _validate_and_prove(path: Path) -> tuple[list[str], Proof]:
     """Validate an FMU with fmpy and prove it: problems found, result of the proof."""
     return [f"{report_name(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
@@ -135,15 +142,15 @@ def _compare_ramps(outcome: JobResult, out: Path) -> None:
         result = run_default_ramp(name, outcome.fmi2_folder)
         outcome.ramps[name] = result
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
-        write_text(out / "report" / f"{name}.csv", result.csv())
+        write_text(out / "report" / f"{name}.csv", result.format_csv())
         outcome.checks += check_ramp(name, outcome.fmi2_folder, result)
         other_folders = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmi2_folder]
         outcome.checks += [compare_flavour(name, folder, result) for folder in other_folders]
     for step in track_progress(("package", "FMUs"), "compare", 2):
         if step == "package":
-            outcome.rows = validation.validate()
+            outcome.validated_points = validation.validate()
         else:
-            outcome.fmu_rows = compute_published_points(outcome.fmi2_folder)
+            outcome.fmu_validated_points = compute_published_points(outcome.fmi2_folder)
 
 
 def main(out_folder: Path) -> int:
@@ -160,9 +167,10 @@ def main(out_folder: Path) -> int:
     folders = ", ".join(str(out_folder / flavour) for flavour in FLAVOURS)
     print(f"built: {len(outcome.fmu_paths)} FMUs in {folders}: {', '.join(MODELS)}")
     print(
-        f"systems: {', '.join(p.name for p in outcome.systems if p.suffix == '.ssp')} in {out_folder / 'ssp'}"
+        f"systems: {', '.join(p.name for p in outcome.system_files if p.suffix == '.ssp')} in "
+        f"{out_folder / 'ssp'}"
     )
-    partners = [path for path in outcome.systems if path.suffix == ".fmu"]
+    partners = [path for path in outcome.system_files if path.suffix == ".fmu"]
     print(f"validated with fmpy: {len(outcome.fmu_paths) + len(partners)}; ramps run: {len(outcome.ramps)}")
     worst = max((proof.worst.error_ratio for proof in outcome.proofs if proof.worst), default=0.0)
     runs = sum(proof.run_count for proof in outcome.proofs)
@@ -171,8 +179,9 @@ def main(out_folder: Path) -> int:
         f"at worst {worst:.1e} of what is allowed"
     )
     print(
-        f"compared: {validation.summary(outcome.rows)}; "
-        f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"
+        f"compared: {validation.format_summary(outcome.validated_points)}; "
+        f"{len(outcome.fmu_validated_points)} of them again through the FMUs; {len(outcome.checks)} "
+        "checks of the ramps"
     )
     print(
         f"report: {out_folder / 'report' / 'index.html'}; laboratory: "

@@ -8,10 +8,10 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from jointfmu_fmu_src.native.compiled.compiler import webassembly
-from jointfmu_fmu_src.native.compiled.kept import cached_result
-from jointfmu_fmu_src.native.data import split
-from jointfmu_fmu_src.native.page import panels
+from jointfmu_fmu_src.native.compiled.compiled_models import cached_result
+from jointfmu_fmu_src.native.compiled.compiler import compile_webassembly
+from jointfmu_fmu_src.native.data import split_parameters
+from jointfmu_fmu_src.native.page import find_ramp_panels
 from jointfmu_fmu_src.xml_parts import ListedVariable, list_variables
 
 from jointfmu.joints import KINDS
@@ -28,19 +28,19 @@ from jointfmu.quantity import units
 from jointfmu.quantity.interval import Interval
 
 from ..joint_parts import load_tool_module
-from ..published.computed import published_numbers
+from ..published.computed import load_published_numbers
 from ..published.reference import ROLES, read_points
-from ..ramps.loops import suffix
+from ..ramps.loops import variable_suffix
 from ..shown import choose_display_unit
 from .part import LaboratoryModel
 
-_LABORATORY_SOURCE = "laboratory.c"
-_MAP_SOURCE = "map.c"
+_LABORATORY_SOURCE_NAME = "laboratory.c"
+_MAP_SOURCE_NAME = "map.c"
 _CODE_GENERATION_LOCK = Lock()
 
 
 @dataclass(frozen=True, slots=True)
-class Module:
+class PageModule:
     """A model with the parameter files that share its C code.
 
     files : parameter files; the first one gives the start values
@@ -56,15 +56,15 @@ class Module:
         The file need not exist.
         """
         module = load_tool_module(KINDS[self.model.joint], "laboratory")
-        return Path(str(module.__file__)).with_name(_MAP_SOURCE) if module else None
+        return Path(str(module.__file__)).with_name(_MAP_SOURCE_NAME) if module else None
 
     def collect_sources(self) -> dict[str, str]:
         """Collect all C sources, of the FMU and of the functions that the page calls: {file name: text}."""
         # imported here because it needs casadi, which pages of the report do not need
-        from jointfmu_fmu_src.native.code.generate import sources, token
+        from jointfmu_fmu_src.native.code.generate import generate_sources, read_token
 
-        files = sources(self.model.name, self.files[0])
-        return files | self._page_sources() | {"token.h": f'#define TOKEN "{token(files)}"\n'}
+        files = generate_sources(self.model.name, self.files[0])
+        return files | self._page_sources() | {"token.h": f'#define TOKEN "{read_token(files)}"\n'}
 
     def compile_module(self) -> bytes:
         """Compile the module to WebAssembly (a WASI reactor without imports), or read it from the cache.
@@ -81,7 +81,7 @@ class Module:
     def _page_sources(self) -> dict[str, str]:
         """C sources of the functions that the page calls: {file name: text}."""
         paths = [
-            Path(__file__).with_name(_LABORATORY_SOURCE),
+            Path(__file__).with_name(_LABORATORY_SOURCE_NAME),
             *([self.map_source] if self.map_source and self.map_source.is_file() else []),
         ]
         return {path.name: path.read_text(encoding="utf-8") for path in paths}
@@ -90,23 +90,23 @@ class Module:
         with _CODE_GENERATION_LOCK:  # casadi is not thread-safe
             files = self.collect_sources()
         units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
-        return webassembly(self.model.name, files, units)
+        return compile_webassembly(self.model.name, files, units)
 
 
-def list_modules() -> list[Module]:
+def list_modules() -> list[PageModule]:
     """List the modules of all joints and shipped parameter files, in display order."""
     return [
         module for kind in KINDS.values() for model in kind.models for module in _group_by_code(kind, model)
     ]
 
 
-def compile_modules(page_modules: Sequence[Module]) -> list[bytes]:
+def compile_modules(page_modules: Sequence[PageModule]) -> list[bytes]:
     """Compile modules in parallel threads; returns the binaries."""
     with ThreadPoolExecutor() as pool:
-        return list(pool.map(Module.compile_module, page_modules))
+        return list(pool.map(PageModule.compile_module, page_modules))
 
 
-def _group_by_code(kind: JointKind, model: Model) -> Iterator[Module]:
+def _group_by_code(kind: JointKind, model: Model) -> Iterator[PageModule]:
     """Group the shipped files of a joint into modules.
 
     Files share the C code if they have the same law and the same values of all parameters that the FMU does
@@ -118,7 +118,7 @@ def _group_by_code(kind: JointKind, model: Model) -> Iterator[Module]:
         fixed = tuple((name, value) for name, value in file.values_by_name.items() if name not in exposed)
         groups.setdefault((file.law, fixed), []).append(file)
     for files in groups.values():
-        yield Module(model.with_parameters(kind.name, files[0].values), files)
+        yield PageModule(model.with_parameters(kind.name, files[0].values), files)
 
 
 def _load_shipped_files(kind: JointKind) -> list[ParameterFile]:
@@ -136,12 +136,12 @@ _SLIDER_FACTOR = 10.0
 """Factor between start value and both ends of a parameter's slider, if no interval is known [1]."""
 
 
-def describe_module(module: Module) -> dict[str, object]:
+def describe_module(module: PageModule) -> dict[str, object]:
     """JSON object of a module: everything except the binary."""
     model, first = module.model, module.files[0]
     kind, bench = KINDS[model.joint], _laboratory_model(model)
     bound = set(_bound_parameters(first))
-    curves = (*panels(model), *bench.panels)  # the panels of the documentation come first
+    curves = (*find_ramp_panels(model), *bench.panels)  # the panels of the documentation come first
     rows = [
         _variable_document(v, model, bench) | {"bound": v.name in bound} for v in list_variables(model, first)
     ]
@@ -152,16 +152,16 @@ def describe_module(module: Module) -> dict[str, object]:
         "law": first.law,
         "default": first.law == next(iter(kind.laws)),
         "entries": _entry_documents(model, first),
-        "fixed": list(split(model, first).fixed),
+        "fixed": list(split_parameters(model, first).data_values),
         "height": next(filter(is_height, first.values_by_name), None),
         "doc": model.doc,
         "variables": rows,
-        "surfaces": [surface.prefix for surface in kind.surfaces],
+        "surfaces": [surface.parameter_prefix for surface in kind.surfaces],
         "sets": [_parameter_set_document(file, model) for file in module.files],
-        "ramp": {"input": model.ramp.input, "end": model.ramp.end},
-        "panels": [{"over": p.over, "quantities": list(p.quantities)} for p in curves],
+        "ramp": {"input": model.ramp.input_name, "end": model.ramp.end_value},
+        "panels": [{"over": p.abscissa, "quantities": list(p.quantities)} for p in curves],
         "pairs": conjugate_pairs(model),
-        "path": list(bench.path_inputs or (model.ramp.input,)),
+        "path": list(bench.path_inputs or (model.ramp.input_name,)),
         "points": list(_published_points(model, bench)),
         "measured": [m._asdict() for m in bench.measured_curves],
         "map": _map_document(bench, first),
@@ -179,8 +179,8 @@ def conjugate_pairs(model: Model) -> dict[str, str]:
     conjugates = {}
     for i in model.inputs:
         candidates = [o.name for o in model.outputs if {i.unit, o.unit} in ({"N", "m"}, {"N.m", "rad"})]
-        same = [name for name in candidates if suffix(name) == suffix(i.name)]
-        if same or (candidates and not suffix(i.name) and i.name == model.ramp.input):
+        same = [name for name in candidates if variable_suffix(name) == variable_suffix(i.name)]
+        if same or (candidates and not variable_suffix(i.name) and i.name == model.ramp.input_name):
             conjugates[i.name] = (same or candidates)[0]
     return conjugates
 
@@ -201,7 +201,7 @@ def _variable_document(
         "causality": variable.causality,
         "doc": variable.doc,
         "start": variable.start,
-        "boolean": variable.boolean,
+        "boolean": variable.is_boolean,
     }
     typical = float(variable.attributes.get("nominal", 0.0))
     if variable.causality != "output":
@@ -217,28 +217,34 @@ def _variable_document(
     return row | {"unit": unit, "shown": shown, "factor": units.conversion_factor(unit, shown)}
 
 
-def _interval_end(variable: ListedVariable, attribute: str) -> float | None:
-    return float(variable.attributes[attribute]) if attribute in variable.attributes else None
+def _interval_end(variable: ListedVariable, end_name: str) -> float | None:
+    return float(variable.attributes[end_name]) if end_name in variable.attributes else None
 
 
-def _slider_span(variable: ListedVariable, model: Model, row: dict[str, Any]) -> tuple[float, float]:
+def _slider_span(
+    variable: ListedVariable, model: Model, variable_document: dict[str, Any]
+) -> tuple[float, float]:
     """Lower and upper end of a slider [SI]."""
-    if variable.boolean:
+    if variable.is_boolean:
         return 0.0, 1.0
     start = float(variable.start or 0.0)
-    low = -math.inf if row["low"] is None else row["low"]
-    high = math.inf if row["high"] is None else row["high"]
+    low = -math.inf if variable_document["low"] is None else variable_document["low"]
+    high = math.inf if variable_document["high"] is None else variable_document["high"]
     if variable.causality == "input":
-        driven = {i.name: i.unit for i in model.inputs}[model.ramp.input]
+        driven = {i.name: i.unit for i in model.inputs}[model.ramp.input_name]
         unit = variable.attributes["unit"]
-        end = model.ramp.end if unit == driven else _SLIDER_END_RATIO * float(variable.attributes["nominal"])
+        end = (
+            model.ramp.end_value
+            if unit == driven
+            else _SLIDER_END_RATIO * float(variable.attributes["nominal"])
+        )
         return max(low, -end), end
     if start == 0.0:
         return 0.0, high if math.isfinite(high) else 1.0
     if abs(low) > 1e-300 and math.isfinite(high - low) and high - low <= 1.0 + abs(low):
         margin = 0.02 * (high - low)
         return max(low + margin, 0.0), high - margin
-    if row["whole"]:
+    if variable_document["whole"]:
         return low, 4.0 * start
     return max(start / _SLIDER_FACTOR, low), min(start * _SLIDER_FACTOR, high)
 
@@ -305,7 +311,7 @@ def _parameter_set_document(file: ParameterFile, model: Model) -> dict[str, obje
 def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterator[dict[str, object]]:
     outputs = {v.name: v for v in model.outputs}
     known = {v.name for v in model.inputs} | set(model.parameter_fields())
-    for paper in published_numbers(KINDS[model.joint]).papers:
+    for paper in load_published_numbers(KINDS[model.joint]).papers:
         for point in read_points(paper):
             shown = laboratory_model.published_points.get(point.quantity)
             if shown is None or not set(point.where) <= set(shown.arguments):

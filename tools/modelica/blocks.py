@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.terminals import Terminal
-from jointfmu_fmu_src.native.terminals import terminals
+from jointfmu_fmu_src.native.terminals import find_terminals
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable
@@ -13,19 +13,19 @@ from jointfmu.quantity.units import UNITS
 from .records import escape_string, format_number
 
 _ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
-_ADAPTORS = {  # (rotational, the FMU takes motion) -> adaptor
+_ADAPTOR_MODELS = {  # (rotational, the FMU takes motion) -> adaptor
     (True, True): f"{_ROTATIONAL}.Components.GeneralTorqueToAngleAdaptor",
     (True, False): f"{_ROTATIONAL}.Components.GeneralAngleToTorqueAdaptor",
     (False, True): f"{_TRANSLATIONAL}.Components.GeneralForceToPositionAdaptor",
     (False, False): f"{_TRANSLATIONAL}.Components.GeneralPositionToForceAdaptor",
 }
-_TAKES_FORCE = (
+_FORCE_INPUT_NOTE = (
     "The flange follows the FMU's displacement, so give it a force that does not depend on an inertia "
     "right at the flange: an inertia there would need the inverse of the FMU. "
     'Between inertias take a component of <a href=\\"modelica://JointStiffness.Components\\">Components</a>'
     "{between_inertias}."
 )
-_TAKES_MOTION = "It takes motion and gives force, so it belongs between inertias."
+_MOTION_INPUT_NOTE = "It takes motion and gives force, so it belongs between inertias."
 
 
 def interface_terms(model: Model) -> dict[str, object]:
@@ -50,12 +50,12 @@ def interface_terms(model: Model) -> dict[str, object]:
 
 def wrapper_terms(model: Model) -> dict[str, object]:
     """Template variables of the model that connects an FMU to flanges."""
-    flanges = terminals(model)
+    flanges = find_terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
-    note = _TAKES_MOTION
-    if not _takes_motion(model):  # name another FMU of the joint, which can be used between inertias
-        others = [other.name for other in KINDS[model.joint].models if _takes_motion(other)]
-        note = _TAKES_FORCE.format(between_inertias=f" or the FMU {others[0]}" if others else "")
+    note = _MOTION_INPUT_NOTE
+    if not _has_motion_inputs(model):  # name another FMU of the joint, which can be used between inertias
+        others = [other.name for other in KINDS[model.joint].models if _has_motion_inputs(other)]
+        note = _FORCE_INPUT_NOTE.format(between_inertias=f" or the FMU {others[0]}" if others else "")
     parameters = [
         {
             "name": v.name,
@@ -77,9 +77,9 @@ def wrapper_terms(model: Model) -> dict[str, object]:
     }
 
 
-def _takes_motion(model: Model) -> bool:
+def _has_motion_inputs(model: Model) -> bool:
     """Return whether the inputs of an FMU are motions and its outputs forces."""
-    return all(flow != "inflow" for t in terminals(model) for _, flow in t.members.values())
+    return all(flow != "inflow" for t in find_terminals(model) for _, flow in t.members.values())
 
 
 def _port_positions(model: Model) -> dict[str, tuple[float, float]]:
@@ -102,7 +102,7 @@ def _flange_terms(terminal: Terminal, port_positions: Mapping[str, tuple[float, 
 
     Potential, rate and force of the terminal are connected to p, pder and f of the adaptor.
     """
-    rotational = ".Rotational." in terminal.kind
+    rotational = ".Rotational." in terminal.connector_class
     potential, rate, force = (
         next((terminal.members[m][0] for m in names if m in terminal.members), None)
         for names in (("phi", "s"), ("w", "v"), ("tau", "f"))
@@ -110,7 +110,7 @@ def _flange_terms(terminal: Terminal, port_positions: Mapping[str, tuple[float, 
     flow = next(v for _, v in terminal.members.values() if v.endswith("flow"))
     takes_motion = flow == "outflow"
     left = terminal.side == "a"
-    flip, y = (1 if left else -1), round(terminal.y)
+    flip, y = (1 if left else -1), round(terminal.icon_y)
     adaptor, gain = f"adaptor_{terminal.name}", f"reaction_{terminal.name}"
     places = {
         f"{adaptor}.flange": (flip * -82.0, y),
@@ -131,8 +131,8 @@ def _flange_terms(terminal: Terminal, port_positions: Mapping[str, tuple[float, 
     return {
         "name": terminal.name,
         "doc": escape_string(terminal.doc),
-        "connector": terminal.kind + terminal.side,
-        "adaptor": _ADAPTORS[rotational, takes_motion],
+        "connector": terminal.connector_class + terminal.side,
+        "adaptor": _ADAPTOR_MODELS[rotational, takes_motion],
         "use_rate": str(rate is not None).lower(),
         "connections": [
             (

@@ -8,9 +8,9 @@ from pathlib import Path
 from types import ModuleType
 
 from jinja2 import Environment
-from jointfmu_fmu_src.folders import asset
-from jointfmu_fmu_src.partners.laws import POINTS
-from jointfmu_fmu_src.templates import FRAME, law_terms, template
+from jointfmu_fmu_src.folders import find_asset
+from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
+from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
 from jointfmu import __version__
 from jointfmu.files.outputs import EXCHANGE_TEXT, PROGRAM_MARK, check_output
@@ -23,10 +23,10 @@ from jointfmu.quantity import flat_fields
 from jointfmu.quantity.smooth import STEP_COEFFICIENTS
 
 from ..joint_parts import load_tool_module
-from ..systems.system import System, systems
+from ..systems.system import System, load_systems
 from .blocks import interface_terms, wrapper_terms
 from .records import (
-    RELATIVE_TOLERANCE,
+    TABLE_TOLERANCE,
     ModelicaComponent,
     ModelicaRecord,
     WorkingPoint,
@@ -80,24 +80,26 @@ class _LibraryJoint:
 def write_library(
     folder: Path,
     file: ParameterFile | None = None,
-    points: WorkingPoints | None = None,
+    working_points: WorkingPoints | None = None,
     *,
     force: bool = False,
 ) -> list[Path]:
     """Write the library into a folder; returns the paths of its files.
 
-    file   : parameter file of one joint, in place of its default file
-    points : {joint: working points}, in place of the default working points
-    force  : replace a library of this name that jointfmu did not write
+    file           : parameter file of one joint, in place of its default file
+    working_points : {joint: working points}, in place of the default working points
+    force          : replace a library of this name that jointfmu did not write
     """
     check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_TEXT, force)
-    return write_files(folder / LIBRARY_NAME, render_library(file, points))
+    return write_files(folder / LIBRARY_NAME, render_library(file, working_points))
 
 
-def render_library(file: ParameterFile | None = None, points: WorkingPoints | None = None) -> dict[str, str]:
+def render_library(
+    file: ParameterFile | None = None, working_points: WorkingPoints | None = None
+) -> dict[str, str]:
     """Render all files of the library: {path in the library: text}."""
     joints = [
-        _collect_joint(kind, module, file, (points or {}).get(kind.name))
+        _collect_joint(kind, module, file, (working_points or {}).get(kind.name))
         for kind in KINDS.values()
         if (module := load_tool_module(kind, "modelica"))
     ]
@@ -106,7 +108,7 @@ def render_library(file: ParameterFile | None = None, points: WorkingPoints | No
     packages = {
         "Examples": _render_examples(joints, shared),
         "Components": _render_components(joints)
-        | _render_plain_classes(shared, "Components", _PARTNER_COMPONENTS, points=POINTS, comb=comb),
+        | _render_plain_classes(shared, "Components", _PARTNER_COMPONENTS, points=CONTROL_POINTS, comb=comb),
         "Wrappers": {name: model.render(wrapper_terms(fmu)) for name, fmu in MODELS.items()},
         "Interfaces": {name: block.render(interface_terms(fmu)) for name, fmu in MODELS.items()},
         "Data": _render_records(joints),
@@ -117,7 +119,7 @@ def render_library(file: ParameterFile | None = None, points: WorkingPoints | No
     notes = [escape_string(joint.component.note) for joint in joints if joint.component.note]
     common = {"version": __version__, "notes": notes, "example": next(iter(MODELS))}
     out = {
-        "package.mo": shared.get_template("package.mo").render(common, tolerance=f"{RELATIVE_TOLERANCE:g}"),
+        "package.mo": shared.get_template("package.mo").render(common, tolerance=f"{TABLE_TOLERANCE:g}"),
         "package.order": _render_package_order(packages),
     }
     for package, classes in packages.items():
@@ -128,16 +130,19 @@ def render_library(file: ParameterFile | None = None, points: WorkingPoints | No
 
 
 def _collect_joint(
-    kind: JointKind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
+    kind: JointKind,
+    module: ModuleType,
+    file: ParameterFile | None,
+    working_points: Sequence[WorkingPoint] | None,
 ) -> _LibraryJoint:
     """Collect parameters, component, records and templates of a joint."""
     component: ModelicaComponent = module.COMPONENT
     is_given = file is not None and file.joint == kind.name
     joint_file = file if file and is_given else load_default(kind.name)
-    used_points = tuple(points or (*_start_point(joint_file), *component.points))
+    used_points = tuple(working_points or (*_start_working_point(joint_file), *component.working_points))
     found: Sequence[ModelicaRecord]
     if is_given:
-        found = component.records(joint_file, used_points)
+        found = component.make_records(joint_file, used_points)
     else:
         found = _default_records(kind.name, module, used_points)
     records = dict(zip(used_points, found, strict=True))
@@ -148,14 +153,14 @@ def _collect_joint(
 
 @cache
 def _default_records(
-    joint: str, module: ModuleType, points: tuple[WorkingPoint, ...]
+    joint: str, module: ModuleType, working_points: tuple[WorkingPoint, ...]
 ) -> tuple[ModelicaRecord, ...]:
     """Records of the default parameters of a joint, which the library of another joint has too."""
     component: ModelicaComponent = module.COMPONENT
-    return tuple(component.records(load_default(joint), points))
+    return tuple(component.make_records(load_default(joint), working_points))
 
 
-def _start_point(file: ParameterFile) -> list[WorkingPoint]:
+def _start_working_point(file: ParameterFile) -> list[WorkingPoint]:
     """Working point given by the start values of the inputs in a parameter file, as a list of one or none."""
     point = tuple(file.start_value(name) for name in KINDS[file.joint].working_point)
     return [point] if point and point[0] > 0.0 else []
@@ -167,10 +172,10 @@ def _render_package_order(names: Mapping[str, object]) -> str:
 
 
 def _render_plain_classes(
-    shared: Environment, package: str, names: Sequence[str], **terms: object
+    shared_templates: Environment, package: str, names: Sequence[str], **terms: object
 ) -> dict[str, str]:
     """Render classes that do not depend on a joint: {class: text}."""
-    return {name: shared.get_template(f"{package}/{name}.mo").render(terms) for name in names}
+    return {name: shared_templates.get_template(f"{package}/{name}.mo").render(terms) for name in names}
 
 
 def _render_components(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
@@ -178,7 +183,7 @@ def _render_components(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
     for joint in joints:
         name, model = joint.component.name, MODELS[joint.component.name]
         classes[name] = joint.templates.get_template(f"Components/{name}.mo").render(
-            joint.component.template_texts(joint.record),
+            joint.component.make_template_texts(joint.record),
             meta=_parameter_meanings(joint.kind),
             docs={v.name: v.doc for v in (*model.inputs, *model.outputs)},
             html=_render_documentation(model, joint.file),
@@ -194,12 +199,12 @@ def _render_records(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
     """
     bases, tables = {}, {}
     for joint in joints:
-        base = joint.component.base
+        base = joint.component.base_record
         extended = joint.templates.get_template(f"Data/{base}.mo")
         bases[base] = extended.render(meta=_parameter_meanings(joint.kind))
         filled = joint.templates.get_template("Data/record.mo")
         for record in joint.records.values():
-            if record.name in {other.component.base for other in joints}:
+            if record.name in {other.component.base_record for other in joints}:
                 raise ValueError(
                     f"name = {joint.file.name!r}: the library has a class {record.name}; "
                     "expected another name"
@@ -208,15 +213,15 @@ def _render_records(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
     return bases | tables
 
 
-def _render_examples(joints: Sequence[_LibraryJoint], shared: Environment) -> dict[str, str]:
+def _render_examples(joints: Sequence[_LibraryJoint], shared_templates: Environment) -> dict[str, str]:
     """Render the shipped systems: {class: text}."""
     by_kind = {joint.kind.name: joint for joint in joints}
     classes = {}
-    for system in systems().values():
+    for system in load_systems().values():
         for joint in joints:
             system = system.with_joint(joint.file)
         classes[model_name(system)] = render_system_model(
-            system, shared, partial(_find_record, by_kind), f"{LIBRARY_NAME}.Examples"
+            system, shared_templates, partial(_find_record, by_kind), f"{LIBRARY_NAME}.Examples"
         )
     return classes
 
@@ -228,7 +233,7 @@ def render_system(system: System) -> str:
 
 
 def _find_record(
-    joints: Mapping[str, _LibraryJoint], kind: str, file: ParameterFile, point: WorkingPoint
+    joints: Mapping[str, _LibraryJoint], kind: str, file: ParameterFile, working_point: WorkingPoint
 ) -> ModelicaRecord | None:
     """Find the record of the library with a joint's parameters at a working point; None if there is none."""
     joint = joints[kind]
@@ -238,7 +243,7 @@ def _find_record(
         for name, value in file.values_by_name.items()
         if name not in special
     )
-    return joint.records.get(point, joint.record if not point else None) if same else None
+    return joint.records.get(working_point, joint.record if not working_point else None) if same else None
 
 
 def _parameter_meanings(kind: JointKind) -> dict[str, str]:
@@ -254,7 +259,7 @@ def _parameter_meanings(kind: JointKind) -> dict[str, str]:
 def _render_documentation(model: Model, file: ParameterFile) -> dict[str, str]:
     """Render sections of the FMU's documentation page for a Modelica annotation: {section: text}."""
     folder = Path(__file__).parent
-    page = template(asset(model, "page.html"), folder, FRAME)
+    page = load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER)
     names = ("what", "law", "trust", "paper")
-    terms = {"model": model, "fmu": False, **law_terms(file)}
+    terms = {"model": model, "fmu": False, **law_variables(file)}
     return {name: escape_string(page.render(terms, part=name).strip()) for name in names}

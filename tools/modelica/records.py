@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from jointfmu_fmu_src.naming import reserved
+from jointfmu_fmu_src.naming import is_reserved
 from numpy.typing import NDArray
 
 from jointfmu.mechanics.curve import Curve
@@ -19,12 +19,12 @@ from jointfmu.quantity import Array
 
 from ..thinning import decimate
 
-GIVEN_DIGITS, COMPUTED_DIGITS = 15, 10
+PARAMETER_DIGITS, COMPUTED_DIGITS = 15, 10
 """Digits of numbers from a parameter file, and of computed numbers. More digits of computed numbers would
 depend on the processor; the error of the tables is 1e-7."""
 
 
-def format_number(value: float, digits: int = GIVEN_DIGITS) -> str:
+def format_number(value: float, digits: int = PARAMETER_DIGITS) -> str:
     """Format a number or a Boolean as a Modelica expression."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -51,7 +51,7 @@ def escape_html(content: str) -> str:
 def make_identifier(name: str) -> str:
     """Make a Modelica identifier from a title."""
     words = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
-    plain = words[:1].isalpha() and not reserved(words) and words.lower() != "package"
+    plain = words[:1].isalpha() and not is_reserved(words) and words.lower() != "package"
     return words[0].upper() + words[1:] if plain else f"Joint_{words}"
 
 
@@ -71,7 +71,7 @@ def template_environment(*folders: Path) -> Environment:
     )
 
 
-RELATIVE_TOLERANCE = 1e-7
+TABLE_TOLERANCE = 1e-7
 """Largest relative error [1] of load and stiffness of a table, against the original curve."""
 _SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
 
@@ -79,12 +79,12 @@ _SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
 class InterpolationTable(NamedTuple):
     """Quintic spline of a load curve.
 
-    rows  : (n, 5) displacement, load, stiffness, derivative of the stiffness before and after the node
-    error : [1] largest relative error of load and stiffness against the original curve
+    rows      : (n, 5) displacement, load, stiffness, derivative of the stiffness before and after the node
+    max_error : [1] largest relative error of load and stiffness against the original curve
     """
 
     rows: Array
-    error: float
+    max_error: float
 
 
 def to_curve(table: InterpolationTable) -> Curve:
@@ -99,7 +99,7 @@ def decimate_curve(
     fixed_nodes: Collection[int] = (),
     segment_fits: Callable[[int, int], bool] | None = None,
 ) -> InterpolationTable:
-    """Select few nodes of a curve whose quintic spline reproduces it within RELATIVE_TOLERANCE.
+    """Select few nodes of a curve whose quintic spline reproduces it within TABLE_TOLERANCE.
 
     reference_node : node whose load and stiffness are the smallest reference of the relative errors; -1: the
                      errors are relative to each value
@@ -108,20 +108,20 @@ def decimate_curve(
 
     The nodes are selected one after the other.
     """
-    kinks = np.flatnonzero(curve.slope_end[:-1] != curve.slope_start[1:]) + 1
+    kinks = np.flatnonzero(curve.stiffness_slope_end[:-1] != curve.stiffness_slope_start[1:]) + 1
     stops = {*kinks.tolist(), *fixed_nodes, curve.displacement.size - 1}
     floor = (
         (0.0, 0.0) if reference_node < 0 else (curve.load[reference_node], curve.stiffness[reference_node])
     )
 
     def reproduces(i: int, j: int) -> bool:
-        accurate = _segment_error(curve, i, j, floor) <= RELATIVE_TOLERANCE
+        accurate = _segment_error(curve, i, j, floor) <= TABLE_TOLERANCE
         return accurate and (segment_fits is None or segment_fits(i, j))
 
     index = decimate(stops, reproduces)
     worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
-    before = np.concatenate([[curve.slope_start[0]], curve.slope_end[index[1:] - 1]])
-    after = np.concatenate([curve.slope_start[index[:-1]], [curve.slope_end[-1]]])
+    before = np.concatenate([[curve.stiffness_slope_start[0]], curve.stiffness_slope_end[index[1:] - 1]])
+    after = np.concatenate([curve.stiffness_slope_start[index[:-1]], [curve.stiffness_slope_end[-1]]])
     columns = [curve.displacement[index], curve.load[index], curve.stiffness[index], before, after]
     return InterpolationTable(np.column_stack(columns), worst)
 
@@ -136,8 +136,8 @@ def _segment_error(curve: Curve, i: int, j: int, min_reference: tuple[float, flo
         curve.displacement[ends],
         curve.load[ends],
         curve.stiffness[ends],
-        curve.slope_start[i : i + 1],
-        curve.slope_end[j - 1 : j],
+        curve.stiffness_slope_start[i : i + 1],
+        curve.stiffness_slope_end[j - 1 : j],
     )
     x = curve.displacement[i : j + 1]
     points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _SAMPLE_FRACTIONS).ravel()])
@@ -153,7 +153,7 @@ def _segment_error(curve: Curve, i: int, j: int, min_reference: tuple[float, flo
 
 
 WorkingPoint = tuple[float, ...]
-"""Values [SI] of the inputs `Kind.working_point` of a joint; empty if the joint has no such inputs."""
+"""Values [SI] of the inputs `JointKind.working_point` of a joint; empty if the joint has no such inputs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,22 +174,22 @@ class ModelicaRecord:
     error_note: str = ""
 
     @property
-    def end(self) -> float:
+    def max_load(self) -> float:
         """Largest load of the table [N or N.m]."""
         return float(self.table.rows[-1, 1])
 
-    def template_terms(self, base: str) -> dict[str, object]:
+    def template_terms(self, base_record: str) -> dict[str, object]:
         """Template variables of the record.
 
-        base : name of the record that it extends
+        base_record : name of the record that it extends
         """
         return {
             "name": self.name,
             "title": escape_string(self.title),
-            "base": base,
+            "base": base_record,
             "values": {**self.values, "table": format_matrix(self.table.rows)},
             "about": escape_html(f"From the parameters {self.title}."),
-            "error": f"{max(self.table.error, RELATIVE_TOLERANCE):.0e}",
+            "error": f"{max(self.table.max_error, TABLE_TOLERANCE):.0e}",
             "more": self.error_note,
         }
 
@@ -200,13 +200,13 @@ class ModelicaComponent:
 
     This folder has the templates Components/NAME.mo and Data/BASE.mo. The template of the component gets the
     variables `meta` (meanings of the parameters), `docs` (meanings of inputs and outputs), `html` (sections
-    of the FMU's page), `record` (name of the default record), and the result of `template_texts`.
+    of the FMU's page), `record` (name of the default record), and the result of `make_template_texts`.
 
     name           : name of the component, and of the FMU that it replaces
-    base           : name of the base record of its records
-    points         : default working points of the records
-    records        : (parameter file, working points) -> one record for each; the first is the default record
-    template_texts : default record -> {template variable: text}
+    base_record    : name of the base record of its records
+    working_points : default working points of the records
+    make_records   : (parameter file, working points) -> one record for each; the first is the default record
+    make_template_texts : default record -> {template variable: text}
     flanges        : names of its flanges
     system_parameters         : parameter file -> {parameter of the component: text} that a system sets in
                                 addition to the record
@@ -217,10 +217,10 @@ class ModelicaComponent:
     """
 
     name: str
-    base: str
-    points: Sequence[WorkingPoint] = ((),)
-    records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[ModelicaRecord]]
-    template_texts: Callable[[ModelicaRecord], Mapping[str, str]]
+    base_record: str
+    working_points: Sequence[WorkingPoint] = ((),)
+    make_records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[ModelicaRecord]]
+    make_template_texts: Callable[[ModelicaRecord], Mapping[str, str]]
     note: str = ""
     flanges: Sequence[str] = ("flange_a", "flange_b")
     system_parameters: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
@@ -228,11 +228,11 @@ class ModelicaComponent:
     component_only_parameters: Sequence[str] = ()
 
 
-def format_given(values: Mapping[str, float]) -> dict[str, str]:
+def format_parameter_values(values: Mapping[str, float]) -> dict[str, str]:
     """Format values of a parameter file as Modelica expressions."""
-    return {name: format_number(value, GIVEN_DIGITS) for name, value in values.items()}
+    return {name: format_number(value, PARAMETER_DIGITS) for name, value in values.items()}
 
 
-def format_computed(values: Mapping[str, float]) -> dict[str, str]:
+def format_computed_values(values: Mapping[str, float]) -> dict[str, str]:
     """Format computed values as Modelica expressions."""
     return {name: format_number(value, COMPUTED_DIGITS) for name, value in values.items()}

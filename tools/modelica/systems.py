@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from jinja2 import Environment
 from jointfmu_fmu_src.joint_parts.terminals import ROTATIONAL
-from jointfmu_fmu_src.partners.laws import POINTS
+from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -13,11 +13,11 @@ from jointfmu.parameters import ParameterFile
 from ..joint_parts import load_tool_module as joint_part
 from ..systems.system import Component as Part
 from ..systems.system import System
-from ..systems.wiring import End, ends
+from ..systems.wiring import ConnectionEnd, find_connections
 from .records import ModelicaComponent, ModelicaRecord, escape_html, escape_string, format_number
 
 _MECHANICS_PACKAGE = "Modelica.Mechanics"
-_LIBRARY = "JointStiffness.Components"
+_COMPONENT_PACKAGE = "JointStiffness.Components"
 _NOMINAL_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
 _COLUMN_SPACING, _ROW_SPACING = 30, 30
@@ -28,7 +28,7 @@ RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord 
 
 
 class Declaration(NamedTuple):
-    """Declaration of a component: type, name, modifications (`values`), position (x, y) on the diagram."""
+    """Declaration of a component: type, name, modifications, position (x, y) on the diagram."""
 
     type: str
     name: str
@@ -38,7 +38,7 @@ class Declaration(NamedTuple):
 
 
 def render_system_model(
-    system: System, shared: Environment, find_record: RecordLookup, package: str = ""
+    system: System, shared_templates: Environment, find_record: RecordLookup, package: str = ""
 ) -> str:
     """Render a system as a Modelica model.
 
@@ -46,21 +46,21 @@ def render_system_model(
     package     : package of the model; empty: none
 
     Raises ValueError for a joint without a component in the library, and for a wrong connection as
-    `wiring.ends`.
+    `wiring.find_connections`.
     """
-    connected = ends(system)
+    connected = find_connections(system)
     positions = _diagram_positions(system, connected)
     records: list[dict[str, object]] = []
     declarations: list[Declaration] = []
     lines: list[tuple[str, str, str]] = []
 
-    def declare(kind: str, name: str, values: Iterable[str], neighbour: str = "") -> None:
-        """Declare a component; it is placed to the right of the component `of` to which it belongs."""
+    def declare(component_type: str, name: str, modifications: Iterable[str], neighbour: str = "") -> None:
+        """Declare a component; it is placed to the right of its component `neighbour`."""
         x, y = positions[neighbour or name]
         if neighbour:
             x += _COLUMN_SPACING
             y -= _ROW_SPACING * sum((declared.x, declared.y) == (x, y) for declared in declarations)
-        declarations.append(Declaration(kind, name, ", ".join(values), x, y))
+        declarations.append(Declaration(component_type, name, ", ".join(modifications), x, y))
         positions[name] = (x, y)
 
     def connect(start_flange: str, end_flange: str) -> None:
@@ -69,11 +69,11 @@ def render_system_model(
         lines.append((start_flange, end_flange, ",".join(f"{{{x},{y}}}" for x, y in points)))
 
     for name, component in system.components.items():
-        if component.file:
+        if component.parameter_file:
             data, changes = _joint_modifications(component, find_record, records)
-            declare(f"{_LIBRARY}.{component.model}", name, [*data, *changes])
+            declare(f"{_COMPONENT_PACKAGE}.{component.model_name}", name, [*data, *changes])
         else:
-            _PARTNER_DECLARERS[component.model](component, declare, connect)
+            _PARTNER_DECLARERS[component.model_name](component, declare, connect)
     for end, other_end in connected:
         assert end.component
         flange, other_flange = _flange_name(end), _flange_name(other_end) if other_end.component else None
@@ -81,11 +81,13 @@ def render_system_model(
             continue
         if other_flange is None:
             support = f"{flange.replace('.', '_')}_held"
-            domain = "Rotational" if end.flange and end.flange.kind == ROTATIONAL else "Translational"
+            domain = (
+                "Rotational" if end.flange and end.flange.connector_class == ROTATIONAL else "Translational"
+            )
             declare(f"{_MECHANICS_PACKAGE}.{domain}.Components.Fixed", support, [], end.component.name)
             other_flange = f"{support}.flange"
         connect(flange, other_flange)
-    return shared.get_template("Examples/system.mo").render(
+    return shared_templates.get_template("Examples/system.mo").render(
         within=package,
         name=model_name(system),
         title=escape_string(system.title),
@@ -104,25 +106,26 @@ def model_name(system: System) -> str:
     return system.name.title().replace("_", "")
 
 
-def _flange_name(end: End) -> str | None:
+def _flange_name(end: ConnectionEnd) -> str | None:
     """Name `component.flange` of the end of a connection; None if the component has no such flange."""
     assert end.component
     name = end.component.name
-    if end.load:
+    if end.is_load:
         (first, *_) = end.members
-        return f"{name}.flange" if end.component.model == "AngleProfile" else f"{name}_{first}.flange"
+        return f"{name}.flange" if end.component.model_name == "AngleProfile" else f"{name}_{first}.flange"
     assert end.flange
     shaft = end.flange.name.removeprefix("flange")
     flange = f"flange_{end.flange.side}" if shaft.isdigit() else end.flange.name
-    return f"{name}.{flange}" if end.body or flange in _modelica_component(end.component).flanges else None
+    return f"{name}.{flange}" if end.is_body or flange in _modelica_component(end.component).flanges else None
 
 
 def _modelica_component(system_component: Part) -> ModelicaComponent:
     """Modelica component of a joint in a system. Raises ValueError if the library has none."""
-    module = joint_part(KINDS[system_component.kind], "modelica")
-    if module is None or module.COMPONENT.name != system_component.model:
+    module = joint_part(KINDS[system_component.joint_kind], "modelica")
+    if module is None or module.COMPONENT.name != system_component.model_name:
         raise ValueError(
-            f"{system_component.name}: the Modelica library has no component of a {system_component.model}"
+            f"{system_component.name}: the Modelica library has no component of a "
+            f"{system_component.model_name}"
         )
     component: ModelicaComponent = module.COMPONENT
     return component
@@ -135,26 +138,26 @@ def _joint_modifications(
 
     records : list of records in the model, to which a record is added if the library has none
     """
-    assert system_component.file
+    assert system_component.parameter_file
     component = _modelica_component(system_component)
-    file = system_component.file
+    file = system_component.parameter_file
     point = tuple(
-        system_component.state.get(name, file.start_value(name))
-        for name in KINDS[system_component.kind].working_point
+        system_component.constant_inputs.get(name, file.start_value(name))
+        for name in KINDS[system_component.joint_kind].working_point
     )
     changes = [f"{key}={value}" for key, value in component.system_parameters(file).items()]
     changes += [
-        f"{component.fixed_input_parameters[name]}={format_number(system_component.state[name])}"
+        f"{component.fixed_input_parameters[name]}={format_number(system_component.constant_inputs[name])}"
         for name in component.fixed_input_parameters
-        if name in system_component.state
+        if name in system_component.constant_inputs
     ]
-    known_record = find_record(system_component.kind, file, point)
+    known_record = find_record(system_component.joint_kind, file, point)
     if known_record:
         return [f"data=JointStiffness.Data.{known_record.name}()"], changes
-    (record,) = component.records(file, [point])
+    (record,) = component.make_records(file, [point])
     name = f"{system_component.name[0].upper()}{system_component.name[1:]}Data"
     title = escape_string(f"{file.name}, of {system_component.name}")
-    records.append(record.template_terms(component.base) | {"name": name, "title": title})
+    records.append(record.template_terms(component.base_record) | {"name": name, "title": title})
     return [f"data={name}()"], changes
 
 
@@ -166,11 +169,11 @@ def _format_states(*names: str) -> list[str]:
     return [f"{name}(fixed=true, start=0, nominal={_NOMINAL_VALUES[name]})" for name in names]
 
 
-Declare = Callable[..., None]
-Connect = Callable[[str, str], None]
+DeclareFunction = Callable[..., None]
+ConnectFunction = Callable[[str, str], None]
 
 
-def _declare_inertia(system_component: Part, declare: Declare, connect: Connect) -> None:
+def _declare_inertia(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
     declare(
         f"{_MECHANICS_PACKAGE}.Rotational.Components.Inertia",
         system_component.name,
@@ -179,32 +182,32 @@ def _declare_inertia(system_component: Part, declare: Declare, connect: Connect)
     weight = {key: system_component.values.get(key, 0.0) for key in ("m", "l")}
     if all(weight.values()):
         name = f"{system_component.name}_weight"
-        declare(f"{_LIBRARY}.LinkWeight", name, _format_numbers(weight), system_component.name)
+        declare(f"{_COMPONENT_PACKAGE}.LinkWeight", name, _format_numbers(weight), system_component.name)
         connect(f"{system_component.name}.flange_b", f"{name}.flange")
 
 
 def _create_source_declarer(
-    block: str, domain: str, kind: str, signal: str
-) -> Callable[[Part, Declare, Connect], None]:
+    block: str, domain: str, source_type: str, signal_name: str
+) -> Callable[[Part, DeclareFunction, ConnectFunction], None]:
     """Return the function that declares a load: a signal block and a source of force or torque."""
 
-    def declare_source(system_component: Part, declare: Declare, connect: Connect) -> None:
+    def declare_source(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
         values = system_component.values
-        points = [format_number(values[f"p{k}"]) for k in range(1, POINTS + 1) if f"p{k}" in values]
+        points = [format_number(values[f"p{k}"]) for k in range(1, CONTROL_POINTS + 1) if f"p{k}" in values]
         modifications = _format_numbers(
             {key: value for key, value in values.items() if not key[1:].isdigit()}
         )
         if points:
             modifications.append(f"p={{{', '.join(points)}}}")
-        declare(f"{_LIBRARY}.{block}", system_component.name, modifications)
-        source = f"{system_component.name}_{signal}"
-        declare(f"{_MECHANICS_PACKAGE}.{domain}.Sources.{kind}", source, [], system_component.name)
-        connect(f"{system_component.name}.y", f"{source}.{signal}")
+        declare(f"{_COMPONENT_PACKAGE}.{block}", system_component.name, modifications)
+        source = f"{system_component.name}_{signal_name}"
+        declare(f"{_MECHANICS_PACKAGE}.{domain}.Sources.{source_type}", source, [], system_component.name)
+        connect(f"{system_component.name}.y", f"{source}.{signal_name}")
 
     return declare_source
 
 
-_PARTNER_DECLARERS: dict[str, Callable[[Part, Declare, Connect], None]] = {
+_PARTNER_DECLARERS: dict[str, Callable[[Part, DeclareFunction, ConnectFunction], None]] = {
     "RotationalInertia": _declare_inertia,
     "TranslationalMass": lambda part, declare, _: declare(
         f"{_MECHANICS_PACKAGE}.Translational.Components.Mass",
@@ -215,12 +218,14 @@ _PARTNER_DECLARERS: dict[str, Callable[[Part, Declare, Connect], None]] = {
     "ForceProfile": _create_source_declarer("Load", "Translational", "Force", "f"),
     "TorqueCurve": _create_source_declarer("TorqueCurve", "Rotational", "Torque", "tau"),
     "AngleProfile": lambda part, declare, _: declare(
-        f"{_LIBRARY}.AngleProfile", part.name, _format_numbers(part.values)
+        f"{_COMPONENT_PACKAGE}.AngleProfile", part.name, _format_numbers(part.values)
     ),
 }
 
 
-def _diagram_positions(system: System, connections: Sequence[tuple[End, End]]) -> dict[str, tuple[int, int]]:
+def _diagram_positions(
+    system: System, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]
+) -> dict[str, tuple[int, int]]:
     """Positions of the components on the diagram: a row for each connected chain, in file order."""
     chains: list[set[str]] = []
     for pair in connections:

@@ -13,16 +13,16 @@ ALGORITHMS = {
 """{checksumType: name of the algorithm in hashlib}."""
 
 
-def check(related: Element, content: bytes) -> None:
+def check_checksum(file_element: Element, content: bytes) -> None:
     """Compare the content of a related file with its checksum in the manifest, if one is stated.
 
-    related : element of the manifest
+    file_element : element of the manifest
 
     Raises ValueError if the checksums differ, or the algorithm is not in ALGORITHMS.
     """
-    if (stated := related.get("checksum")) is None:
+    if (stated := file_element.get("checksum")) is None:
         return
-    kind = related.get("checksumType", DEFAULT_ALGORITHM)
+    kind = file_element.get("checksumType", DEFAULT_ALGORITHM)
     if kind not in ALGORITHMS:
         raise ValueError(f"has checksumType = {kind!r}, allowed are {', '.join(ALGORITHMS)}")
     if (found := hashlib.new(ALGORITHMS[kind], content).hexdigest()) != stated.strip().lower():

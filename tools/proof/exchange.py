@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import FLOOR
+from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO
 
 from ..host import Instance, open_instance, read_description
-from .task import Rows, Task, output_reader
+from .task import Rows, Task, make_output_reader
 
 MAX_SOLVER_STEPS = 100_000
 """Maximum number of solver steps between two communication points."""
@@ -43,7 +43,7 @@ def run_fmpy_exchange(task: Task, messages: list[str]) -> Rows:
         instance.set_values({**task.settings, **task.inputs_at(0)})
         instance.fmu.exitInitializationMode()
         motion = _ExchangeSimulation(instance, task)
-        read = output_reader(instance, task.outputs)
+        read = make_output_reader(instance, task.outputs)
         rows: Rows = [read()]
         for i in range(len(task.times) - 1):
             motion.advance(i)
@@ -54,10 +54,10 @@ def run_fmpy_exchange(task: Task, messages: list[str]) -> Rows:
 class _ExchangeSimulation:
     """Simulation of an FMU for model exchange between communication points.
 
-    interval : index of the current communication interval
-    time     : current time [s]
-    event    : time of the next event announced by the FMU [s], or infinity
-    failure  : first exception in a call by the solver, or None
+    interval_index  : index of the current communication interval
+    time            : current time [s]
+    next_event_time : time of the next event announced by the FMU [s], or infinity
+    first_failure   : first exception in a call by the solver, or None
     """
 
     def __init__(self, instance: Instance, task: Task) -> None:
@@ -71,8 +71,8 @@ class _ExchangeSimulation:
             for name in task.inputs
             if task.kinds[name] == "real" and variables[name].variability != "discrete"
         ]
-        self.interval, self.time = 0, task.times[0]
-        self.failure: Exception | None = None
+        self.interval_index, self.time = 0, task.times[0]
+        self.first_failure: Exception | None = None
         self._iterate_event()
         rates = "Derivatives" if instance.version == 2 else "ContinuousStateDerivatives"
         self.solver = CVodeSolver(
@@ -82,8 +82,8 @@ class _ExchangeSimulation:
             set_x=self._c_callback("SetContinuousStates"),
             get_dx=self._c_callback(f"Get{rates}"),
             get_z=self._c_callback("GetEventIndicators"),
-            get_nominals=self._nominals,
-            set_time=self._keep_failure(self._set_time)
+            get_nominals=self._write_nominals,
+            set_time=self._wrap_callback(self._set_time)
             if self.continuous_inputs
             else self._c_callback("SetTime"),
             input=_NoInput,
@@ -92,29 +92,31 @@ class _ExchangeSimulation:
             maxNumSteps=MAX_SOLVER_STEPS,
         )
 
-    def advance(self, interval: int) -> None:
+    def advance(self, interval_index: int) -> None:
         """Integrate one communication interval, and handle the events up to and at its end."""
-        self.interval = interval
-        begin, end = self.task.times[interval : interval + 2]
+        self.interval_index = interval_index
+        begin, end = self.task.times[interval_index : interval_index + 2]
         time_tolerance = EVENT_TIME_TOLERANCE * (end - begin)
         while end - self.time > time_tolerance:
-            if self.event <= self.time:
-                raise RuntimeError(f"announces an event at {self.event:g} s when it is {self.time:g} s")
-            stop = self.event if self.event < end + time_tolerance else end
+            if self.next_event_time <= self.time:
+                raise RuntimeError(
+                    f"announces an event at {self.next_event_time:g} s when it is {self.time:g} s"
+                )
+            stop = self.next_event_time if self.next_event_time < end + time_tolerance else end
             _set_stop_time(self.solver, stop)
             _, roots, self.time = self.solver.step(self.time, stop)
-            if self.failure:
-                raise self.failure
+            if self.first_failure:
+                raise self.first_failure
             self._set_time(self.time)
             step_event, terminates = (
                 self.fmu.completedIntegratorStep() if self.needs_completed_step else (False, False)
             )
             self._check_termination(terminates)
-            input_event = end - self.time <= time_tolerance and self._has_input_event(interval + 1)
-            if step_event or input_event or np.any(roots) or self.time >= self.event:
+            input_event = end - self.time <= time_tolerance and self._has_input_event(interval_index + 1)
+            if step_event or input_event or np.any(roots) or self.time >= self.next_event_time:
                 self.fmu.enterEventMode()
                 if input_event:
-                    self.instance.set_values(self.task.inputs_at(interval + 1))
+                    self.instance.set_values(self.task.inputs_at(interval_index + 1))
                 self._iterate_event()
                 self.solver.reset(self.time)
 
@@ -129,7 +131,7 @@ class _ExchangeSimulation:
         while iterate:
             iterate, terminates, *_, has_next_event, next_event = self.instance.update_discrete_states()
             self._check_termination(terminates)
-        self.event = float(next_event) if has_next_event else np.inf
+        self.next_event_time = float(next_event) if has_next_event else np.inf
         self.fmu.enterContinuousTimeMode()
 
     def _has_input_event(self, i: int) -> bool:
@@ -144,7 +146,7 @@ class _ExchangeSimulation:
     def _set_time(self, time: float) -> None:
         """Set the time [s] and the continuous inputs of the FMU."""
         self.fmu.setTime(time)
-        i = self.interval
+        i = self.interval_index
         begin, end = self.task.times[i : i + 2]
         fraction = (time - begin) / (end - begin)
         for name in self.continuous_inputs:
@@ -152,13 +154,13 @@ class _ExchangeSimulation:
             value = first if first == last else (1.0 - fraction) * first + fraction * last
             self.instance.set_values({name: value})
 
-    def _nominals(self, values: object, count: int) -> None:
-        """Write the nominal values of the states times FLOOR: sizes below which the tolerance is absolute.
+    def _write_nominals(self, values: object, count: int) -> None:
+        """Write the nominal values of the states times FLOOR: below these sizes the tolerance is absolute.
 
         values, count : array of the solver, and its length
         """
         self.fmu.getNominalsOfContinuousStates(values, count)
-        np.ctypeslib.as_array(values, (count,))[:] *= FLOOR
+        np.ctypeslib.as_array(values, (count,))[:] *= MIN_SCALE_RATIO
 
     def _c_callback(self, name: str) -> Callable[..., None]:
         """C function of the FMU as a callback of the solver; its first failure is kept in `failure`.
@@ -173,11 +175,11 @@ class _ExchangeSimulation:
         def call(*arguments: object) -> None:
             status = function(component, *arguments)
             if status > fmi1Warning:
-                self.failure = self.failure or FMICallException(function=name, status=status)
+                self.first_failure = self.first_failure or FMICallException(function=name, status=status)
 
         return call
 
-    def _keep_failure(self, call: Callable[..., object]) -> Callable[..., None]:
+    def _wrap_callback(self, call: Callable[..., object]) -> Callable[..., None]:
         """Python function as a callback of the solver; its first exception is kept in `failure`.
 
         The solver is C code and does not pass exceptions on.
@@ -187,7 +189,7 @@ class _ExchangeSimulation:
             try:
                 call(*arguments)
             except Exception as failure:  # fmpy raises bare Exception
-                self.failure = self.failure or failure
+                self.first_failure = self.first_failure or failure
 
         return callback
 

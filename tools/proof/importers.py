@@ -11,7 +11,7 @@ from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 
 from ..host import open_instance, read_description
 from . import exchange
-from .task import Execute, Rows, Task, output_reader
+from .task import ExecuteFunction, Rows, Task, make_output_reader
 
 
 def run_fmpy(task: Task, messages: list[str]) -> Rows:
@@ -23,7 +23,7 @@ def run_fmpy(task: Task, messages: list[str]) -> Rows:
         slave.enter_initialization(task.times[0])
         slave.set_values({**task.settings, **task.inputs_at(0)})
         slave.fmu.exitInitializationMode()
-        read = output_reader(slave, task.outputs)
+        read = make_output_reader(slave, task.outputs)
         rows: Rows = [read()]
         for i, time in enumerate(task.times[:-1]):
             slave.set_values(task.inputs_at(i))
@@ -140,13 +140,13 @@ def _check_types(task: Task) -> None:
             raise ValueError(f"{name} is of type {variables[name].type}, which this importer does not take")
 
 
-IMPORTERS: Mapping[str, Mapping[str, Execute]] = {
+IMPORTERS: Mapping[str, Mapping[str, ExecuteFunction]] = {
     "fmpy": {CO_SIMULATION: run_fmpy, MODEL_EXCHANGE: exchange.run_fmpy_exchange},
     "ecos": {CO_SIMULATION: run_ecos},
     "libcosim": {CO_SIMULATION: run_libcosim},
 }
 """{importer: {interface: function that executes an experiment}}."""
-PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
+IMPORTER_PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
 """{importer: Python package}."""
 SYSTEM_LIBRARIES = {"ecos": "libtbb12", "libcosim": "libatomic1"}
 """{importer: Debian package of a library that the importer loads}."""
@@ -154,6 +154,6 @@ FMI_VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 """{importer: major versions of FMI that it supports}; libcosim crashes with other versions."""
 
 
-def interfaces(importer: str) -> list[str]:
+def list_interfaces(importer: str) -> list[str]:
     """FMI interfaces in which an importer runs FMUs on this platform; fmpy lacks its solver on some."""
     return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.has_solver()]

@@ -9,12 +9,12 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu_fmu_src.proof.series import TimeSeries, text
-from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER
+from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, REFERENCE_FOLDER
 
 from jointfmu.files import archives
 from jointfmu.files.outputs import PROGRAM_MARK, FileKind, check_outputs
-from jointfmu.files.writing import existing_folder, write_bytes
+from jointfmu.files.writing import ensure_folder, write_bytes
 
 from .. import host
 from .manifest import Experiment
@@ -24,8 +24,8 @@ from .plan import DEFAULT_TOLERANCE
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
-README = "README.md"
-LISTING = FileKind("listing", (".md",))
+README_NAME = "README.md"
+LISTING_FILE_KIND = FileKind("listing", (".md",))
 FMI2_PLATFORMS = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 """Platform names of the cross-check rules for FMI 2.0. For FMI 3.0 the names in the FMU are used."""
 
@@ -38,7 +38,7 @@ def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
     Raises ValueError if no experiment is suitable, or if a file must not or cannot be written.
     """
     described = host.read_description(proof.fmu)
-    files = _listing_files(proof, _select_outcome(proof), described)
+    files = _make_listing_files(proof, _select_outcome(proof), described)
     tool, _, version = (described.generationTool or "unknown").rpartition(" ")
     subfolders = [
         _safe_file_name(tool or version),
@@ -46,10 +46,12 @@ def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
         _safe_file_name(described.modelName),
     ]
     version = described.fmiVersion[:3]
-    folders = [out.joinpath("fmus", version, "cs", p, *subfolders) for p in _platforms(proof.fmu, version)]
-    check_outputs((folder / README for folder in folders), LISTING, force)
+    folders = [
+        out.joinpath("fmus", version, "cs", p, *subfolders) for p in _list_platforms(proof.fmu, version)
+    ]
+    check_outputs((folder / README_NAME for folder in folders), LISTING_FILE_KIND, force)
     for folder in folders:
-        with existing_folder(folder):
+        with ensure_folder(folder):
             for name, content in files.items():
                 write_bytes(folder / name, content)
     return folders
@@ -96,9 +98,9 @@ def _time_range(experiment: Experiment) -> tuple[float, float]:
     return experiment.start or 0.0, stop
 
 
-def _listing_files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> dict[str, bytes]:
+def _make_listing_files(proof: Proof, outcome: Outcome, description: "ModelDescription") -> dict[str, bytes]:
     """Files of the listing, {name: content}, for the chosen outcome."""
-    experiment, name = chosen.experiment, _safe_file_name(description.modelName)
+    experiment, name = outcome.experiment, _safe_file_name(description.modelName)
     assert experiment.references is not None
     start, stop = _time_range(experiment)
     tolerance = DEFAULT_TOLERANCE if experiment.tolerance is None else experiment.tolerance
@@ -114,15 +116,15 @@ def _listing_files(proof: Proof, chosen: Outcome, description: "ModelDescription
     }
     return {
         f"{name}.fmu": proof.fmu.read_bytes(),
-        **{f"{name}_{key}.csv": text(values).encode() for key, values in series.items()},
+        **{f"{name}_{key}.csv": format_csv(values).encode() for key, values in series.items()},
         f"{name}_ref.opt": "".join(f"{key}, {value!r}\n" for key, value in options.items()).encode(),
-        README: _readme(proof, chosen, description).encode(),
+        README_NAME: _format_readme(proof, outcome, description).encode(),
     }
 
 
-def _readme(proof: Proof, chosen: Outcome, description: "ModelDescription") -> str:
+def _format_readme(proof: Proof, outcome: Outcome, description: "ModelDescription") -> str:
     """Text of README.md for the chosen outcome."""
-    experiment, worst, name = chosen.experiment, chosen.worst, _safe_file_name(description.modelName)
+    experiment, worst, name = outcome.experiment, outcome.worst, _safe_file_name(description.modelName)
     assert worst is not None
     tool = description.generationTool or "an unknown tool"
     inputs = ", ".join(f"`{n}`" for n in _input_names(experiment))
@@ -132,19 +134,19 @@ def _readme(proof: Proof, chosen: Outcome, description: "ModelDescription") -> s
 
 {text} FMI {description.fmiVersion} for co-simulation, exported by {tool}.
 
-These are the files of the experiment "{experiment.name}" in `{FOLDER}` of the FMU.
+These are the files of the experiment "{experiment.name}" in `{REFERENCE_FOLDER}` of the FMU.
 {driven}`{name}_ref.csv` has the reference results that the FMU carries, `{name}_ref.opt` times, step
 and relative tolerance. Nothing else is set.
 
-Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(chosen.points)} outputs at
-{chosen.compared_points} times `{worst.output}` is furthest off, by
+Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(outcome.points)} outputs at
+{outcome.compared_points} times `{worst.output}` is furthest off, by
 {worst.error:.1e}; allowed is {worst.tolerance:.1e}.
 
 <!-- {PROGRAM_MARK} -->
 """
 
 
-def _platforms(fmu: Path, version: str) -> list[str]:
+def _list_platforms(fmu: Path, version: str) -> list[str]:
     """Platforms for which an FMU contains a binary; for FMI 2.0 only those of FMI2_PLATFORMS."""
     with archives.open_archive(fmu) as archive:
         names = archive.namelist()

@@ -11,19 +11,19 @@ from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from jointfmu_fmu_src.proof.series import TimeSeries, parse
+from jointfmu_fmu_src.proof.series import TimeSeries, parse_csv
 from jointfmu_fmu_src.proof.standard import (
-    ATTRIBUTES,
-    CSV,
-    EXPERIMENTS,
+    ATTRIBUTE_NAMESPACE,
+    CSV_TYPE,
+    EXPERIMENTS_TYPE,
+    INTERFACE_LABELS,
     INTERFACES,
-    LABELS,
-    MANIFEST,
-    NAME,
+    MANIFEST_PATH,
     PURPOSES,
-    SCALES,
-    SSV,
-    TRANSIENT,
+    SCALES_TYPE,
+    SSV_TYPE,
+    STANDARD_NAME,
+    TRANSIENT_ELEMENT,
 )
 
 from jointfmu.files.archives import FmuMembers
@@ -85,92 +85,100 @@ class RelatedFiles:
         self.fmu = fmu
         self._fmu_members = FmuMembers(fmu)
         self.members: Mapping[str, bytes] = members or self._fmu_members
-        if MANIFEST not in self.members:
-            raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
+        if MANIFEST_PATH not in self.members:
+            raise ValueError(
+                f"{fmu}: has no {MANIFEST_PATH}; expected an FMU with experiments after FMI-LS-REF"
+            )
 
-    def experiments(self) -> list[Experiment]:
+    def read_experiments(self) -> list[Experiment]:
         """All experiments that the manifest names, in the order of the manifest."""
         with self._fmu_members.open_for_reading():
-            return self._all_experiments()
+            return self._read_all_experiments()
 
-    def _all_experiments(self) -> list[Experiment]:
-        root = self._xml(MANIFEST)
-        if (standard := root.get(f"{{{ATTRIBUTES}}}fmi-ls-name")) != NAME:
-            raise ValueError(f"{self.fmu}: {MANIFEST} is of {standard!r}, expected {NAME!r}")
+    def _read_all_experiments(self) -> list[Experiment]:
+        root = self._read_xml(MANIFEST_PATH)
+        if (standard := root.get(f"{{{ATTRIBUTE_NAMESPACE}}}fmi-ls-name")) != STANDARD_NAME:
+            raise ValueError(f"{self.fmu}: {MANIFEST_PATH} is of {standard!r}, expected {STANDARD_NAME!r}")
         experiments = []
         for related in root.iter("Related"):
             self._check_checksum(related)
             role, _, purpose = related.get("role", "").partition("/")
             if role == "experiment":
-                experiments += self._experiments(related, purpose or PURPOSES[0])
+                experiments += self._read_experiments(related, purpose or PURPOSES[0])
         if not experiments:
-            raise ValueError(f"{self.fmu}: {MANIFEST} names no experiment; expected one at least")
+            raise ValueError(f"{self.fmu}: {MANIFEST_PATH} names no experiment; expected one at least")
         return experiments
 
-    def _check_checksum(self, related: Element) -> None:
+    def _check_checksum(self, file_element: Element) -> None:
         """Compare a related file in the FMU with its checksum, if the manifest states one.
 
-        related : element of the manifest
+        file_element : element of the manifest
 
         Raises ValueError if they differ.
         """
-        source = related.get("source", "")
-        if urlsplit(source).scheme or (path := self._path(MANIFEST, source)) not in self.members:
+        source = file_element.get("source", "")
+        if urlsplit(source).scheme or (path := self._resolve_path(MANIFEST_PATH, source)) not in self.members:
             return
         try:
-            checksum.check(related, self.members[path])
+            checksum.check_checksum(file_element, self.members[path])
         except ValueError as error:
             raise ValueError(f"{self.fmu}: {path} {error}") from None
 
-    def _experiments(self, related: Element, purpose: str) -> list[Experiment]:
+    def _read_experiments(self, file_element: Element, purpose: str) -> list[Experiment]:
         """Experiments of a related file; if its type is not supported, one experiment with the reason."""
-        source, kind = related.get("source", ""), related.get("type", EXPERIMENTS)
-        if kind not in (EXPERIMENTS, *_OTHER_EXPERIMENT_TYPES):
+        source, kind = file_element.get("source", ""), file_element.get("type", EXPERIMENTS_TYPE)
+        if kind not in (EXPERIMENTS_TYPE, *_OTHER_EXPERIMENT_TYPES):
             return [
-                Experiment(source, purpose, unsupported_reason=f"is of type {kind}, {EXPERIMENTS} is read")
+                Experiment(
+                    source, purpose, unsupported_reason=f"is of type {kind}, {EXPERIMENTS_TYPE} is read"
+                )
             ]
         if urlsplit(source).scheme:
             return [Experiment(source, purpose, unsupported_reason="lies outside of the FMU")]
-        path = self._path(MANIFEST, source)
-        labels = {label.get("name") for label in related.iter("Label")}
-        interfaces = [name for name, label in LABELS.items() if label in labels] or INTERFACES
-        nodes = self._xml(path).iter("Experiment")
-        return [self._experiment(path, node, purpose, interfaces) for node in nodes]
+        path = self._resolve_path(MANIFEST_PATH, source)
+        labels = {label.get("name") for label in file_element.iter("Label")}
+        interfaces = [name for name, label in INTERFACE_LABELS.items() if label in labels] or INTERFACES
+        nodes = self._read_xml(path).iter("Experiment")
+        return [self._read_experiment(path, node, purpose, interfaces) for node in nodes]
 
-    def _experiment(self, path: str, node: Element, purpose: str, interfaces: Sequence[str]) -> Experiment:
+    def _read_experiment(
+        self, path: str, element: Element, purpose: str, interfaces: Sequence[str]
+    ) -> Experiment:
         """Experiment of an XML element in the file `path`, with the files that it names."""
-        name = node.get("name", "")
-        kinds = [child.tag for child in node if child.tag not in ("Annotations", *_FILE_TYPES)]
-        unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT else ""
+        name = element.get("name", "")
+        kinds = [child.tag for child in element if child.tag not in ("Annotations", *_FILE_TYPES)]
+        unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT_ELEMENT else ""
         files: dict[str, str] = {}
         for tag, kind in _FILE_TYPES.items():
-            children = node.findall(tag)
+            children = element.findall(tag)
             if len(children) > 1:
                 unfit = unfit or f"has {len(children)} {tag}, one is read"
             for child in children if not unfit else ():
                 if child.get("type", kind) != kind:
                     unfit = f"has {tag} of type {child.get('type')}, {kind} is read"
                 else:
-                    files[tag] = self._path(path, child.get("source", ""))
-        times = {**node.attrib, **getattr(node.find(TRANSIENT), "attrib", {})}
+                    files[tag] = self._resolve_path(path, child.get("source", ""))
+        times = {**element.attrib, **getattr(element.find(TRANSIENT_ELEMENT), "attrib", {})}
         start, stop, step, tolerance = (
-            self._number(path, name, key, times.get(key))
+            self._parse_number(path, name, key, times.get(key))
             for key in ("startTime", "stopTime", "stepSize", "tolerance")
         )
         stimuli, references = (
-            parse(self._text(files[tag]), f"{self.fmu}: {files[tag]}") if tag in files and not unfit else None
+            parse_csv(self._read_text(files[tag]), f"{self.fmu}: {files[tag]}")
+            if tag in files and not unfit
+            else None
             for tag in ("Stimuli", "References")
         )
-        settings = self._settings(files["Parameters"]) if "Parameters" in files and not unfit else {}
-        numbers, scales = (start, stop, step, tolerance), self._scales(path, name, node)
+        settings = self._read_settings(files["Parameters"]) if "Parameters" in files and not unfit else {}
+        numbers, scales = (start, stop, step, tolerance), self._read_scales(path, name, element)
         return Experiment(name, purpose, *numbers, settings, stimuli, references, interfaces, scales, unfit)
 
-    def _scales(self, path: str, experiment: str, node: Element) -> dict[str, float]:
+    def _read_scales(self, path: str, experiment: str, element: Element) -> dict[str, float]:
         """{output: scale} that the annotation of an experiment states; ValueError unless positive."""
         scales = {}
-        for scale in node.iterfind(f"Annotations/Annotation[@type='{SCALES}']/Scale"):
+        for scale in element.iterfind(f"Annotations/Annotation[@type='{SCALES_TYPE}']/Scale"):
             output = scale.get("name", "")
-            value = self._number(path, experiment, f"scale of {output}", scale.get("value", ""))
+            value = self._parse_number(path, experiment, f"scale of {output}", scale.get("value", ""))
             if value is None or not 0.0 < value < float("inf"):
                 text = (
                     f"experiment {experiment!r} has scale of {output} = {value}, expected a positive number"
@@ -179,7 +187,7 @@ class RelatedFiles:
             scales[output] = value
         return scales
 
-    def _number(self, path: str, experiment: str, key: str, value: str | None) -> float | None:
+    def _parse_number(self, path: str, experiment: str, key: str, value: str | None) -> float | None:
         """Parse a number of an experiment; None if it is not stated."""
         try:
             return None if value is None else float(value)
@@ -187,10 +195,10 @@ class RelatedFiles:
             text = f"{self.fmu}: {path}: experiment {experiment!r} has {key} = {value!r}, expected a number"
             raise ValueError(text) from None
 
-    def _settings(self, path: str) -> dict[str, StartSetting]:
+    def _read_settings(self, path: str) -> dict[str, StartSetting]:
         """Start values of an SSV file, {variable: start value}."""
         settings = {}
-        for parameter in self._xml(path).iter(f"{{{SSV_NAMESPACE}}}Parameter"):
+        for parameter in self._read_xml(path).iter(f"{{{SSV_NAMESPACE}}}Parameter"):
             name = parameter.get("name", "")
             for child in parameter:
                 kind, value = child.tag.rpartition("}")[2], child.get("value", "")
@@ -201,13 +209,13 @@ class RelatedFiles:
                 break
         return settings
 
-    def _path(self, base: str, source: str) -> str:
+    def _resolve_path(self, base: str, source: str) -> str:
         """Path in the FMU of a source address, which is relative to the member `base`."""
         if urlsplit(source).scheme:
             raise ValueError(f"{self.fmu}: {base} names {source}; expected a file in the FMU")
         return posixpath.normpath(posixpath.join(posixpath.dirname(base), unquote(source)))
 
-    def _text(self, path: str) -> str:
+    def _read_text(self, path: str) -> str:
         """Text of a related file."""
         if path not in self.members:
             raise ValueError(f"{self.fmu}: has no {path}, which its manifest or an experiment names")
@@ -216,23 +224,23 @@ class RelatedFiles:
         except UnicodeDecodeError:
             raise ValueError(f"{self.fmu}: {path} is no text; expected UTF-8") from None
 
-    def _xml(self, path: str) -> Element:
+    def _read_xml(self, path: str) -> Element:
         """XML root element of a related file."""
         try:
-            return ElementTree.fromstring(self._text(path))
+            return ElementTree.fromstring(self._read_text(path))
         except ElementTree.ParseError as error:
             raise ValueError(f"{self.fmu}: {path} is no XML ({error})") from None
 
 
-_FILE_TYPES = {"Parameters": SSV, "Stimuli": CSV, "References": CSV}
+_FILE_TYPES = {"Parameters": SSV_TYPE, "Stimuli": CSV_TYPE, "References": CSV_TYPE}
 """{child element of an experiment: MIME type of the file that it names}."""
-_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+_BOOLEAN_VALUES = {"true": True, "1": True, "false": False, "0": False}
 
 
-def _parse_value(kind: str, value: str) -> float | int | bool | str:
+def _parse_value(element_name: str, value: str) -> float | int | bool | str:
     """Parse a value of an SSV file by the name of its XML element (kind): Real, Integer, Boolean, String."""
-    if kind == "Boolean":
-        return _BOOLEANS[value]
-    if kind.startswith(("Integer", "Int", "UInt")):
+    if element_name == "Boolean":
+        return _BOOLEAN_VALUES[value]
+    if element_name.startswith(("Integer", "Int", "UInt")):
         return int(value)
-    return float(value) if kind.startswith(("Real", "Float")) else value
+    return float(value) if element_name.startswith(("Real", "Float")) else value

@@ -88,7 +88,8 @@ class Proof:
     importer   : name of the importer
     interfaces : FMI interfaces in which experiments were executed
     compared_starts : number of compared start values
-    start_differences : a line for each start value that differs from modelDescription.xml or from `Expected`
+    start_differences : a line for each start value that differs from modelDescription.xml or from
+        `ExpectedContents`
     outcomes   : outcomes of the experiments, for each interface
     """
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import FLOOR, MODEL_EXCHANGE, SOLVER
+from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO, MODEL_EXCHANGE, SOLVER_TOLERANCE_RATIO
 
 from jointfmu.quantity import Array
 
@@ -30,17 +30,17 @@ DEFAULT_STEPS, MAX_STEPS = 500, 10_000_000
 class ExperimentPlan:
     """Plan of an experiment in one interface of an FMU: the task for an importer.
 
-    interface : FMI interface; empty if the experiment is not executed
-    nominal   : {output: nominal value}
-    task      : fields of the `Task`; empty if the experiment cannot be executed
-    refusal   : why the experiment cannot be executed with this FMU; empty if it can
+    interface      : FMI interface; empty if the experiment is not executed
+    nominal_values : {output: nominal value}
+    task           : fields of the `Task`; empty if the experiment cannot be executed
+    refusal_reason : why the experiment cannot be executed with this FMU; empty if it can
     """
 
     experiment: Experiment
     interface: str
-    nominal: Mapping[str, float]
+    nominal_values: Mapping[str, float]
     task: dict[str, Any]
-    refusal: str = ""
+    refusal_reason: str = ""
 
     @classmethod
     def create(
@@ -71,7 +71,11 @@ class ExperimentPlan:
                     values[key] = {n: input_values(variables[n], stimuli, times, left_limit) for n in inputs}
         except ValueError as error:
             return cls(experiment, interface, {}, {}, str(error))
-        values |= {"times": times.tolist(), "outputs": outputs, "tolerance": SOLVER * _tolerance(experiment)}
+        values |= {
+            "times": times.tolist(),
+            "outputs": outputs,
+            "tolerance": SOLVER_TOLERANCE_RATIO * _find_tolerance(experiment),
+        }
         if experiment.references:
             values["comparison_times"] = experiment.references.time.tolist()
         nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
@@ -83,7 +87,7 @@ class ExperimentPlan:
         answer : {"rows"} or {"error"} from a `worker`; None if the experiment was not executed
         """
         if answer is None:
-            return Outcome(self.experiment, self.interface, error=self.refusal)
+            return Outcome(self.experiment, self.interface, error=self.refusal_reason)
         if "error" in answer:
             return Outcome(self.experiment, self.interface, error=answer["error"])
         expected = self.experiment.references
@@ -98,11 +102,11 @@ class ExperimentPlan:
         if not np.any(compared):
             error = "no reference result lies at a time that was computed"
             return Outcome(self.experiment, self.interface, error=error)
-        t, tolerance = expected.time[compared], _tolerance(self.experiment)
+        t, tolerance = expected.time[compared], _find_tolerance(self.experiment)
         points = []
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
             y, y_ref = np.interp(t, times, column), reference[compared]
-            size = np.maximum(np.abs(y_ref), FLOOR * self.nominal[name])
+            size = np.maximum(np.abs(y_ref), MIN_SCALE_RATIO * self.nominal_values[name])
             allowed = tolerance * np.broadcast_to(self.experiment.scales.get(name, size), y_ref.shape)
             with np.errstate(invalid="ignore"):
                 error_ratio = np.where(np.isfinite(y), np.abs(y - y_ref) / allowed, np.inf)
@@ -111,7 +115,7 @@ class ExperimentPlan:
         return Outcome(self.experiment, self.interface, points, int(np.sum(compared)))
 
 
-def _tolerance(experiment: Experiment) -> float:
+def _find_tolerance(experiment: Experiment) -> float:
     """Relative tolerance [1] of an experiment, or the default."""
     return DEFAULT_TOLERANCE if experiment.tolerance is None else experiment.tolerance
 
@@ -147,9 +151,9 @@ def _communication_points(experiment: Experiment, description: "ModelDescription
     return np.append(start + step * np.arange(count), stop)
 
 
-def task_fields(fmu: Path, folder: str, interface: str, **more: object) -> dict[str, object]:
+def task_fields(fmu: Path, folder: str, interface: str, **other_fields: object) -> dict[str, object]:
     """Fields of a `Task`, as a JSON object."""
-    return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **more}
+    return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **other_fields}
 
 
 def _first_stated(*values: Any) -> float:

@@ -15,11 +15,11 @@ from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu.progress import track_progress
 
 from ..host import unpack_fmu
-from .importers import FMI_VERSIONS, PACKAGES, SYSTEM_LIBRARIES, interfaces
+from .importers import FMI_VERSIONS, IMPORTER_PACKAGES, SYSTEM_LIBRARIES, list_interfaces
 from .manifest import Experiment, RelatedFiles
 from .outcome import Proof
 from .plan import ExperimentPlan, task_fields
-from .values import has_start, start_value
+from .values import has_start_value, read_start_value
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -45,7 +45,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
     Raises ValueError, one line: no FMU, an FMU that does not run on this platform, no manifest, a broken
     manifest, an importer that is not installed or does not support the FMI version of the FMU.
     """
-    experiments = RelatedFiles(fmu, expected.members if expected else None).experiments()
+    experiments = RelatedFiles(fmu, expected.members if expected else None).read_experiments()
     _check_importer(importer)
     with unpack_fmu(fmu, model_exchange=True) as (folder, description):
         if description.fmiVersion[0] not in FMI_VERSIONS[importer]:
@@ -54,17 +54,18 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
                 f"{' and '.join(f'{digit}.0' for digit in FMI_VERSIONS[importer])}"
             )
         offered = _offered_interfaces(description)
-        common = [name for name in interfaces(importer) if name in offered]
+        common = [name for name in list_interfaces(importer) if name in offered]
         if not common:
             raise ValueError(
-                f"{fmu}: is for {' and '.join(offered)}, {importer} runs {' and '.join(interfaces(importer))}"
+                f"{fmu}: is for {' and '.join(offered)}, {importer} runs "
+                f"{' and '.join(list_interfaces(importer))}"
             )
         plans = [
             ExperimentPlan.create(fmu, folder, experiment, interface, description)
             for experiment in experiments
             for interface in _usable_interfaces(experiment, common)
         ]
-        started = [v for v in description.modelVariables if has_start(v)]
+        started = [v for v in description.modelVariables if has_start_value(v)]
         start_task = {
             **task_fields(fmu, folder, offered[0], outputs=[v.name for v in started]),
             "start": True,
@@ -78,9 +79,9 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
         differences = [
             f"{v.name} starts at {_format_value(starts[v.name])}, modelDescription.xml says {v.start}"
             for v in started
-            if starts[v.name] != start_value(v)
+            if starts[v.name] != read_start_value(v)
         ]
-        differences += _differences(starts, expected) if expected else []
+        differences += _list_differences(starts, expected) if expected else []
         if importer != "fmpy":
             answers = _run_worker(importer, tasks)
         tracked_plans = track_progress(plans, fmu.stem, len(plans))
@@ -90,9 +91,9 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
 
 def _check_importer(importer: str) -> None:
     """Raise ValueError, one line, if the package of an importer or a library that it loads is missing."""
-    if find_spec(PACKAGES[importer]) is None:
+    if find_spec(IMPORTER_PACKAGES[importer]) is None:
         raise ValueError(
-            f"the package {PACKAGES[importer]} is missing, needed to run FMUs in {importer}; "
+            f"the package {IMPORTER_PACKAGES[importer]} is missing, needed to run FMUs in {importer}; "
             "install it with: pip install 'jointfmu[test]'"
         )
     if importer in SYSTEM_LIBRARIES:
@@ -106,17 +107,17 @@ def _check_importer(importer: str) -> None:
             )
 
 
-def _differences(starts: Mapping[str, object], expected: ExpectedContents) -> list[str]:
+def _list_differences(start_values: Mapping[str, object], expected: ExpectedContents) -> list[str]:
     """A line for each start value of the FMU that differs from the expected one.
 
-    starts : {variable: start value} of the FMU
+    start_values : {variable: start value} of the FMU
     """
+    missing = "is no parameter of the FMU"
+    found = {name: f"starts at {_format_value(value)}" for name, value in start_values.items()}
     return [
-        f"{name} "
-        f"{f'starts at {_format_value(starts[name])}' if name in starts else 'is no parameter of the FMU'}, "
-        f"{expected.source} says {_format_value(value)}"
+        f"{name} {found.get(name, missing)}, {expected.source} says {_format_value(value)}"
         for name, value in expected.start_values.items()
-        if name not in starts or starts[name] != value
+        if name not in start_values or start_values[name] != value
     ]
 
 
@@ -126,13 +127,15 @@ def _offered_interfaces(description: "ModelDescription") -> list[str]:
     return [name for name, kind in kinds.items() if kind is not None]
 
 
-def _usable_interfaces(experiment: Experiment, common: Sequence[str]) -> Sequence[str]:
+def _usable_interfaces(experiment: Experiment, common_interfaces: Sequence[str]) -> Sequence[str]:
     """Interfaces in which an experiment is executed; [""] if in none.
 
-    common : interfaces of both FMU and importer
+    common_interfaces : interfaces of both FMU and importer
     """
     usable = (
-        [] if experiment.unsupported_reason else [name for name in common if name in experiment.interfaces]
+        []
+        if experiment.unsupported_reason
+        else [name for name in common_interfaces if name in experiment.interfaces]
     )
     return usable or [""]
 

@@ -72,11 +72,11 @@ class Task:
 
 Rows = list[list[float] | None]
 """Outputs at each communication point; None if the importer gives none, or they are not needed."""
-Execute = Callable[[Task, list[str]], Rows]
+ExecuteFunction = Callable[[Task, list[str]], Rows]
 """Function of an importer: (task, messages) -> rows; it appends the messages of the FMU."""
 
 
-def output_reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
+def make_output_reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
     """Function that reads the outputs of an instance; if all are real variables, in one call."""
     if all(instance.variables[name].type in REAL_TYPES for name in outputs):
         return instance.group_reals(outputs).get_values

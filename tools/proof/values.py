@@ -29,15 +29,15 @@ def variable_kind(variable: "ScalarVariable") -> str:
     return VARIABLE_KINDS[variable.type]
 
 
-def convert_setting(variable: "ScalarVariable", stated: StartSetting) -> object:
+def convert_setting(variable: "ScalarVariable", setting: StartSetting) -> object:
     """Convert a stated start value to the type of its variable.
 
     Raises ValueError if its unit is not that of the variable, or if it is no value of this type.
     """
     unit = variable.unit or "1"
-    if stated.unit and stated.unit != unit:
-        raise ValueError(f"{variable.name} is given in {stated.unit!r}, expected {unit!r}")
-    value = stated.value
+    if setting.unit and setting.unit != unit:
+        raise ValueError(f"{variable.name} is given in {setting.unit!r}, expected {unit!r}")
+    value = setting.value
     items = variable.declaredType.items or () if variable.type == "Enumeration" else ()
     value = next((item.value for item in items if item.name == value), value)
     if variable.type == "String":
@@ -45,7 +45,7 @@ def convert_setting(variable: "ScalarVariable", stated: StartSetting) -> object:
     try:
         return convert_value(variable, float(value))
     except ValueError:
-        raise ValueError(f"{variable.name} = {stated.value!r} is no {variable.type}") from None
+        raise ValueError(f"{variable.name} = {setting.value!r} is no {variable.type}") from None
 
 
 def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
@@ -75,13 +75,13 @@ def input_values(
     return list(values.tolist())
 
 
-def has_start(variable: "ScalarVariable") -> bool:
+def has_start_value(variable: "ScalarVariable") -> bool:
     """Whether a variable is a parameter or input with a start value that can be compared."""
     is_settable = variable.causality in ("parameter", "input") and variable.start is not None
     return is_settable and variable.type in VARIABLE_KINDS and not variable.dimensions
 
 
-def start_value(variable: "ScalarVariable") -> float | int | bool:
+def read_start_value(variable: "ScalarVariable") -> float | int | bool:
     """Start value of a variable in modelDescription.xml, converted to its type."""
     text = str(variable.start)
     if variable.type == "Boolean":

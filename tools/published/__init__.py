@@ -1,1 +1,1 @@
-"""Published numbers beside the computed ones, and what is calibrated to them."""
+"""Comparison of published with computed numbers, and calibration of parameters to published numbers."""

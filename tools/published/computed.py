@@ -1,4 +1,7 @@
-"""How the published numbers of a joint are computed: `PUBLISHED` of its part `published`."""
+"""Functions that compute the published numbers of a joint.
+
+The module `published` in a joint's folder defines them by its constant PUBLISHED.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,9 +13,10 @@ from ..joint_parts import load_tool_module
 
 @dataclass(frozen=True, slots=True)
 class CalibrationFit:
-    """Unknowns with starting values and the calibration points that fix them.
+    """Fit of parameters to calibration points.
 
-    All unknowns are fitted in logarithms, so they stay positive.
+    unknowns : {parameter: start value > 0}; their logarithms are fitted, so they stay positive
+    points   : ids of the calibration points, as many as unknowns
     """
 
     unknowns: Mapping[str, float]
@@ -21,11 +25,11 @@ class CalibrationFit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PublishedNumbers:
-    """The published numbers that a joint is compared with, and how they are computed.
+    """Published numbers of a joint, and functions that compute them.
 
-    papers      : files of them in models/reference/
+    papers      : names of the papers' files in models/reference/
     observables : {quantity of a reference file: function of the parameter set and the point's arguments}
-    calibration : fits to calibration points, one after the other
+    calibration : fits to calibration points, in the order of execution
     """
 
     papers: Sequence[str] = ()
@@ -33,7 +37,7 @@ class PublishedNumbers:
     calibration: Sequence[CalibrationFit] = ()
 
 
-def published_numbers(kind: JointKind) -> PublishedNumbers:
-    """What the joint's part says; nothing if no paper is about it."""
+def load_published_numbers(kind: JointKind) -> PublishedNumbers:
+    """Published numbers that a joint defines; without papers if it defines none."""
     own: PublishedNumbers = getattr(load_tool_module(kind, "published"), "PUBLISHED", PublishedNumbers())
     return own

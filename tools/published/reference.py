@@ -17,26 +17,30 @@ ROLES = {
     "prediction": "predicted",
     "claim": "claim of the text",
 }
-"""What a published point shows, in plain words. A calibrated or circular one proves nothing."""
-UNTESTED_ROLES = ("calibration", "circular")
-GUESS_ROLES = ("interpolation", "prediction")
-"""Roles that stand beside a trivial guess."""
-CALIBRATION_TOLERANCE = 1e-6
-"""Relative miss of a calibration point [1]: the fits are exact, this leaves room for rounding."""
+"""{role of a published number in the comparison: meaning}.
 
-_RULE_POINTS = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
-"""Points that a trivial guess is taken from, by rule."""
+Numbers used for calibration, or met by construction (circular), are no test of the model.
+"""
+UNTESTED_ROLES = ("calibration", "circular")
+"""Roles of numbers that are no test of the model."""
+GUESS_ROLES = ("interpolation", "prediction")
+"""Roles of numbers that are also compared with a trivial guess."""
+CALIBRATION_TOLERANCE = 1e-6
+"""Relative tolerance of a calibration point [1]: the fits are exact apart from rounding."""
+
+_POINTS_PER_RULE = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
+"""{rule of a trivial guess: number of points that it needs}."""
 _POWER_RULES = ("power law", "growth")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Guess:
-    """The least-effort guess of a number from calibrated ones a, b, c.
+    """Trivial guess of a published number from calibration points a, b, c, without the model.
 
-    rule : `constant` a; `power law` through a and b; `offset` a + b - c; `proportion` a b/c;
-        `growth` from a with the power that leads from b to c
-    points : ids of a, b, c; one that does not calibrate stands with its own guess
-    over : argument (key of `where`) that a power runs over, else empty
+    rule   : `constant`: a; `power law` through a and b; `offset`: a + b - c; `proportion`: a b/c; `growth`:
+        from a, with the exponent of the power law from b to c
+    points : ids of a, b, c; for a point that is no calibration point, its own guess is used
+    over   : argument of the power law, a key of `Point.where`; empty for other rules
     """
 
     rule: str
@@ -44,11 +48,11 @@ class Guess:
     over: str = ""
 
     def __post_init__(self) -> None:
-        if self.rule not in _RULE_POINTS:
-            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_RULE_POINTS)}")
-        if len(self.points) != _RULE_POINTS[self.rule]:
+        if self.rule not in _POINTS_PER_RULE:
+            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_POINTS_PER_RULE)}")
+        if len(self.points) != _POINTS_PER_RULE[self.rule]:
             raise ValueError(
-                f"guess: {len(self.points)} points, a {self.rule} takes {_RULE_POINTS[self.rule]}"
+                f"guess: {len(self.points)} points, a {self.rule} takes {_POINTS_PER_RULE[self.rule]}"
             )
         if bool(self.over) != (self.rule in _POWER_RULES):
             raise ValueError(
@@ -69,16 +73,19 @@ class Guess:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Point:
-    """One published number, claim or condition.
+    """Published number or claim.
 
-    quantity, where : what is computed and its arguments (SI)
-    value : number in `unit`, or the truth of a claim
-    printed : whether the paper prints the number, or says the claim; else it was computed from printed ones
-    role  : one of ROLES
-    tolerance : relative; absolute in `unit` where `absolute`
-    basis : where the tolerance comes from
-    guess : the trivial guess that an interpolation or a prediction has to beat
-    text : what the paper's text claims, where its own equations give the opposite
+    quantity  : name of the computed quantity, a key of `PublishedNumbers.observables`
+    where     : {argument of the quantity: value [SI]}
+    value     : published number in `unit`; True or False for a claim
+    place     : equation, table or figure in the paper
+    printed   : whether the paper prints the number or states the claim; otherwise the value was computed from
+        printed numbers
+    role      : one of ROLES
+    tolerance : allowed error, relative, or absolute in `unit` if `absolute` is True
+    basis     : origin of the tolerance
+    guess     : trivial guess to compare with an interpolation or a prediction
+    text      : claim in the text of the paper, if the equations of the paper contradict it
     """
 
     paper: str
@@ -110,41 +117,43 @@ class Point:
 
 
 def read_points(paper: str) -> list[Point]:
-    """All points of a paper, in the order of its file."""
+    """Read the published numbers of a paper, in the order of its file."""
     text = (files("jointfmu_models") / "reference" / f"{paper}.toml").read_text(encoding="utf-8")
     document = tomllib.loads(text)
-    return [_point(paper, document["joint"], entry) for entry in document["point"]]
+    return [_make_point(paper, document["joint"], entry) for entry in document["point"]]
 
 
-def _point(paper: str, joint: str, entry: dict[str, Any]) -> Point:
+def _make_point(paper: str, joint: str, entry: dict[str, Any]) -> Point:
     guess = {"guess": Guess(**entry["guess"])} if "guess" in entry else {}
     return Point(paper=paper, joint=joint, **(entry | guess))
 
 
-def trivial_guesses(published: Sequence[Point]) -> dict[str, float]:
-    """The trivial guesses of one paper's points, by id; from the calibration points and nothing else.
+def compute_trivial_guesses(points: Sequence[Point]) -> dict[str, float]:
+    """Trivial guesses of the published numbers of one paper, from calibration points: {id: guess}.
 
-    Raises ValueError if a guess names a point that neither calibrates nor has a guess of its own.
+    Raises ValueError if a guess names a point that is no calibration point and has no guess.
     """
-    known = {p.id: p for p in published}
+    known = {p.id: p for p in points}
 
-    def value(name: str, asking: tuple[str, ...]) -> float:
-        point = known.get(name)
+    def find_value(point_id: str, requesting_ids: tuple[str, ...]) -> float:
+        point = known.get(point_id)
         if point is not None and point.role == "calibration":
             return float(point.value)
-        if point is None or point.guess is None or name in asking:
-            raise ValueError(f"{asking[-1]}: guess from {name!r}, allowed are calibration points and guesses")
-        return guess(point, point.guess, (*asking, name))
+        if point is None or point.guess is None or point_id in requesting_ids:
+            raise ValueError(
+                f"{requesting_ids[-1]}: guess from {point_id!r}, allowed are calibration points and guesses"
+            )
+        return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
 
-    def guess(point: Point, how: Guess, asking: tuple[str, ...]) -> float:
-        a, *more = (value(name, asking) for name in how.points)
-        if how.rule in _POWER_RULES:
-            x, x_a, *others = (p.where[how.over] for p in (point, *(known[name] for name in how.points)))
+    def evaluate_guess(point: Point, rule: Guess, requesting_ids: tuple[str, ...]) -> float:
+        a, *more = (find_value(name, requesting_ids) for name in rule.points)
+        if rule.rule in _POWER_RULES:
+            x, x_a, *others = (p.where[rule.over] for p in (point, *(known[name] for name in rule.points)))
             (y, z), (x_y, x_z) = (a, *more)[-2:], (x_a, *others)[-2:]
             power = np.log(z / y) / np.log(x_z / x_y)
             return float(a * (x / x_a) ** power)
-        if how.rule == "offset":
+        if rule.rule == "offset":
             return a + more[0] - more[1]
-        return a * more[0] / more[1] if how.rule == "proportion" else a
+        return a * more[0] / more[1] if rule.rule == "proportion" else a
 
-    return {p.id: guess(p, p.guess, (p.id,)) for p in published if p.guess}
+    return {p.id: evaluate_guess(p, p.guess, (p.id,)) for p in points if p.guess}

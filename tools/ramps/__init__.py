@@ -1,1 +1,1 @@
-"""FMUs driven along ramps and loops of an input."""
+"""Runs of FMUs along a ramp or load cycles of an input."""

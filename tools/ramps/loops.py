@@ -1,4 +1,4 @@
-"""Loops: any of the FMUs driven to and fro through fmpy, what it loses and how stiff it is."""
+"""Load cycles: run an FMU along cycles of one input in fmpy; energy loss and stiffness of the loops."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -17,31 +17,32 @@ from . import ramp
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
-SHAPES = ("triangle", "sine")
+WAVEFORMS = ("triangle", "sine")
+"""Waveforms of load cycles."""
 DEFAULT_POINTS, DEFAULT_CYCLES = 200, 2
 MIN_POINTS, MAX_POINTS = 8, 1_000_000
 MAX_CYCLES = 1000
 RELATIVE_ROUNDING = 1e-12
-"""Work over that of the loop's box [1] that is round-off."""
+"""Work over the area of the loop's bounding box [1] below which the work is round-off."""
 ENERGY_UNIT = units.base_exponents("J")
 FORCE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
-"""What counts as a force or torque; the other of two conjugate variables is the motion."""
+"""Units of a force and of a torque; the other of two conjugate variables is the motion."""
 COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
-"""{unit of the motion: names of motion and force in the file}, those that `fit loop` reads."""
+"""{unit of the motion: names of the columns of motion and force}, as `jointfmu fit loop` reads them."""
 
 
 @dataclass(frozen=True, slots=True)
 class CyclicPath:
-    """How an input is driven.
+    """Path of an input in load cycles: first loading to an amplitude, then cycles about a centre.
 
-    about  : where it starts and about which it swings
-    shape  : one of SHAPES
-    points : of a cycle, a multiple of four
-    cycles : after the first loading; the last one counts
+    centre : value of the input at the start and in the middle of the cycles
+    shape  : waveform, one of WAVEFORMS
+    points : number of points of a cycle, a multiple of four
+    cycles : number of cycles after the first loading; the last cycle is evaluated
     """
 
     centre: float = 0.0
-    shape: str = SHAPES[0]
+    shape: str = WAVEFORMS[0]
     points: int = DEFAULT_POINTS
     cycles: int = DEFAULT_CYCLES
 
@@ -55,8 +56,8 @@ class CyclicPath:
         if not 1 <= self.cycles <= MAX_CYCLES:
             raise ValueError(f"cycles = {self.cycles} is outside [1, {MAX_CYCLES}]")
 
-    def path(self, amplitude: float) -> Array:
-        """The points: first loading to the amplitude, then whole cycles from there."""
+    def input_values(self, amplitude: float) -> Array:
+        """Values of the input: first loading to an amplitude, then full cycles from there."""
         if not 0.0 < amplitude < np.inf:
             raise ValueError(f"loop = {amplitude:g} is outside (0, inf): the amplitude of the input")
         phase = np.arange(self.points // 4 + self.cycles * self.points + 1) / self.points
@@ -67,11 +68,11 @@ class CyclicPath:
 
 @dataclass(frozen=True, slots=True)
 class HysteresisLoop:
-    """One amplitude.
+    """Hysteresis loop of one amplitude: first loading and cycles.
 
-    motion, force : (n) of first loading and cycles; the force on the joint, positive with the motion
-    closed : first point of the last cycle, which ends with the last one
-    result : every output
+    motion, force : (n) motion, and force on the joint, positive in the direction of the motion
+    cycle_start   : index of the first point of the last cycle, which ends at the last point
+    result        : all outputs along the path
     """
 
     motion: Array
@@ -85,27 +86,31 @@ class HysteresisLoop:
 
     @property
     def amplitudes(self) -> tuple[float, float]:
-        """Half the range of motion and of force in the last cycle."""
+        """Amplitudes of motion and force: half of their ranges in the last cycle."""
         motion, force = self._cycle
         return 0.5 * float(np.ptp(motion)), 0.5 * float(np.ptp(force))
 
     @property
-    def loss(self) -> float:
-        """Work [J] that goes in over the last cycle, by trapezoids; none where it is round-off."""
+    def energy_loss(self) -> float:
+        """Energy loss [J] of the last cycle, by the trapezoidal rule; 0 if it is round-off."""
         motion, force = self._cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
         return work if abs(work) > RELATIVE_ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
 
-    def row(self) -> dict[str, float]:
-        """What the loop gives; secant stiffness through its ends, loss factor loss/(pi K a^2)."""
+    def compute_row(self) -> dict[str, float]:
+        """Results of the loop: {name: value}.
+
+        The secant stiffness K is that between the ends of the loop. The loss factor is loss/(pi K a^2) with
+        the amplitude a of the motion.
+        """
         motion, force = self.amplitudes
         stiffness = force / motion
         found = {
             "motion": motion,
             "force": force,
             "secant_stiffness": stiffness,
-            "loss": self.loss,
-            "loss_factor": self.loss / (np.pi * force * motion) if force else 0.0,
+            "loss": self.energy_loss,
+            "loss_factor": self.energy_loss / (np.pi * force * motion) if force else 0.0,
         }
         if "E_loss" in self.result.columns:
             found["E_loss"] = float(np.diff(self.result.columns["E_loss"][[self.cycle_start, -1]])[0])
@@ -114,22 +119,23 @@ class HysteresisLoop:
 
 @dataclass(frozen=True, slots=True)
 class HysteresisLoops:
-    """Loops of one FMU.
+    """Hysteresis loops of one FMU.
 
-    motion, force : names of the variables; units : of both
-    sign  : of the force, +1 or -1, over the variable
-    loops : by amplitude, in the order asked for
+    motion_name, force_name : names of the variables
+    units                   : units of motion and force
+    force_sign              : force on the joint over the variable `force_name`: +1 or -1
+    loops                   : one loop for each amplitude, in the requested order
     """
 
-    motion: str
-    force: str
+    motion_name: str
+    force_name: str
     units: tuple[str, str]
-    sign: float
+    force_sign: float
     loops: Sequence[HysteresisLoop]
 
     @property
     def column_names(self) -> tuple[str, str]:
-        """Names of motion and force in files: those that `fit loop` reads."""
+        """Names of the columns of motion and force in files, as `jointfmu fit loop` reads them."""
         return COLUMN_NAMES[self.units[0]]
 
     @property
@@ -138,16 +144,16 @@ class HysteresisLoops:
 
     @property
     def row_units(self) -> dict[str, str]:
-        """Of what a row gives with a unit."""
+        """Units of the results of a loop: {name: unit}, without dimensionless results."""
         stiffness = "N/m" if self.units[0] == "m" else "N.m/rad"
         return {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
 
-    def rows(self) -> list[dict[str, float]]:
-        return [loop.row() for loop in self.loops]
+    def compute_rows(self) -> list[dict[str, float]]:
+        return [loop.compute_row() for loop in self.loops]
 
-    def table(self) -> str:
-        """The rows as CSV text, six digits."""
-        rows = self.rows()
+    def format_table(self) -> str:
+        """Format the results of the loops as CSV text with six digits, one row for each loop."""
+        rows = self.compute_rows()
         own = dict(zip(("motion", "force"), self.column_names, strict=True))
         given = {"E_loss": "J", "loss_factor": "1"} | self.row_units
         return columns.format_table(
@@ -156,10 +162,13 @@ class HysteresisLoops:
             digits=6,
         )
 
-    def csv(self) -> str:
-        """Every point of every loop as CSV text that `fit loop` reads: runs, motion, force, the outputs."""
+    def format_csv(self) -> str:
+        """Format all points of all loops as CSV text that `jointfmu fit loop` reads.
+
+        Columns: number of the loop, motion, force, outputs.
+        """
         first = self.loops[0].result
-        others = [name for name in first.columns if name not in (self.motion, self.force)]
+        others = [name for name in first.columns if name not in (self.motion_name, self.force_name)]
         names = [*self.column_names, *others]
         heads = [
             ("run", "1"),
@@ -174,8 +183,10 @@ class HysteresisLoops:
             ]
             for number, loop in enumerate(self.loops, 1)
         ]
-        sign = "-" if self.sign < 0.0 else ""
-        told = f"# {self.column_names[0]} = {self.motion}, {self.column_names[1]} = {sign}{self.force}"
+        sign = "-" if self.force_sign < 0.0 else ""
+        told = (
+            f"# {self.column_names[0]} = {self.motion_name}, {self.column_names[1]} = {sign}{self.force_name}"
+        )
         return columns.format_table(
             heads, [np.concatenate(part) for part in zip(*parts, strict=True)], header_lines=[told]
         )
@@ -189,15 +200,19 @@ def run_loops(
     output: str | None = None,
     settings: Mapping[str, object] | None = None,
 ) -> HysteresisLoops:
-    """Drive one input to and fro, each amplitude from rest in an instance of its own; all else stays.
+    """Run an FMU along load cycles of one input, one instance for each amplitude, from rest.
 
-    output : conjugate to the input; None: that of its suffix, `f_x` to `s_rel_x`, `tau2` to `phi2`
+    All other inputs are constant.
 
-    Raises ValueError as `ramp.run`, for a swing that is none, or where no output is conjugate to the input.
+    output : output that is energy-conjugate to the input; None: the conjugate output with the same suffix,
+        `f_x` for `s_rel_x`, `tau2` for `phi2`
+
+    Raises ValueError as `ramp.run_ramp`, for an amplitude that is not positive, or if no output is conjugate
+    to the input.
     """
-    points = [cyclic_path.path(amplitude) for amplitude in amplitudes]
+    points = [cyclic_path.input_values(amplitude) for amplitude in amplitudes]
     with unpack_fmu(fmu) as (_, description):
-        output = find_conjugate(*input_and_output_units(description), input_name, output, str(fmu))
+        output = find_conjugate_output(*input_and_output_units(description), input_name, output, str(fmu))
     return loops_from_results(
         [ramp.run_path(fmu, input_name, each, settings) for each in points], input_name, output, cyclic_path
     )
@@ -206,7 +221,10 @@ def run_loops(
 def loops_from_results(
     results: Sequence[ramp.RampResult], input_name: str, output: str, cyclic_path: CyclicPath
 ) -> HysteresisLoops:
-    """The loops of an input that swung, one for each amplitude, with an output that is conjugate to it."""
+    """Hysteresis loops from results along load cycles of an input, one for each amplitude.
+
+    output : output that is energy-conjugate to the input
+    """
     first = max(results, key=lambda result: float(np.ptp(result.columns[input_name])))
     driven = units.base_exponents(first.units[input_name]) in FORCE_UNITS
     motion, force = (output, input_name) if driven else (input_name, output)
@@ -226,46 +244,52 @@ def input_and_output_units(description: "ModelDescription") -> tuple[dict[str, s
     return inputs, outputs
 
 
-def find_conjugate(
-    inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, source: str
+def find_conjugate_output(
+    inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, fmu_label: str
 ) -> str:
-    """The output whose product with the input is an energy, of the same suffix where there are several.
+    """Find the output that is energy-conjugate to an input: the product of their units is an energy.
 
-    Raises ValueError if there is none, or if `output` is none of them.
+    If several outputs are conjugate, the one with the suffix of the input is chosen.
+
+    inputs, outputs : {name: unit}
+    output          : output that the user states; None: find it
+    fmu_label       : name of the FMU, for messages
+
+    Raises ValueError if no output is conjugate, or if the stated output is not.
     """
     if input_name not in inputs:
-        raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
+        raise ValueError(f"{fmu_label}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
     own = inputs[input_name]
     fitting = [name for name, unit in outputs.items() if unit != "J" and _is_energy(own, unit)]
     if output is not None:
         if output not in fitting:
             raise ValueError(
-                f"{source}: {output!r} is no output whose product with {input_name} is an energy, allowed "
+                f"{fmu_label}: {output!r} is no output whose product with {input_name} is an energy, allowed "
                 f"are {', '.join(fitting) or 'none'}"
             )
         return output
     if not fitting:
         raise ValueError(
-            f"{source}: no output makes an energy with {input_name} [{own}]; expected a displacement, an "
+            f"{fmu_label}: no output makes an energy with {input_name} [{own}]; expected a displacement, an "
             "angle, a force or a torque as input"
         )
-    same = [name for name in fitting if suffix(name) == suffix(input_name)]
+    same = [name for name in fitting if variable_suffix(name) == variable_suffix(input_name)]
     return (same or fitting)[0]
 
 
-def suffix(name: str) -> str:
-    """The axis or flange of a name: `_x` of `f_x`, `2` of `tau2`."""
-    match = re.search(r"(_[xyz]|\d+)$", name)
+def variable_suffix(variable_name: str) -> str:
+    """Suffix of a variable name for the axis or the flange: `_x` of `f_x`, `2` of `tau2`; else empty."""
+    match = re.search(r"(_[xyz]|\d+)$", variable_name)
     return match[0] if match else ""
 
 
-def _is_energy(first: str, second: str) -> bool:
-    """Whether the product of two units is an energy; the radian counts as none."""
+def _is_energy(first_unit: str, second_unit: str) -> bool:
+    """Whether the product of two units is an energy; the radian is ignored."""
     try:
-        parts = units.base_exponents(first), units.base_exponents(second)
+        parts = units.base_exponents(first_unit), units.base_exponents(second_unit)
     except ValueError:
         return False
     whole = {name: sum(part.get(name, 0) for part in parts) for name in {**parts[0], **parts[1]}}
     return {
         name: n for name, n in whole.items() if n and name != "rad"
-    } == ENERGY_UNIT and first != "1" != second
+    } == ENERGY_UNIT and first_unit != "1" != second_unit

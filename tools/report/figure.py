@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 def style_sheet() -> str:
     """Style sheet (CSS) of the reports."""
-    return chart.style() + read_web_file("style.css") + _read_asset("report.css")
+    return chart.read_style() + read_web_file("style.css") + _read_asset("report.css")
 
 
 def page_script(*names: str) -> str:
     """JavaScript of the charts, and of the named scripts of this folder."""
-    return chart.script("figures") + "".join(map(_read_asset, names))
+    return chart.read_script("figures") + "".join(map(_read_asset, names))
 
 
 def _read_asset(name: str) -> str:
@@ -54,7 +54,7 @@ class ComparisonRow(NamedTuple):
 
 __all__ = ["Figure", "Panel", "Series", "draw_panels", "published_series"]
 
-_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
+_SERIES_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
 
 class Figure(NamedTuple):
@@ -63,7 +63,7 @@ class Figure(NamedTuple):
     title, text : heading, and description of what the figure shows
     panels      : charts
     pictures    : SVG elements
-    data        : name of the CSV file next to the page
+    data_file   : name of the CSV file next to the page
     table       : rows of a table; the first row has the headings
     """
 
@@ -71,7 +71,7 @@ class Figure(NamedTuple):
     text: str
     panels: Sequence[Panel] = ()
     pictures: Sequence[str] = ()
-    data: str | None = None
+    data_file: str | None = None
     table: Sequence[Sequence[str]] = ()
 
 
@@ -92,7 +92,7 @@ def published_series(points: Sequence[Point], argument: str) -> list[Series]:
 def draw_panels(canvas: "Canvas", panels: Sequence[Panel]) -> None:
     """Draw panels side by side with matplotlib."""
     for axes, panel in zip(canvas.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
-        for series, color in zip(panel.series, _COLOURS, strict=False):
+        for series, color in zip(panel.series, _SERIES_COLOURS, strict=False):
             style = {"ls": "", "marker": "o", "mfc": "white" if series.marks == "empty" else color}
             axes.plot(
                 series.x,

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from jointfmu_fmu_src.folders import asset
-from jointfmu_fmu_src.joint_parts.chart import as_json
-from jointfmu_fmu_src.native.page import drawings, panels
-from jointfmu_fmu_src.templates import FRAME, law_terms, template
+from jointfmu_fmu_src.folders import find_asset
+from jointfmu_fmu_src.joint_parts.chart import encode_panels
+from jointfmu_fmu_src.native.page import draw_further_charts, find_ramp_panels
+from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
 from jointfmu import __version__
 from jointfmu.files.writing import write_text
@@ -32,17 +32,17 @@ _CONSTANT_STIFFNESS_RATIO = 0.02
 
 
 def summarise_joint(
-    load_history: LoadHistory, loops: HysteresisLoops | None, numbers: Sequence[FileEntry]
+    load_history: LoadHistory, loops: HysteresisLoops | None, entries: Sequence[FileEntry]
 ) -> str:
     """Summarise a joint in a few sentences: stiffness, hysteresis, estimated parameters.
 
     loops   : hysteresis loops; None for a joint without friction history
-    numbers : entries of the parameter file
+    entries : entries of the parameter file
     """
     lines = [f"A {KINDS[load_history.file.joint].title}.", _describe_stiffness(load_history)]
     if loops:
         lines.append(_describe_loss(loops))
-    count = Counter(entry.kind for entry in numbers)
+    count = Counter(entry.kind for entry in entries)
     uncertain = [f"{count[kind]} {text}" for kind, text in _UNCERTAIN_ORIGINS.items() if count[kind]]
     if uncertain:
         total = sum(count.values())
@@ -67,7 +67,7 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
     units = {v.name: v.unit for v in (*load_history.model.inputs, *load_history.model.outputs)}
     curves = [
         (over, name)
-        for over, names in panels(load_history.model)
+        for over, names in find_ramp_panels(load_history.model)
         for name in names
         if units[name] in _STIFFNESS_UNITS
     ]
@@ -92,10 +92,10 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
 
 def _describe_loss(loops: HysteresisLoops) -> str:
     """Describe the energy loss of the largest loop in a sentence."""
-    row = max(loops.rows(), key=lambda row: row["motion"])
+    row = max(loops.compute_rows(), key=lambda row: row["motion"])
     if not row["loss"]:
         return "The joint has no hysteresis: loading and unloading follow the same curve."
-    amplitude = f"{loops.motion} = {_format_value(row['motion'], loops.units[0])}"
+    amplitude = f"{loops.motion_name} = {_format_value(row['motion'], loops.units[0])}"
     return (
         f"In a cycle between plus and minus {amplitude} the joint dissipates "
         f"{_format_value(row['loss'], 'J')}, "
@@ -112,7 +112,7 @@ ORIGIN_MEANINGS = {
     "user": "set by you",
 }
 """{origin of a number: meaning}, for all parameters.ORIGINS."""
-TOPICS = {
+VALIDITY_HEADINGS = {
     "docs/validity.md": ("In short", "What this does not show"),
     "docs/validity_stiffness.md": (
         "The laws on their own surfaces",
@@ -155,27 +155,31 @@ def _render_page(model: Model, file: ParameterFile) -> str:
     folder, rows = Path(__file__).parent, _report_rows(file)
     module = load_tool_module(KINDS[model.joint], "report")
     set_step("loops")
-    loops = course.compute_loops() if model.loop else None
+    loops = course.compute_loops() if model.load_cycle else None
     figures = [ramp_figure(course), *([loop_figure(course, loops)] if loops else [])]
     if module and model.name in module.FIGURES:
         figures += module.FIGURES[model.name](course)
-    compared = module.BESIDE[model.name](model, file) if module and model.name in module.BESIDE else []
-    return template(asset(model, "page.html"), folder, FRAME).render(
+    compared = (
+        module.CATALOGUE_COMPARISONS[model.name](model, file)
+        if module and model.name in module.CATALOGUE_COMPARISONS
+        else []
+    )
+    return load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER).render(
         model=course.model,
         spring=course.spring,
         fmu=True,
-        **law_terms(file),
+        **law_variables(file),
         file=file,
         version=__version__,
-        figures=[(figure, as_json(figure.panels)) for figure in figures],
+        figures=[(figure, encode_panels(figure.panels)) for figure in figures],
         opening=summarise_joint(course, loops, list_entries(file)),
         beside=_comparison_rows(compared),
-        drawings=drawings(course.model, course.spring),
+        drawings=draw_further_charts(course.model, course.spring),
         rows=rows,
         origins=[(kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
         judgement=judge_file(file),
         range=_describe_range(course),
-        topics=TOPICS,
+        topics=VALIDITY_HEADINGS,
         style=style_sheet(),
         script=page_script() + "drawAll();",
     )
@@ -212,7 +216,7 @@ def ramp_figure(load_history: LoadHistory) -> Figure:
     columns = load_history.compute_ramp()
     variables = {v.name: v for v in (*load_history.model.inputs, *load_history.model.outputs)}
     charts, docs = [], dict[str, str]()
-    for over, names in panels(load_history.model):
+    for over, names in find_ramp_panels(load_history.model):
         x, x_unit = _to_display_unit(columns[over], variables[over].unit)
         unit = choose_display_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
         scale = conversion_factor(variables[names[0]].unit, unit)
@@ -220,8 +224,8 @@ def ramp_figure(load_history: LoadHistory) -> Figure:
         title = f"{', '.join(names)} over {over}"
         charts.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
         docs |= {name: variables[name].doc for name in (over, *names)}
-    ramped = variables[load_history.model.ramp.input]
-    end, unit = _to_display_unit(load_history.model.ramp.end, ramped.unit)
+    ramped = variables[load_history.model.ramp.input_name]
+    end, unit = _to_display_unit(load_history.model.ramp.end_value, ramped.unit)
     meaning = "; ".join(f"{name}: {doc}" for name, doc in docs.items() if name != ramped.name)
     text = (
         f"{ramped.name} ({ramped.doc}) from 0 to {float(end):.4g} {unit}; all other inputs have their start "
@@ -255,10 +259,12 @@ def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
     text = "Quasi-static load cycles, each amplitude from rest with two cycles" + (
         f", at {', '.join(settings)}. " if settings else ". "
     )
-    if not any(loop.loss for loop in loops.loops):
+    if not any(loop.energy_loss for loop in loops.loops):
         text += "With these parameters there is no hysteresis: loading and unloading follow one curve."
-    force = f"{'-' if loops.sign < 0.0 else ''}{loops.force}"
-    panel = Panel(f"{force} over {loops.motion}", f"{loops.motion} [{x_unit}]", f"{force} [{y_unit}]", series)
+    force = f"{'-' if loops.force_sign < 0.0 else ''}{loops.force_name}"
+    panel = Panel(
+        f"{force} over {loops.motion_name}", f"{loops.motion_name} [{x_unit}]", f"{force} [{y_unit}]", series
+    )
     return Figure("Loops", text, [panel], table=_loop_rows(loops))
 
 
@@ -273,7 +279,7 @@ def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [
         ("amplitude", "force or torque", "secant stiffness", "energy loss per cycle", "loss factor")
     ]
-    for row in loops.rows():
+    for row in loops.compute_rows():
         rows.append((*(format_cell(row, name) for name in units), f"{row['loss_factor']:.3g}"))
     return rows
 
@@ -293,11 +299,11 @@ def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
 
 def _describe_range(load_history: LoadHistory) -> str:
     """Describe the load range in which the law is valid."""
-    ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input)
-    if load_history.limit is None:
+    ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
+    if load_history.law_limit is None:
         return f"The law is valid for {ramped.name} far beyond the load ramp."
-    value, unit = _to_display_unit(load_history.limit[0], ramped.unit)
+    value, unit = _to_display_unit(load_history.law_limit[0], ramped.unit)
     return (
         f"The law is valid up to {ramped.name} = {float(value):.3g} {unit}. Above, the FMU warns: "
-        f"{load_history.limit[1]}."
+        f"{load_history.law_limit[1]}."
     )

@@ -10,23 +10,23 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from .elastic import ElasticAxis
-from .names import identifier
-from .plugged import spring_of
-from .poses import inertia, torques
+from .names import make_identifier
+from .plugged import find_spring_fmu
+from .poses import compute_link_inertia, compute_torques
 
-SETTLING = 0.5
+WEIGHT_DURATION = 0.5
 """Time [s] in which the weight is applied."""
-STOP = 2.0
+STOP_TIME = 2.0
 """Stop time [s] of the experiment."""
-PER_PERIOD = 100
+STEPS_PER_PERIOD = 100
 """Communication steps of the system in the shortest period of vibration [1]."""
 
 
-def text(
+def format_axes_system(
     title: str,
     model: Any,
     axes: Sequence[ElasticAxis],
-    files: Mapping[str, ParameterFile],
+    drive_files: Mapping[str, ParameterFile],
     pose: Array,
     payload: float,
     tip: int,
@@ -38,16 +38,16 @@ def text(
     that about the axis at the pose, with the payload and the other axes locked. The torque of the weight acts
     on it and is applied smoothly. The axes are not coupled.
 
-    files   : {joint: parameter file of its drive}
-    payload : mass [kg] at the body `tip`
+    drive_files : {joint: parameter file of its drive}
+    payload     : mass [kg] at the body `tip`
     """
-    load, _ = torques(model, axes, pose, payload, tip)
-    link_inertias = np.diag(inertia(model, axes, pose, payload, tip))
+    load, _ = compute_torques(model, axes, pose, payload, tip)
+    link_inertias = np.diag(compute_link_inertia(model, axes, pose, payload, tip))
     stiffness = np.array([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
-    step = 2.0 * np.pi / PER_PERIOD * float(np.sqrt(link_inertias / stiffness).min())
+    step = 2.0 * np.pi / STEPS_PER_PERIOD * float(np.sqrt(link_inertias / stiffness).min())
     wires, sections = [], []
     for axis, torque, J in zip(axes, load.tolist(), link_inertias.tolist(), strict=True):
-        name, file = identifier(axis.joint), files[axis.joint]
+        name, file = make_identifier(axis.joint), drive_files[axis.joint]
         wires += [
             f'    ["{name}_motor", "{name}_drive.flange1"],',
             f'    ["{name}_drive.flange2", "{name}_link.flange_b"],',
@@ -55,13 +55,14 @@ def text(
         ]
         sections += [
             f'[{name}_motor]\nmodel = "AngleProfile"',
-            _entry("height", 0.0, "rad", "the motor holds; its input phi_in turns it"),
-            f'\n[{name}_drive]\nmodel = "{spring_of(file)}"\nparameters = "{identifier(file.name)}.toml"',
+            _format_entry("height", 0.0, "rad", "the motor holds; its input phi_in turns it"),
+            f'\n[{name}_drive]\nmodel = "{find_spring_fmu(file)}"',
+            f'parameters = "{make_identifier(file.name)}.toml"',
             f'\n[{name}_link]\nmodel = "RotationalInertia"',
-            _entry("J", J, "kg.m2", "what the axis turns at the pose, the others held"),
+            _format_entry("J", J, "kg.m2", "what the axis turns at the pose, the others held"),
             f'\n[{name}_weight]\nmodel = "TorqueProfile"',
-            _entry("ramp_height", torque, "N.m", "of the weight at the pose"),
-            _entry("ramp_duration", SETTLING, "s", "slow beside the axes' periods"),
+            _format_entry("ramp_height", torque, "N.m", "of the weight at the pose"),
+            _format_entry("ramp_duration", WEIGHT_DURATION, "s", "slow beside the axes' periods"),
             "",
         ]
     pose_text = ", ".join(
@@ -77,15 +78,18 @@ def text(
     ]
     tail = [
         "[experiment]",
-        _entry("stop_time", STOP, "s", "the weight and the ringing after it"),
-        _entry(
-            "interval", float(f"{step:.2g}"), "s", f"{PER_PERIOD} in the shortest period, of the archives"
+        _format_entry("stop_time", STOP_TIME, "s", "the weight and the ringing after it"),
+        _format_entry(
+            "interval",
+            float(f"{step:.2g}"),
+            "s",
+            f"{STEPS_PER_PERIOD} in the shortest period, of the archives",
         ),
     ]
     return "\n".join([*head, *sections, *tail, ""])
 
 
-def _entry(name: str, value: float, unit: str, source: str) -> str:
+def _format_entry(name: str, value: float, unit: str, source: str) -> str:
     """TOML line of a derived value with unit and source."""
     text = format_toml_string(source)
     return f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {text} }}'

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -11,19 +12,19 @@ from jointfmu.files.reading import check_regular
 from jointfmu.quantity import Array
 
 from . import bristles
-from .fitted import FittedTendons, fit
+from .fitted import FittedSpring, fit_spring
 from .mjcf import check_version
 from .transmission import Transmission
 
-MOTOR = "_motor"
+MOTOR_SUFFIX = "_motor"
 """Suffix of the motor joint after the name of the driven joint."""
-MOTORS = "drive_motors"
+MOTOR_BODY_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
-_ROOM = 6
+_MAX_JOINTS_PER_BODY = 6
 """Largest number of joints of a body in MuJoCo [1]."""
-_BACK = 1e-6
+_REVERSAL_RATIO = 1e-6
 """Torque reversal over the rated torque [1], for the stiffness of small vibrations."""
-_LIGHT = 1e-12
+_SMALL_MASS = 1e-12
 """Mass [kg] and inertia [kg.m2] of the bodies that carry the motors; the rotors are armatures."""
 
 
@@ -37,21 +38,21 @@ class ElasticAxis:
 
     joint: str
     drive: Transmission
-    fitted: FittedTendons
-    rotor: float
-    noted: tuple[str, ...] = ()
+    spring: FittedSpring
+    rotor_inertia: float
+    notes: tuple[str, ...] = ()
 
-    def wind_up(self, torque: float) -> float:
+    def solve_wind_up(self, torque: float) -> float:
         """Wind-up [rad] at a torque [N.m] by the law of the drive, for first loading from rest."""
-        return float(self.drive.wind_up([torque])[0])
+        return float(self.drive.compute_wind_up([torque])[0])
 
     def stiffness(self, torque: float) -> float:
         """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
-        reversal = float(np.copysign(_BACK * self.drive.rated_torque, torque))
-        before, after = self.drive.wind_up([torque, torque - reversal])
+        reversal = float(np.copysign(_REVERSAL_RATIO * self.drive.rated_torque, torque))
+        before, after = self.drive.compute_wind_up([torque, torque - reversal])
         return reversal / float(before - after)
 
-    def overload(self, torque: float) -> Iterator[str]:
+    def overload_warnings(self, torque: float) -> Iterator[str]:
         """Yield a warning if a torque [N.m] exceeds the rated or the largest torque of the drive."""
         drive, size = self.drive, abs(torque)
         prefix = f"{self.joint}: {size:.4g} N.m is beyond the"
@@ -77,7 +78,7 @@ def read_robot(path: str | Path) -> Any:
     return spec
 
 
-def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
+def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
     """Make the elastic axes of the joints in `drives`, in the order of the robot.
 
     Raises ValueError for a name that is no hinge of the robot.
@@ -92,7 +93,8 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
             raise ValueError(
                 f"{name!r} is no hinge of the robot; allowed are {', '.join(filter(None, known))}"
             )
-    matrix = mass_matrix(model, model.qpos0)
+    matrix = compute_mass_matrix(model, model.qpos0)
+    fit_drive = cache(fit_spring)  # axes may share a drive
     elastic_axes = []
     for joint in hinges:
         if joint.name in drives:
@@ -101,19 +103,20 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
             if rotor <= 0.0:
                 rotor = float(matrix[dof, dof])
                 notes.append("no armature; the rotor is taken as large as what the axis turns")
-            if drive.static and bristles.borne(model.opt):
-                angle = bristles.presliding(drive, rotor / drive.ratio**2, model.opt.timestep)
-                if angle > 1.01 * drive.presliding:
+            if drive.static_friction and bristles.is_stable(model.opt):
+                angle = bristles.presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
+                if angle > 1.01 * drive.presliding_angle:
                     notes.append(
                         f"friction builds up over {angle:.3g} rad of the motor, as the step asks, "
-                        f"{drive.presliding:g} rad in the FMU"
+                        f"{drive.presliding_angle:g} rad in the FMU"
                     )
             lines = tuple(f"{joint.name}: {line}" for line in notes)
-            elastic_axes.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, lines))
+            spring = fit_drive(drive, drive.rated_torque)
+            elastic_axes.append(ElasticAxis(joint.name, drive, spring, rotor, lines))
     return elastic_axes
 
 
-def mass_matrix(model: Any, pose: Array) -> Array:
+def compute_mass_matrix(model: Any, pose: Array) -> Array:
     """Mass matrix (n, n) of all degrees of freedom at a pose."""
     import mujoco
 
@@ -128,7 +131,7 @@ def mass_matrix(model: Any, pose: Array) -> Array:
     return np.array(columns)
 
 
-def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> Any:
+def add_drives(spec: Any, axes_with_drive: list[ElasticAxis], has_springs: bool = True) -> Any:
     """Copy the robot with motors, drives as tendons (see `mjcf`), and the actuators moved to the motors.
 
     Keyframes are omitted: they have no positions for the motors.
@@ -139,45 +142,47 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
     elastic_spec, model = spec.copy(), spec.compile()
     for key in [*elastic_spec.keys]:
         elastic_spec.delete(key)
-    for i, axis in enumerate(chosen):
-        if i % _ROOM == 0:
-            motors = _motors(elastic_spec, f"{MOTORS}{i // _ROOM + 1}")
+    for i, axis in enumerate(axes_with_drive):
+        if i % _MAX_JOINTS_PER_BODY == 0:
+            motors = _add_motor_body(elastic_spec, f"{MOTOR_BODY_PREFIX}{i // _MAX_JOINTS_PER_BODY + 1}")
         motor = _add_motor(elastic_spec, motors, axis, model)
-        if not springs:
+        if not has_springs:
             continue
-        motor.damping = [axis.drive.viscous, 0.0, 0.0]
-        if not bristles.borne(elastic_spec.option):
-            motor.frictionloss = axis.drive.dry
-        elif axis.drive.static:
-            bristles.add(elastic_spec, axis.drive, motor.name, motor.armature, elastic_spec.option.timestep)
-        for name, stiffness, damping, limit in _springs(axis):
+        motor.damping = [axis.drive.viscous_friction, 0.0, 0.0]
+        if not bristles.is_stable(elastic_spec.option):
+            motor.frictionloss = axis.drive.dry_friction
+        elif axis.drive.static_friction:
+            bristles.add_friction(
+                elastic_spec, axis.drive, motor.name, motor.armature, elastic_spec.option.timestep
+            )
+        for name, stiffness, damping, limit in _list_tendons(axis):
             tendon = elastic_spec.add_tendon(
                 name=name, stiffness=stiffness, damping=damping, springlength=[0.0, 0.0]
             )
             tendon.springyield = limit
             tendon.wrap_joint(axis.joint, 1.0)
-            tendon.wrap_joint(axis.joint + MOTOR, -1.0 / axis.drive.ratio)
+            tendon.wrap_joint(axis.joint + MOTOR_SUFFIX, -1.0 / axis.drive.ratio)
     return elastic_spec
 
 
-def _springs(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float], float]]:
+def _list_tendons(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float], float]]:
     """Yield name, stiffness, damping and yield wind-up of each tendon of a drive."""
-    fitted, zero = axis.fitted, [0.0, 0.0, 0.0]
+    fitted, zero = axis.spring, [0.0, 0.0, 0.0]
     name = f"{axis.joint}_drive"
-    yield name, [fitted.linear, 0.0, fitted.cubic], [axis.drive.damping, 0.0, 0.0], 0.0
-    for i, (spring, limit) in enumerate(fitted.sliders, 1):
+    yield name, [fitted.linear_stiffness, 0.0, fitted.cubic_stiffness], [axis.drive.damping, 0.0, 0.0], 0.0
+    for i, (spring, limit) in enumerate(fitted.yielding_springs, 1):
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], zero, limit
 
 
-def _motors(spec: Any, name: str) -> Any:
+def _add_motor_body(spec: Any, name: str) -> Any:
     """Add a body to the world for motors; its joints move no other body, so rotors act as armatures do."""
     body = spec.worldbody.add_body(name=name)
-    body.mass, body.inertia, body.explicitinertial = _LIGHT, [_LIGHT] * 3, True
+    body.mass, body.inertia, body.explicitinertial = _SMALL_MASS, [_SMALL_MASS] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     return body
 
 
-def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
+def _add_motor(spec: Any, motor_body: Any, axis: ElasticAxis, rigid_model: Any) -> Any:
     """Add the motor of an axis, whose coordinate is the motor angle [rad], and move the actuators to it.
 
     The force limit of the robot's joint is applied to each actuator, not to the motor joint as a whole, as
@@ -188,36 +193,36 @@ def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
     """
     import mujoco
 
-    joint, ratio, number = spec.joint(axis.joint), axis.drive.ratio, rigid.joint(axis.joint).id
-    motor = motors.add_joint(name=axis.joint + MOTOR, type=mujoco.mjtJoint.mjJNT_SLIDE)
-    motor.armature = axis.rotor / ratio**2
+    joint, ratio, number = spec.joint(axis.joint), axis.drive.ratio, rigid_model.joint(axis.joint).id
+    motor = motor_body.add_joint(name=axis.joint + MOTOR_SUFFIX, type=mujoco.mjtJoint.mjJNT_SLIDE)
+    motor.armature = axis.rotor_inertia / ratio**2
     joint.armature = 0.0
     for actuator in spec.actuators:
         if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
-            if rigid.jnt_actfrclimited[number] and actuator.gear[0]:
-                _limit(actuator, rigid.jnt_actfrcrange[number] / actuator.gear[0])
-            actuator.target = axis.joint + MOTOR
+            if rigid_model.jnt_actfrclimited[number] and actuator.gear[0]:
+                _limit_force(actuator, rigid_model.jnt_actfrcrange[number] / actuator.gear[0])
+            actuator.target = axis.joint + MOTOR_SUFFIX
             actuator.gear = np.asarray(actuator.gear) / ratio
     return motor
 
 
-def _limit(actuator: Any, ends: Array) -> None:
+def _limit_force(actuator: Any, force_range: Array) -> None:
     """Limit the force of an actuator to a range, and to its own range if it has one."""
-    low, high = np.sort(ends)
+    low, high = np.sort(force_range)
     previous = np.asarray(actuator.forcerange)
     if previous[0] < previous[1] and actuator.forcelimited != 0:
         low, high = max(low, previous[0]), min(high, previous[1])
     actuator.forcelimited, actuator.forcerange = 1, [low, high]
 
 
-def unit(model: Any, name: str) -> str:
+def coordinate_unit(model: Any, name: str) -> str:
     """Unit of the coordinate of a hinge (rad) or a slide (m)."""
     import mujoco
 
     return "m" if model.joint(name).type[0] == mujoco.mjtJoint.mjJNT_SLIDE else "rad"
 
 
-def joint_positions(model: Any, angles: Mapping[str, str]) -> Array:
+def joint_positions(model: Any, position_texts: Mapping[str, str]) -> Array:
     """Joint positions of the rigid robot: first keyframe or default pose, with given angles replaced.
 
     position_texts : {joint: text of its position [rad or m]}
@@ -233,7 +238,7 @@ def joint_positions(model: Any, angles: Mapping[str, str]) -> Array:
         for i in range(model.njnt)
         if int(model.jnt_type[i]) in single
     }
-    for name, text in angles.items():
+    for name, text in position_texts.items():
         if name not in known:
             raise ValueError(f"--pose {name}: no joint of the robot; allowed are {', '.join(known)}")
         try:
@@ -245,26 +250,27 @@ def joint_positions(model: Any, angles: Mapping[str, str]) -> Array:
         if not (np.isfinite(value) and low <= value <= high):
             allowed = f"[{low:g}, {high:g}]" if model.jnt_limited[joint] else "(-inf, inf)"
             raise ValueError(
-                f"--pose {name} = {text} {unit(model, name)} is outside {allowed} {unit(model, name)}"
+                f"--pose {name} = {text} {coordinate_unit(model, name)} is outside {allowed} "
+                f"{coordinate_unit(model, name)}"
             )
         pose[known[name]] = value
     return pose
 
 
-def body(model: Any, name: str | None, chosen: list[ElasticAxis]) -> int:
+def find_body(model: Any, name: str | None, axes_with_drive: list[ElasticAxis]) -> int:
     """Index of the body with a name; None: the last body of the chain behind the last axis."""
     known = [model.body(i).name for i in range(model.nbody)]
     if name is not None:
         if name not in known:
             raise ValueError(f"--tip {name!r}: no body of the robot; allowed are {', '.join(known[1:])}")
         return known.index(name)
-    end = int(model.jnt_bodyid[model.joint(chosen[-1].joint).id])
+    end = int(model.jnt_bodyid[model.joint(axes_with_drive[-1].joint).id])
     while (children := np.flatnonzero(model.body_parentid[1:] == end) + 1).size:
         end = int(children[-1])
     return end
 
 
-def keep_folders(spec: Any, path: Path) -> None:
+def make_folders_absolute(spec: Any, path: Path) -> None:
     """Make the folders of meshes and textures absolute, so that the robot can be saved elsewhere."""
     for name in ("meshdir", "texturedir"):
         setattr(spec, name, str((path.parent / getattr(spec, name)).resolve()))

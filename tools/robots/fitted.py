@@ -8,19 +8,19 @@ from scipy.optimize import brentq, nnls
 from jointfmu.mechanics.jenkins import Sliders
 from jointfmu.quantity import Array
 
-from .transmission import LOOP, RAMP, Transmission, area
+from .transmission import LOOP_POINTS, RAMP_POINTS, Transmission, loop_area
 
-YIELDS = np.geomspace(0.02, 0.4, 6)
+YIELD_RATIOS = np.geomspace(0.02, 0.4, 6)
 """Candidate yield wind-ups of the springs over the largest wind-up of the fit [1].
 
 All springs yield within the range of the fit, so no spring adds hysteresis beyond it.
 """
-LOSSLESS = 1e-6
+MIN_LOOP_AREA_RATIO = 1e-6
 """Loop area over its bounding box [1] below which it counts as zero: round-off of the drive's inversion."""
 
 
 @dataclass(frozen=True, slots=True)
-class FittedTendons:
+class FittedSpring:
     """Torque [N.m] against wind-up x [rad] from rest: k x + k3 x^3, and yielding springs in parallel.
 
     linear_stiffness : coefficient [N.m/rad], not negative, so that the torque increases with wind-up
@@ -29,17 +29,19 @@ class FittedTendons:
     max_torque       : largest torque [N.m] of the fit
     """
 
-    linear: float
-    cubic: float
-    sliders: tuple[tuple[float, float], ...]
-    torque: float
+    linear_stiffness: float
+    cubic_stiffness: float
+    yielding_springs: tuple[tuple[float, float], ...]
+    max_torque: float
 
     def torque_at(self, wind_up: Array) -> Array:
         """Torques (n) [N.m] along a history of wind-ups (n) [rad] that starts at rest."""
-        elastic = self.linear * wind_up + self.cubic * wind_up**3
-        return elastic + sum((k * slider(wind_up, y) for k, y in self.sliders), np.zeros_like(wind_up))
+        elastic = self.linear_stiffness * wind_up + self.cubic_stiffness * wind_up**3
+        return elastic + sum(
+            (k * slider_force(wind_up, y) for k, y in self.yielding_springs), np.zeros_like(wind_up)
+        )
 
-    def wind_up(self, torque: float) -> float:
+    def solve_wind_up(self, torque: float) -> float:
         """Wind-up [rad] at a torque [N.m], for first loading from rest."""
         upper = 1.0
         while self.torque_at(np.array([upper]))[0] < abs(torque):
@@ -49,40 +51,45 @@ class FittedTendons:
 
     def stiffness(self, torque: float) -> float:
         """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
-        x = self.wind_up(torque)
-        return self.linear + 3.0 * self.cubic * x**2 + sum(k for k, _ in self.sliders)
+        x = self.solve_wind_up(torque)
+        return (
+            self.linear_stiffness
+            + 3.0 * self.cubic_stiffness * x**2
+            + sum(k for k, _ in self.yielding_springs)
+        )
 
 
-def slider(wind_up: Array, limit: float) -> Array:
+def slider_force(wind_up: Array, yield_wind_up: float) -> Array:
     """Force (n) of a yielding spring of stiffness 1 along a history of wind-ups (n) that starts at rest."""
-    return Sliders(np.ones(1)).follow_increments(np.diff(wind_up, prepend=0.0), np.array([limit]))
+    return Sliders(np.ones(1)).follow_increments(np.diff(wind_up, prepend=0.0), np.array([yield_wind_up]))
 
 
-def fit(drive: Transmission, torque: float) -> FittedTendons:
-    """Fit nonnegative coefficients to the torque of a drive along a ramp to `torque` [N.m] and one loop.
+def fit_spring(drive: Transmission, max_torque: float) -> FittedSpring:
+    """Fit nonnegative coefficients to the torque of a drive along a ramp to `max_torque` [N.m] and one loop.
 
     The yielding springs are fitted first, to half the distance between the branches of the loop, which does
     not depend on the elastic part. So smaller loops also have about the right area.
     """
-    torques, x = drive.loop(torque)
+    torques, x = drive.compute_loop(max_torque)
     largest = float(np.max(np.abs(x)))
-    has_hysteresis = abs(area(x, torques)) > LOSSLESS * 4.0 * torque * largest
-    limits = (YIELDS * largest).tolist() if has_hysteresis else []
+    has_hysteresis = abs(loop_area(x, torques)) > MIN_LOOP_AREA_RATIO * 4.0 * max_torque * largest
+    limits = (YIELD_RATIOS * largest).tolist() if has_hysteresis else []
     sliders: tuple[tuple[float, float], ...] = ()
     if has_hysteresis:
-        forces = [slider(x, y) for y in limits]
-        half_widths = np.stack([opening(x, force) for force in forces], axis=1)
-        stiffnesses = nnls(half_widths, opening(x, torques))[0]
+        forces = [slider_force(x, y) for y in limits]
+        half_widths = np.stack([loop_half_width(x, force) for force in forces], axis=1)
+        stiffnesses = nnls(half_widths, loop_half_width(x, torques))[0]
         sliders = tuple((k, y) for k, y in zip(stiffnesses.tolist(), limits, strict=True) if k > 0.0)
-    elastic = torques - sum((k * slider(x, y) for k, y in sliders), np.zeros_like(x))
+    elastic = torques - sum((k * slider_force(x, y) for k, y in sliders), np.zeros_like(x))
     scaled = x / largest
     linear, cubic = (nnls(np.stack([scaled, scaled**3], axis=1), elastic)[0] / largest).tolist()
-    return FittedTendons(linear, cubic / largest**2, sliders, torque)
+    return FittedSpring(linear, cubic / largest**2, sliders, max_torque)
 
 
-def opening(wind_up: Array, force: Array) -> Array:
+def loop_half_width(wind_up: Array, force: Array) -> Array:
     """Half the distance (n) between the branches of a loop, at n wind-ups between its ends."""
-    back, forth = slice(RAMP, RAMP + LOOP // 2 + 1), slice(RAMP + LOOP // 2, None)
-    x = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP)
+    back = slice(RAMP_POINTS, RAMP_POINTS + LOOP_POINTS // 2 + 1)
+    forth = slice(RAMP_POINTS + LOOP_POINTS // 2, None)
+    x = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP_POINTS)
     down = np.interp(x, wind_up[back][::-1], force[back][::-1])
     return np.asarray(0.5 * (down - np.interp(x, wind_up[forth], force[forth])))

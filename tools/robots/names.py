@@ -3,26 +3,26 @@
 import re
 from collections.abc import Mapping
 
-from jointfmu_fmu_src.naming import reserved
+from jointfmu_fmu_src.naming import is_reserved
 
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
 
-def identifier(name: str) -> str:
+def make_identifier(name: str) -> str:
     """Convert a name to a valid identifier of letters, digits and _ that is no keyword or device name."""
     return re.sub(
-        r"\W", "_", f"_{name}" if not name[:1].isalpha() or reserved(name) else name, flags=re.ASCII
+        r"\W", "_", f"_{name}" if not name[:1].isalpha() or is_reserved(name) else name, flags=re.ASCII
     )
 
 
-def check_names(files: Mapping[str, ParameterFile]) -> None:
+def check_names(drive_files: Mapping[str, ParameterFile]) -> None:
     """Raise ValueError if two drives have the same name but different parameters: one name is one plugin.
 
-    files : {joint: parameter file of its drive}
+    drive_files : {joint: parameter file of its drive}
     """
     first: dict[str, tuple[str, ParameterFile]] = {}
-    for joint, file in files.items():
-        other, known = first.setdefault(identifier(file.name), (joint, file))
+    for joint, file in drive_files.items():
+        other, known = first.setdefault(make_identifier(file.name), (joint, file))
         if format_parameter_file(known) != format_parameter_file(file):
             raise ValueError(
                 f"the drives of {other} and {joint} are both named {file.name!r} and differ; "

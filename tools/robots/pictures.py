@@ -10,20 +10,20 @@ from jointfmu.quantity import Array
 
 from .. import plots
 from .elastic import ElasticAxis
-from .poses import frequencies, sag
+from .poses import compute_frequencies, compute_sag
 
 if TYPE_CHECKING:
     from mujoco import MjModel
 
-POINTS = 21
+GRID_ANGLES = 21
 """Number of angles per axis of the pose grid [1]."""
-LOADS = 11
+PAYLOAD_COUNT = 11
 """Number of payloads [1]."""
-SIZE = (9.0, 3.8)
+FIGURE_SIZE = (9.0, 3.8)
 """Width and height of a figure [inch]."""
 
 
-def swept(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
+def select_grid_axes(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
     """Axes of the pose grid: the second and third of an arm, which change weight torques and inertia most.
 
     An arm with two axes or one: all of them.
@@ -31,50 +31,51 @@ def swept(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
     return axes[1:3] if len(axes) > 2 else axes[-2:]
 
 
-def angles(model: "MjModel", axis: ElasticAxis) -> Array:
+def list_angles(model: "MjModel", axis: ElasticAxis) -> Array:
     """Angles (GRID_ANGLES) [rad] over the range of an axis; a full turn for an axis without limits."""
     joint = model.joint(axis.joint)
     low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
-    return np.linspace(low, high, POINTS)
+    return np.linspace(low, high, GRID_ANGLES)
 
 
-def over_poses(
+def sweep_frequencies(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[list[Array], Array]:
     """Angles [rad] of the grid axes, and frequencies (..., n) [Hz] over their grid; others keep `pose`."""
-    grid = [angles(model, axis) for axis in swept(axes)]
+    grid = [list_angles(model, axis) for axis in select_grid_axes(axes)]
     poses = grid_poses(model, axes, pose, grid)
-    rows = [frequencies(model, axes, grid_pose, payload, tip) for grid_pose in poses]
+    rows = [compute_frequencies(model, axes, grid_pose, payload, tip) for grid_pose in poses]
     return grid, np.reshape(rows, (*map(len, grid), len(axes)))
 
 
 def grid_poses(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array]) -> Array:
     """Poses (k, n) of the grid, the last grid axis varying fastest; other joints keep `pose`."""
-    indices = [int(model.joint(axis.joint).qposadr[0]) for axis in swept(axes)]
+    indices = [int(model.joint(axis.joint).qposadr[0]) for axis in select_grid_axes(axes)]
     mesh = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, len(grid))
     poses = np.tile(pose, (len(mesh), 1))
     poses[:, indices] = mesh
     return poses
 
 
-def lowest(
+def find_worst_pose(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array], payload: float, tip: int
 ) -> Array:
-    """Pose of the grid with the largest tip displacement under weight, compared to 1 nm.
+    """Pose of the grid with the largest tip displacement under weight.
 
-    Of several such poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
+    Displacements that differ by less than 1 nm count as equal. Of several such
+    poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
     """
     poses = sorted(
         grid_poses(model, axes, pose, grid),
         key=lambda grid_pose: round(float(np.linalg.norm(grid_pose - pose)), 9),
     )
-    return max(poses, key=lambda grid_pose: round(sag(model, axes, grid_pose, payload, tip)[1], 9))
+    return max(poses, key=lambda grid_pose: round(compute_sag(model, axes, grid_pose, payload, tip)[1], 9))
 
 
 def draw_frequencies(path: Path, axes: Sequence[ElasticAxis], grid: list[Array], frequencies: Array) -> None:
     """Plot the lowest two natural frequencies over the pose grid."""
-    names = [axis.joint for axis in swept(axes)]
-    with plots.open_figure(path, SIZE) as figure:
+    names = [axis.joint for axis in select_grid_axes(axes)]
+    with plots.open_figure(path, FIGURE_SIZE) as figure:
         for i in range(min(2, frequencies.shape[-1])):
             panel = figure.add_subplot(1, min(2, frequencies.shape[-1]), i + 1)
             panel.set(title=f"frequency {i + 1} [Hz]", xlabel=f"{names[0]} [deg]")
@@ -90,9 +91,9 @@ def draw_payload(
     path: Path, model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[Array, float]:
     """Plot wind-ups and tip error against payload; returns their values (n) [rad] and [m] at full payload."""
-    loads = np.linspace(0.0, payload, LOADS)
-    rows = [sag(model, axes, pose, float(load), tip) for load in loads]
-    with plots.open_figure(path, SIZE) as figure:
+    loads = np.linspace(0.0, payload, PAYLOAD_COUNT)
+    rows = [compute_sag(model, axes, pose, float(load), tip) for load in loads]
+    with plots.open_figure(path, FIGURE_SIZE) as figure:
         wind_up_axes, error_axes = figure.subplots(1, 2)
         for axis, line in zip(axes, np.array([x for x, _ in rows]).T, strict=True):
             wind_up_axes.plot(loads, 1e3 * line, label=axis.joint)

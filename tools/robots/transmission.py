@@ -12,9 +12,9 @@ from jointfmu.quantity import Array
 
 from ..joint_parts import load_tool_module
 
-RAMP = 200
+RAMP_POINTS = 200
 """Number of points of the ramp to the largest torque [1]."""
-LOOP = 800
+LOOP_POINTS = 800
 """Number of points of the loop after the ramp [1]."""
 
 
@@ -41,28 +41,28 @@ class Transmission:
     damping: float
     rated_torque: float
     max_torque: float
-    dry: float
-    viscous: float
-    static: float
+    dry_friction: float
+    viscous_friction: float
+    static_friction: float
     stribeck_speed: float
-    presliding: float
-    wind_up: Callable[[ArrayLike], Array]
-    lacks: Sequence[str] = ()
+    presliding_angle: float
+    compute_wind_up: Callable[[ArrayLike], Array]
+    omitted_effects: Sequence[str] = ()
 
-    def loop(self, torque: float) -> tuple[Array, Array]:
+    def compute_loop(self, torque: float) -> tuple[Array, Array]:
         """Torques (n) [N.m] and wind-ups (n) [rad] along a ramp from rest to `torque` and one full loop."""
-        ramp = np.linspace(0.0, torque, RAMP + 1)
-        cycle = np.cos(np.linspace(0.0, 2.0 * np.pi, LOOP + 1)[1:]) * torque
+        ramp = np.linspace(0.0, torque, RAMP_POINTS + 1)
+        cycle = np.cos(np.linspace(0.0, 2.0 * np.pi, LOOP_POINTS + 1)[1:]) * torque
         torques = np.concatenate([ramp, cycle])
-        return torques, self.wind_up(torques)
+        return torques, self.compute_wind_up(torques)
 
 
-def area(wind_up: Array, torque: Array) -> float:
+def loop_area(wind_up: Array, torque: Array) -> float:
     """Area [J] of the loop after the ramp: the energy dissipated in one cycle."""
-    return float(np.trapezoid(torque[RAMP:], wind_up[RAMP:]))
+    return float(np.trapezoid(torque[RAMP_POINTS:], wind_up[RAMP_POINTS:]))
 
 
-def transmission(file: ParameterFile) -> Transmission:
+def make_transmission(file: ParameterFile) -> Transmission:
     """Drive of a parameter file. Raises ValueError if its joint is no drive."""
     tool_module = load_tool_module(KINDS[file.joint], "transmission")
     if tool_module is None:

@@ -4,13 +4,15 @@ from dataclasses import asdict
 
 from ..interface import load
 from . import mjcf, urdf
-from .transmission import transmission
+from .transmission import make_transmission
 
 
-def write_drive(form: str, source: str, torque: float | None) -> tuple[str, list[str], dict[str, object]]:
+def write_drive(
+    robot_format: str, source: str, torque: float | None
+) -> tuple[str, list[str], dict[str, object]]:
     """Write a drive in a robot format, fitted up to a torque.
 
-    robot_format : a key of WRITERS
+    robot_format : a key of FORMAT_WRITERS
     source       : parameter file or name of the drive
     torque       : [N.m]; None: rated torque
 
@@ -18,17 +20,17 @@ def write_drive(form: str, source: str, torque: float | None) -> tuple[str, list
 
     Raises ValueError if the source is no drive or the torque outside its table, ImportError without mujoco.
     """
-    drive = transmission(load(source).file)
+    drive = make_transmission(load(source).file)
     fit_torque = drive.rated_torque if torque is None else torque
     if not 0.0 < fit_torque <= drive.max_torque:
         raise ValueError(
             f"--torque = {fit_torque:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
         )
-    text, miss, lacks = WRITERS[form](drive, fit_torque)
-    lines = [*(miss.lines(fit_torque) if miss else ()), *(f"not carried: {line}" for line in lacks)]
+    text, miss, lacks = FORMAT_WRITERS[robot_format](drive, fit_torque)
+    lines = [*(miss.format_lines(fit_torque) if miss else ()), *(f"not carried: {line}" for line in lacks)]
     errors = asdict(miss) if miss else {}
     return text, lines, {"drive": drive.name, "torque": fit_torque, **errors, "lacks": lacks}
 
 
-WRITERS = {"mjcf": mjcf.text, "urdf": urdf.text}
+FORMAT_WRITERS = {"mjcf": mjcf.format_mjcf, "urdf": urdf.format_urdf}
 """{format: (drive, torque [N.m]) -> text, errors of the fit (None: no springs), omitted effects}."""

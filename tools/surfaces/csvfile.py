@@ -34,11 +34,11 @@ from ..columns import (
 from . import heights as grid
 from .heights import ArealMap, Heights, Profile
 
-SURFACE_FILE = FileKind("surface", (".csv",))
+SURFACE_FILE_KIND = FileKind("surface", (".csv",))
 LENGTH_UNITS = unit_sizes("m", "mm", "um", "µm", "μm", "nm")
 """Allowed length units: {unit: size in metres}."""
 LAYOUT_COLUMNS = {"profile": ("x", "z"), "points": ("x", "y", "z"), "grid": ("z",)}
-_DECLARATION = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
+_DECLARATION_PATTERN = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
 UNIT_LIST = ", ".join(filter(str.isascii, LENGTH_UNITS))
 """List of the allowed length units, for messages."""
 
@@ -55,13 +55,13 @@ def read_declaration(path: Path) -> str | None:
     """First line of a file if it declares one of the layouts of this package; None for any other file."""
     with path.open("rb") as file, contextlib.suppress(UnicodeDecodeError):
         first = decode_text(file.readline(1000)).strip()
-        return first if _DECLARATION.match(first) else None
+        return first if _DECLARATION_PATTERN.match(first) else None
     return None
 
 
 def read_declared(path: Path, first_line: str) -> tuple[Heights, str]:
     """Read a file whose first line declares its layout; return the heights and the unit along x."""
-    match = _DECLARATION.match(first_line)
+    match = _DECLARATION_PATTERN.match(first_line)
     assert match
     layout, declaration = match[1], match[2]
     units = dict(re.findall(r"\b([xyz])\s*\[\s*([^\]\s]+)\s*\]", declaration))
@@ -176,19 +176,21 @@ def _parse_numbers(path: Path, line: int, row: Sequence[str]) -> Array:
     return np.array(values, dtype=np.float64)
 
 
-def heights_from_columns(path: Path, values: Array, factors: list[float]) -> Heights:
+def heights_from_columns(path: Path, values: Array, unit_factors: list[float]) -> Heights:
     """Profile from columns x, z, or areal map from columns x, y, z.
 
-    values  : (n, 2) or (n, 3)
-    factors : units of the columns in metres
+    values       : (n, 2) or (n, 3)
+    unit_factors : units of the columns in metres
 
     Raises ValueError for points that lie on no regular grid or occur twice.
     """
-    if values.shape[1] != len(factors):
-        raise ValueError(f"{path}: has {values.shape[1]} columns, its header declares {len(factors)}")
-    if len(factors) == 2:
-        return _profile_from_columns(path, values[:, 0], values[:, 1] * factors[1], factors[0])
-    (x, dx), (y, dy) = (_grid_indices(path, name, values[:, i], factors[i]) for i, name in enumerate("xy"))
+    if values.shape[1] != len(unit_factors):
+        raise ValueError(f"{path}: has {values.shape[1]} columns, its header declares {len(unit_factors)}")
+    if len(unit_factors) == 2:
+        return _profile_from_columns(path, values[:, 0], values[:, 1] * unit_factors[1], unit_factors[0])
+    (x, dx), (y, dy) = (
+        _grid_indices(path, name, values[:, i], unit_factors[i]) for i, name in enumerate("xy")
+    )
     if (x.max() + 1) * (y.max() + 1) > 4 * x.size:
         raise ValueError(f"{path}: {x.size} points lie on no grid of x and y; resample them to one")
     heights = np.full((y.max() + 1, x.max() + 1), np.nan)
@@ -196,7 +198,7 @@ def heights_from_columns(path: Path, values: Array, factors: list[float]) -> Hei
     occupied[y, x] = True
     if np.count_nonzero(occupied) < x.size:
         raise ValueError(f"{path}: x and y repeat points; expected every point once")
-    heights[y, x] = values[:, 2] * factors[2]
+    heights[y, x] = values[:, 2] * unit_factors[2]
     return ArealMap(z=heights, dx=dx, dy=dy, name=str(path))
 
 

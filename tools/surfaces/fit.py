@@ -44,28 +44,28 @@ class SelfAffineLaw:
     """Self-affine law fitted to a series over scale.
 
     H           : Hurst exponent [1]
-    level       : ln(Phi) at the wavelength `reference`, Phi in m2
-    reference   : [m]
-    covariance  : (2, 2) of (H, level)
+    log_power   : ln(Phi) at the wavelength `reference_wavelength`, Phi in m2
+    reference_wavelength : [m]
+    covariance  : (2, 2) of (H, log_power)
     offset      : constant added to the law, over its value at the shortest scale [1]: > 0 for noise, < 0 for
                   missing short waves
     deviation   : standard deviation of ln(value) from the law beyond statistical scatter [1]
     drift       : change of D over the range [1]
     drift_error : standard error of the drift [1]
-    low, high   : range of scales [m]
+    min_scale, max_scale : range of scales [m]
     covers_interval : whether D covers its whole interval 1 to 2 over all scales, and this range is short
     """
 
     H: float
-    level: float
-    reference: float
+    log_power: float
+    reference_wavelength: float
     covariance: Array
     offset: float
     deviation: float
     drift: float
     drift_error: float
-    low: float
-    high: float
+    min_scale: float
+    max_scale: float
     covers_interval: bool = False
 
     @property
@@ -82,20 +82,23 @@ class SelfAffineLaw:
     @property
     def decades(self) -> float:
         """Length of the range [decades]."""
-        return float(np.log10(self.high / self.low))
+        return float(np.log10(self.max_scale / self.min_scale))
 
 
-def fit_law(series: ScaleSeries, low: float | None = None, high: float | None = None) -> SelfAffineLaw:
+def fit_law(
+    series: ScaleSeries, min_scale: float | None = None, max_scale: float | None = None
+) -> SelfAffineLaw:
     """Fit the law over a range of scales [m], or over the longest self-affine range.
 
     Raises ValueError if the given range has fewer than four values.
     """
     sure = np.diag(series.covariance(0.5)) < MAX_VARIANCE
-    if low is not None and high is not None:
-        inside = (series.scale >= low * (1 - 1e-9)) & (series.scale <= high * (1 + 1e-9))
+    if min_scale is not None and max_scale is not None:
+        inside = (series.scale >= min_scale * (1 - 1e-9)) & (series.scale <= max_scale * (1 + 1e-9))
         if (inside & sure).sum() < 4:
             raise ValueError(
-                f"range {low:g} {high:g} m holds {int((inside & sure).sum())} values of the {series.method} "
+                f"range {min_scale:g} {max_scale:g} m holds {int((inside & sure).sum())} values of the "
+                f"{series.method} "
                 f"method, at least 4 are needed; allowed is within {series.scale[sure][0]:.3g} "
                 f"{series.scale[sure][-1]:.3g} m"
             )
@@ -142,8 +145,8 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
     scatter = series.covariance(0.5)
 
     def log_law(p: Array) -> Array:
-        """ln(value) of the law at all scales, for p = (H, level, offset)."""
-        expected = series.expected(p[0]) * reference ** (-2.0 * p[0])
+        """ln(value) of the law at all scales, for p = (H, log_power, offset)."""
+        expected = series.expected_value(p[0]) * reference ** (-2.0 * p[0])
         return np.asarray(np.log(expected + (p[2] * expected[0] if offset else 0.0)) + p[1])
 
     start[1] = np.mean(y - log_law(start))
@@ -166,15 +169,15 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
     covariance = COVARIANCE_FACTOR * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
     return SelfAffineLaw(
         H=float(p[0]),
-        level=float(p[1]),
-        reference=reference,
+        log_power=float(p[1]),
+        reference_wavelength=reference,
         covariance=covariance,
         offset=float(p[2]) if offset else 0.0,
         deviation=deviation,
         drift=drift,
         drift_error=drift_error,
-        low=float(series.scale[0]),
-        high=float(series.scale[-1]),
+        min_scale=float(series.scale[0]),
+        max_scale=float(series.scale[-1]),
     )
 
 
@@ -187,34 +190,38 @@ def _whitening_matrix(covariance: Array) -> Array:
     return np.asarray(np.linalg.inv(np.linalg.cholesky(covariance)))
 
 
-def _correlation_matrix(x: Array) -> Array:
+def _correlation_matrix(log_scale: Array) -> Array:
     """Correlation matrix (n, n) [1] of the deviations from the law at ln(scale) x (n)."""
-    return np.asarray(np.exp(-np.abs(x[:, None] - x) / CORRELATION_LENGTH))
+    return np.asarray(np.exp(-np.abs(log_scale[:, None] - log_scale) / CORRELATION_LENGTH))
 
 
-def _excess_deviation(residual: Array, scatter: Array, x: Array, parameter_count: int) -> float:
+def _excess_deviation(
+    residual: Array, statistical_covariance: Array, log_scale: Array, parameter_count: int
+) -> float:
     """Standard deviation from the law beyond statistical scatter: chi-squared then has its expected value.
 
-    scatter : covariance (n, n) of the residual from statistics
+    statistical_covariance : covariance (n, n) of the residual from statistics
     """
-    degrees_of_freedom = max(x.size - parameter_count, 1)
-    correlation, deviations = _correlation_matrix(x), np.geomspace(MIN_DEVIATION, 3.0, 60)
+    degrees_of_freedom = max(log_scale.size - parameter_count, 1)
+    correlation, deviations = _correlation_matrix(log_scale), np.geomspace(MIN_DEVIATION, 3.0, 60)
 
     def is_sufficient(deviation: float) -> bool:
         """Whether chi-squared is at most its expected value for this standard deviation."""
-        chi_squared = residual @ np.linalg.solve(scatter + deviation**2 * correlation, residual)
+        chi_squared = residual @ np.linalg.solve(
+            statistical_covariance + deviation**2 * correlation, residual
+        )
         return bool(chi_squared <= degrees_of_freedom)
 
     return float(deviations[min(bisect_left(deviations, True, key=is_sufficient), deviations.size - 1)])
 
 
-def _estimate_drift(x: Array, residual: Array, scatter: Array) -> tuple[float, float]:
+def _estimate_drift(log_scale: Array, residual: Array, statistical_covariance: Array) -> tuple[float, float]:
     """Change of D over the range and its standard error, from an additional quadratic term in ln(scale)."""
-    whiten = _whitening_matrix(scatter + MIN_DEVIATION**2 * _correlation_matrix(x))
-    t = x - x.mean()
+    whiten = _whitening_matrix(statistical_covariance + MIN_DEVIATION**2 * _correlation_matrix(log_scale))
+    t = log_scale - log_scale.mean()
     columns = [np.ones_like(t), t, t**2]
     white = whiten @ np.stack(columns, axis=1)
     inverse = np.linalg.inv(white.T @ white)
     coefficients = inverse @ white.T @ (whiten @ residual)
-    length = float(x[-1] - x[0])
+    length = float(log_scale[-1] - log_scale[0])
     return float(-coefficients[2] * length), float(np.sqrt(inverse[2, 2]) * length)

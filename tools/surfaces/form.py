@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from .heights import FORMS, RELATIVE_ROUND_OFF, ArealMap, Heights
+from .heights import FORM_NAMES, RELATIVE_ROUND_OFF, ArealMap, Heights
 
 Mask = NDArray[np.bool_]
 SPIKE_RATIO = 8.0
@@ -26,20 +26,23 @@ MAX_MISSING_SHARE = 0.2
 class Repair:
     """Repair of a scan, for messages.
 
-    name   : kind of repair
-    count  : number of repaired points
-    points : number of all points
-    effect : text on its effect
+    name            : kind of repair
+    repaired_points : number of repaired points
+    total_points    : number of all points
+    effect_note     : text on its effect
     """
 
     name: str
-    count: int
-    points: int
-    effect: str = ""
+    repaired_points: int
+    total_points: int
+    effect_note: str = ""
 
     def __str__(self) -> str:
-        share = 100.0 * self.count / self.points
-        return f"{self.name}: {self.count} of {self.points} points ({share:.3g} %){self.effect}"
+        share = 100.0 * self.repaired_points / self.total_points
+        return (
+            f"{self.name}: {self.repaired_points} of {self.total_points} points ({share:.3g} "
+            f"%){self.effect_note}"
+        )
 
 
 def remove_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
@@ -71,8 +74,8 @@ def remove_form(heights: Heights, form: str = "tilt") -> Heights:
 
     form : "mean", "tilt" or "curvature": order 0, 1 or 2
     """
-    if form not in FORMS:
-        raise ValueError(f"form = {form!r} is not one of {', '.join(FORMS)}")
+    if form not in FORM_NAMES:
+        raise ValueError(f"form = {form!r} is not one of {', '.join(FORM_NAMES)}")
     order = {"mean": 0, "tilt": 1, "curvature": 2}[form]
     axes = [np.linspace(-1.0, 1.0, n) for n in heights.z.shape]
     grids = np.meshgrid(*axes, indexing="ij", sparse=True)
@@ -87,13 +90,13 @@ def remove_form(heights: Heights, form: str = "tilt") -> Heights:
     return heights.with_heights(residual)
 
 
-def _monomials(axes: list[Array], order: int) -> list[Array]:
+def _monomials(coordinates: list[Array], order: int) -> list[Array]:
     """Monomials up to an order in one or two coordinates."""
-    terms = [np.ones_like(axes[0])]
+    terms = [np.ones_like(coordinates[0])]
     if order >= 1:
-        terms += axes
+        terms += coordinates
     if order >= 2:
-        terms += [a * b for i, a in enumerate(axes) for b in axes[i:]]
+        terms += [a * b for i, a in enumerate(coordinates) for b in coordinates[i:]]
     return terms
 
 
@@ -148,17 +151,17 @@ def _fill_nearest(z: Array, valid: Mask) -> Array:
 class PreparedScan:
     """Scan without spikes and form.
 
-    gappy    : heights with missing points as NaN, for the structure function
-    complete : heights with missing points filled, for the spectrum
-    repairs  : repairs of spikes and gaps
+    heights_with_gaps : heights with missing points as NaN, for the structure function
+    filled_heights    : heights with missing points filled, for the spectrum
+    repairs           : repairs of spikes and gaps
     """
 
-    gappy: Heights
-    complete: Heights
+    heights_with_gaps: Heights
+    filled_heights: Heights
     repairs: tuple[Repair, ...]
 
 
-def prepare_scan(heights: Heights, form: str = FORMS[0], keep_spikes: bool = False) -> PreparedScan:
+def prepare_scan(heights: Heights, form: str = FORM_NAMES[0], keep_spikes: bool = False) -> PreparedScan:
     """Prepare a scan: remove spikes (unless `keep_spikes`), remove the form, fill missing points.
 
     Raises ValueError if only round-off remains without the form, or if too many points are missing.
@@ -199,12 +202,12 @@ class ScanRoughness:
     shortest_wave: float
 
 
-def default_wave(heights: Heights) -> float:
+def default_longest_wave(heights: Heights) -> float:
     """Default of the longest wavelength [m]: the length of a profile, or the shorter side of a map."""
     return min(heights.lengths)
 
 
-def check_wave(heights: Heights, longest_wave: float) -> None:
+def check_longest_wave(heights: Heights, longest_wave: float) -> None:
     """Raise ValueError if a scan cannot resolve waves up to this longest wavelength [m]."""
     low, high = MIN_WAVE_RATIO * _shortest_wave(heights), max(heights.lengths)
     if not low <= longest_wave <= high * (1.0 + 1e-9):
@@ -214,11 +217,11 @@ def check_wave(heights: Heights, longest_wave: float) -> None:
         )
 
 
-def scan_roughness(gappy: Heights, complete: Heights, longest_wave: float) -> ScanRoughness:
+def scan_roughness(heights_with_gaps: Heights, filled_heights: Heights, longest_wave: float) -> ScanRoughness:
     """Roughness of a scan from waves up to a longest wavelength [m].
 
-    gappy    : heights without form, missing points as NaN
-    complete : heights without form, missing points filled
+    heights_with_gaps : heights without form, missing points as NaN
+    filled_heights    : heights without form, missing points filled
 
     The heights are decomposed into cosines with 0, 1, 2, ... half waves along each side (type-II cosine
     transform). This needs no window and has no jump at the ends; the squared amplitudes add up to the mean
@@ -226,19 +229,23 @@ def scan_roughness(gappy: Heights, complete: Heights, longest_wave: float) -> Sc
     """
     from scipy.fft import dctn
 
-    check_wave(complete, longest_wave)
-    valid = gappy.z[np.isfinite(gappy.z)] - float(np.nanmean(gappy.z))
-    spacings = (complete.dy, complete.dx) if isinstance(complete, ArealMap) else (complete.dx,)
-    axes = [np.arange(n) / (2.0 * n * d) for n, d in zip(complete.z.shape, spacings, strict=True)]
+    check_longest_wave(filled_heights, longest_wave)
+    valid = heights_with_gaps.z[np.isfinite(heights_with_gaps.z)] - float(np.nanmean(heights_with_gaps.z))
+    spacings = (
+        (filled_heights.dy, filled_heights.dx)
+        if isinstance(filled_heights, ArealMap)
+        else (filled_heights.dx,)
+    )
+    axes = [np.arange(n) / (2.0 * n * d) for n, d in zip(filled_heights.z.shape, spacings, strict=True)]
     squared = sum(f**2 for f in np.meshgrid(*axes, indexing="ij", sparse=True))
-    power = dctn(complete.z, norm="ortho") ** 2 / complete.z.size
-    shortest = _shortest_wave(complete)
+    power = dctn(filled_heights.z, norm="ortho") ** 2 / filled_heights.z.size
+    shortest = _shortest_wave(filled_heights)
     inside = squared >= (1.0 - 1e-9) / longest_wave**2
     resolved = inside & (squared <= (1.0 + 1e-9) / shortest**2)
-    directions = 1.0 if isinstance(complete, ArealMap) else 2.0
+    directions = 1.0 if isinstance(filled_heights, ArealMap) else 2.0
     slope = 2.0 * np.pi * np.sqrt(directions * np.sum(power[resolved] * squared[resolved]))
     return ScanRoughness(
-        is_areal=isinstance(complete, ArealMap),
+        is_areal=isinstance(filled_heights, ArealMap),
         rms=float(np.sqrt(np.mean(valid**2))),
         mean_absolute=float(np.mean(np.abs(valid))),
         h=float(np.sqrt(np.sum(power[inside]))),

@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 
 from ..columns import CONTROL_CHARACTERS
 
-FORMS = ("tilt", "mean", "curvature")
+FORM_NAMES = ("tilt", "mean", "curvature")
 """Forms that can be removed: a plane (default), the mean height, a surface of second order."""
 MIN_PROFILE_POINTS = 128
 """Smallest number of points of a profile: the lags of the structure function then span 0.9 decades."""
@@ -107,13 +107,13 @@ MAX_DIGIT_UNITS = 1e9
 
 
 def fit_grid(
-    path: Path, name: str, positions: Array, factor: float, allow_repeats: bool = False
+    path: Path, axis_name: str, positions: Array, unit_size: float, allow_repeats: bool = False
 ) -> tuple[GridIndices, float]:
     """Fit a regular grid to positions (n,); return the grid index of each position, from 0, and the spacing.
 
-    path, name    : file and axis, for messages
-    positions     : increasing positions as the file states them, in a unit of `factor` metres
-    allow_repeats : whether rounding may make neighbours equal
+    path, axis_name : file and axis, for messages
+    positions       : increasing positions as the file states them, in a unit of `unit_size` metres
+    allow_repeats   : whether rounding may make neighbours equal
 
     First, the spacing is (last - first)/(n - 1). Each position must lie on the grid within GRID_TOLERANCE of
     the spacing, or within rounding: half a unit of its last digit plus half a unit of the last digit of the
@@ -121,10 +121,12 @@ def fit_grid(
     multiple of it. Raises ValueError if this fails too.
     """
     if positions.size < 2 or not np.all(np.isfinite(positions)):
-        raise ValueError(f"{path}: {name} has a gap or a single value; expected positions in rising order")
+        raise ValueError(
+            f"{path}: {axis_name} has a gap or a single value; expected positions in rising order"
+        )
     gaps = np.diff(positions)
     if positions[-1] == positions[0] or (not allow_repeats and gaps.min() <= 0.0):
-        raise ValueError(f"{path}: {name} repeats values; expected every position once")
+        raise ValueError(f"{path}: {axis_name} repeats values; expected every position once")
     offset = positions - positions[0]
     step = float(offset[-1] / (positions.size - 1))
     index = np.arange(positions.size)
@@ -141,8 +143,8 @@ def fit_grid(
         or _grid_distance(offset, index, step).max() > GRID_TOLERANCE * step
     ):
         raise ValueError(
-            f"{path}: the spacing of {name} varies ({gaps.min() * factor:.4g} to "
-            f"{gaps.max() * factor:.4g} m); resample to a constant one"
+            f"{path}: the spacing of {axis_name} varies ({gaps.min() * unit_size:.4g} to "
+            f"{gaps.max() * unit_size:.4g} m); resample to a constant one"
         )
     return index, step
 
@@ -201,7 +203,7 @@ FORMAT_SIGNATURES = (
     *(b"\xff\xfef\0i", b"\xfe\xff\0f\0i", b"\x88\x1b\x03", b"GWY", b"FRTM_GLIDERV", b"WSxM file copyright"),
 )
 """Signatures (first bytes) of these formats; Wyko OPD has its signature from the third byte on."""
-_NUMBER = re.compile(rb"\d+")
+_NUMBER_PATTERN = re.compile(rb"\d+")
 
 
 def check_surface_file(path: Path) -> None:
@@ -219,7 +221,10 @@ def check_surface_file(path: Path) -> None:
     if path.stat().st_size > MAX_CHECKED_SIZE:
         return
     data = path.read_bytes()
-    if not CONTROL_CHARACTERS.search(data) and (count := len(_NUMBER.findall(data))) < MIN_PROFILE_POINTS:
+    if (
+        not CONTROL_CHARACTERS.search(data)
+        and (count := len(_NUMBER_PATTERN.findall(data))) < MIN_PROFILE_POINTS
+    ):
         raise ValueError(
             f"{path}: is no surface: a text of {count} numbers, "
             f"a profile needs at least {MIN_PROFILE_POINTS} points"

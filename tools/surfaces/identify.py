@@ -10,7 +10,7 @@ from jointfmu.quantity.refusal import InputRefusal
 
 from .. import fractal
 from .fit import SelfAffineLaw, fit_law
-from .form import check_wave, default_wave, prepare_scan, scan_roughness
+from .form import check_longest_wave, default_longest_wave, prepare_scan, scan_roughness
 from .heights import ArealMap, Heights
 from .results import (
     TEXTURE_THRESHOLD,
@@ -27,7 +27,7 @@ from .spectrum import ScaleSeries, power_spectrum, structure_function
 
 CONFIDENCE_LEVEL = 0.95
 """Level of the confidence intervals [1]."""
-SAMPLE_COUNT = 4000
+MONTE_CARLO_SAMPLES = 4000
 
 
 def identify(
@@ -44,7 +44,7 @@ def identify(
     function is the sum of their structure functions, and its spectrum the sum of their spectra.
 
     surfaces : one surface, or two of the same kind (profile or areal map)
-    form     : form that is removed, one of FORMS
+    form     : form that is removed, one of FORM_NAMES
     scale_range : range [m] of lags and wavelengths; None: the longest self-affine range
     longest_wave : longest wavelength [m] of the roughness; None: the smallest `default_wave` of the surfaces
     side : for one surface, its side of the contact, one of SCAN_SIDES. "1" or "2": the other side is smooth;
@@ -62,7 +62,7 @@ def identify(
         raise ValueError("a profile and an areal map given, a pair needs two of the same kind")
     if longest_wave is not None:
         for surface in surfaces:
-            check_wave(surface, longest_wave)
+            check_longest_wave(surface, longest_wave)
     prepared = [prepare_scan(surface, form, keep_spikes) for surface in surfaces]
     directions = ("areal", "x", "y") if areal == {True} else ("profile",)
     low, high = scale_range or (None, None)
@@ -70,21 +70,28 @@ def identify(
     for direction in directions:
         for method in (structure_function, power_spectrum):
             all_series = [
-                method(surface.gappy if method is structure_function else surface.complete, direction)
+                method(
+                    surface.heights_with_gaps if method is structure_function else surface.filled_heights,
+                    direction,
+                )
                 for surface in prepared
             ]
             series = double_series(all_series[0]) if side == "both" else all_series[0]
             if len(all_series) == 2:
                 series = add_series(all_series[0], all_series[1])
             results.append(_fractal_result(series, fit_law(series, low, high)))
-    repairs = [(surface.complete.name, repair) for surface in prepared for repair in surface.repairs]
+    repairs = [(surface.filled_heights.name, repair) for surface in prepared for repair in surface.repairs]
     line_shares = [
-        mean_line_shares(surface.complete) for surface in prepared if isinstance(surface.complete, ArealMap)
+        mean_line_shares(surface.filled_heights)
+        for surface in prepared
+        if isinstance(surface.filled_heights, ArealMap)
     ]
     names = tuple(surface.name for surface in surfaces)
     textured = any(max(shares) > TEXTURE_THRESHOLD for shares in line_shares)
-    wave = longest_wave or min(default_wave(surface) for surface in surfaces)
-    scans = tuple(scan_roughness(surface.gappy, surface.complete, wave) for surface in prepared)
+    wave = longest_wave or min(default_longest_wave(surface) for surface in surfaces)
+    scans = tuple(
+        scan_roughness(surface.heights_with_gaps, surface.filled_heights, wave) for surface in prepared
+    )
     notes = tuple(list_warnings(results, textured))
     return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, side)
 
@@ -129,10 +136,10 @@ def _fractal_result(series: ScaleSeries, law: SelfAffineLaw) -> FractalResult:
     """
     rng = np.random.default_rng(0)
     root = np.linalg.cholesky(law.covariance)
-    draws = np.array([law.H, law.level]) + rng.standard_normal((SAMPLE_COUNT, 2)) @ root.T
+    draws = np.array([law.H, law.log_power]) + rng.standard_normal((MONTE_CARLO_SAMPLES, 2)) @ root.T
     H = np.clip(np.append(law.H, draws[:, 0]), 0.005, 0.995)
-    level = np.append(law.level, draws[:, 1])
-    log = (level + np.log(2.0) - 2.0 * H * np.log(law.reference)) / (2.0 * (1.0 - H))
+    level = np.append(law.log_power, draws[:, 1])
+    log = (level + np.log(2.0) - 2.0 * H * np.log(law.reference_wavelength)) / (2.0 * (1.0 - H))
     shift = np.log(fractal.profile_power_ratio(H)) / (2.0 * (1.0 - H))
     if series.method == "psd" and series.direction == "areal":
         profile, areal = log + shift, log

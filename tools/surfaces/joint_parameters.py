@@ -26,7 +26,10 @@ def fractal_parameters(
     for surface in KINDS[joint].surfaces:
         result = identification.select_best(_profile_direction(identification, surface), method)
         D, G = _dimension_and_roughness(result, surface)
-        values |= {f"{surface.prefix}.D": (D.value, result), f"{surface.prefix}.G": (G.value, result)}
+        values |= {
+            f"{surface.parameter_prefix}.D": (D.value, result),
+            f"{surface.parameter_prefix}.G": (G.value, result),
+        }
     return values
 
 
@@ -46,14 +49,14 @@ def _profile_direction(identification: Identification, surface: RoughSurface) ->
 
 def _dimension_and_roughness(result: FractalResult, surface: RoughSurface) -> tuple[Estimate, Estimate]:
     """D and G that the joint needs: of the surface or of the profile."""
-    if surface.areal:
+    if surface.is_areal:
         return result.areal.D_s, result.areal.G_s
     return result.profile.D, result.profile.G
 
 
 def dimension_meaning(joint: str) -> str:
     """Meaning of D of the first rough surface of a joint, as text."""
-    return "D_s of the surface" if KINDS[joint].surfaces[0].areal else "D of the profile"
+    return "D_s of the surface" if KINDS[joint].surfaces[0].is_areal else "D of the profile"
 
 
 def with_surface(
@@ -72,7 +75,7 @@ def with_surface(
     elif sure:
         file = _with_fractal_parameters(file, identification, method)
     for side, scan in identification.roughness_by_side.items():
-        name = identification.names[min(side, len(identification.names)) - 1]
+        name = identification.file_names[min(side, len(identification.file_names)) - 1]
         source = f"measured: {name}; waves up to {scan.longest_wave:.4g} m"
         file = file.with_roughness({f"Rq{side}": scan.h}, "user", source)
     return file
@@ -96,12 +99,12 @@ def _with_fractal_parameters(
     file: ParameterFile, identification: Identification, method: str | None
 ) -> ParameterFile:
     """Set D and G of the rough surfaces of the joint; ValueError if one is not finite."""
-    surfaces = {surface.prefix: surface for surface in KINDS[file.joint].surfaces}
+    surfaces = {surface.parameter_prefix: surface for surface in KINDS[file.joint].surfaces}
     for name, (value, result) in fractal_parameters(identification, file.joint, method).items():
         if not math.isfinite(value):
             D, G = result.profile.D.value, result.profile.G
             raise ValueError(
-                f"{name} of {' and '.join(identification.names)} is not determined (D = {D:.2f}, "
+                f"{name} of {' and '.join(identification.file_names)} is not determined (D = {D:.2f}, "
                 "the interval of "
                 f"G spans {G.decades:.0f} decades): {file.joint} needs a number"
             )
@@ -113,10 +116,10 @@ def _with_fractal_parameters(
 
 def _describe_files(identification: Identification) -> str:
     """Names of the scanned files and the sides that they represent, as text."""
-    if len(identification.names) == 2:
-        return f"{identification.names[0]} and {identification.names[1]} (equivalent surface)"
+    if len(identification.file_names) == 2:
+        return f"{identification.file_names[0]} and {identification.file_names[1]} (equivalent surface)"
     side = identification.side
-    return identification.names[0] + (
+    return identification.file_names[0] + (
         ""
         if side is None
         else " (both sides alike)"
@@ -130,7 +133,7 @@ def _describe_fit(identification: Identification, result: FractalResult) -> str:
     methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
         f"identified from {_describe_files(identification)} by {methods[result.method]} "
-        f"{result.fit.low:.3g} to {result.fit.high:.3g} m"
+        f"{result.fit.min_scale:.3g} to {result.fit.max_scale:.3g} m"
     )
 
 
@@ -140,7 +143,7 @@ def _describe_source(
     """Text for the source of D or G: files, method, direction and confidence interval."""
     D, G = _dimension_and_roughness(result, surface)
     estimate = D if symbol == "D" else G
-    if surface.areal:
+    if surface.is_areal:
         extent = "of the surface"
     else:
         extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"

@@ -98,7 +98,7 @@ class FractalResult:
 class Identification:
     """Identification of one surface or of the equivalent surface of two.
 
-    names       : names of the files
+    file_names  : names of the files
     results     : results of all methods and directions
     repairs     : (file, repair) of all repairs
     warnings    : messages for the user
@@ -107,7 +107,7 @@ class Identification:
     side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
     """
 
-    names: tuple[str, ...]
+    file_names: tuple[str, ...]
     results: tuple[FractalResult, ...]
     repairs: tuple[tuple[str, Repair], ...]
     warnings: tuple[str, ...]
@@ -204,7 +204,8 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
         label = f"{result.method}, {result.direction}"
         if not (result.fit.is_self_affine or result.fit.covers_interval):
             lines.append(
-                f"{label}: not self-affine over {result.fit.low:.3g} to {result.fit.high:.3g} m: D drifts by "
+                f"{label}: not self-affine over {result.fit.min_scale:.3g} to "
+                f"{result.fit.max_scale:.3g} m: D drifts by "
                 f"{result.fit.drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
             )
         if result.fit.decades < 1.0:
@@ -256,8 +257,8 @@ def draw_identification(identification: Identification, path: str | Path) -> Non
 def _draw_result(axes: "Axes", result: FractalResult) -> None:
     """Plot one result: all data, data in the range of the fit, and the fitted law."""
     x, y, law = _plot_data(result)
-    inside = (result.series.scale >= result.fit.low * 0.999) & (
-        result.series.scale <= result.fit.high * 1.001
+    inside = (result.series.scale >= result.fit.min_scale * 0.999) & (
+        result.series.scale <= result.fit.max_scale * 1.001
     )
     colour = DIRECTION_COLOURS[result.direction]
     D, low, high = (
@@ -268,7 +269,7 @@ def _draw_result(axes: "Axes", result: FractalResult) -> None:
     name = "D_s" if result.direction == "areal" else "D"
     label = (
         f"{result.direction}: {name} = {D:.3f} ({low:.3f} to {high:.3f}), "
-        f"{1e6 * result.fit.low:.3g} to {1e6 * result.fit.high:.3g} µm"
+        f"{1e6 * result.fit.min_scale:.3g} to {1e6 * result.fit.max_scale:.3g} µm"
     )
     axes.plot(x, y, "o", ms=3.5, mfc="none", color=colour, alpha=0.5)
     axes.plot(x[inside], y[inside], "o", ms=3.5, color=colour)
@@ -292,11 +293,11 @@ def _plot_data(result: FractalResult) -> tuple[Array, Array, Array]:
     The structure function is the one without tilt, V/(4 - 4^H).
     """
     series, fit = result.series, result.fit
-    expected = series.expected(fit.H)
+    expected = series.expected_value(fit.H)
     is_structure = series.method == "structure"
     unsmoothed = structure_power_law(series.scale, fit.H) if is_structure else series.scale ** (2.0 * fit.H)
-    first = expected[np.argmin(np.abs(series.scale - fit.low))]
-    law = np.exp(fit.level) * fit.reference ** (-2.0 * fit.H) * (expected + fit.offset * first)
+    first = expected[np.argmin(np.abs(series.scale - fit.min_scale))]
+    law = np.exp(fit.log_power) * fit.reference_wavelength ** (-2.0 * fit.H) * (expected + fit.offset * first)
     data, law = series.value * unsmoothed / expected, law * unsmoothed / expected
     if is_structure:
         return series.scale, data / second_difference_ratio(fit.H), law / second_difference_ratio(fit.H)

@@ -20,7 +20,7 @@ from .heights import ArealMap, Heights
 METHODS = ("structure", "psd")
 SCAN_SIDES = ("1", "2", "both")
 """Side of the contact that a single scan represents: 1 or 2 (the other side is smooth), or both (alike)."""
-MIN_VALUE = 1e-200
+MIN_SERIES_VALUE = 1e-200
 """Smallest value of a series [m2]: constant heights also have a logarithm."""
 KERNEL_WIDTH = 0.3
 """Standard deviation of the Gaussian kernel in ln(frequency) [1]; it smooths discrete waves with a frequency
@@ -36,7 +36,7 @@ class ScaleSeries:
     scale      : (J,) [m] lag or wavelength, increasing
     value      : (J,) [m2] V(tau) = 4 S(tau) - S(2 tau), or Phi = frequency times power spectral density
     function_value : (J,) S(tau) [m2], or power spectral density [m3]
-    expected   : function of H: value (J,) for Phi(frequency) = frequency^(-2H)
+    expected_value : function of H: value (J,) for Phi(frequency) = frequency^(-2H)
     covariance : function of H: covariance (J, J) [1] of ln(value)
     """
 
@@ -45,7 +45,7 @@ class ScaleSeries:
     scale: Array
     value: Array
     function_value: Array
-    expected: Callable[[float], Array]
+    expected_value: Callable[[float], Array]
     covariance: Callable[[float], Array]
 
     def select(self, selection: NDArray[Any]) -> "ScaleSeries":
@@ -55,7 +55,7 @@ class ScaleSeries:
             scale=self.scale[selection],
             value=self.value[selection],
             function_value=self.function_value[selection],
-            expected=lambda H: self.expected(H)[selection],
+            expected_value=lambda H: self.expected_value(H)[selection],
             covariance=lambda H: self.covariance(H)[np.ix_(selection, selection)],
         )
 
@@ -88,11 +88,11 @@ def _mean_square_differences(z: Array) -> tuple[Array, Array, Array]:
         step = z[:, lag:] - z[:, :-lag]
         raw[i] = _mean_square(step)
         value[i] = _mean_square(step[:, lag:] - step[:, :-lag])
-    return lags.astype(float), np.maximum(value, MIN_VALUE), np.maximum(raw, MIN_VALUE)
+    return lags.astype(float), np.maximum(value, MIN_SERIES_VALUE), np.maximum(raw, MIN_SERIES_VALUE)
 
 
 def _smooth_structure(
-    direction: str, lag: Array, value: Array, raw: Array, covariance: Callable[[float], Array]
+    direction: str, lag: Array, value: Array, structure_values: Array, covariance: Callable[[float], Array]
 ) -> ScaleSeries:
     """Series of a structure function, smoothed over ln(lag) with the same kernel as the spectrum."""
     x = np.log(lag)
@@ -112,8 +112,8 @@ def _smooth_structure(
         direction=direction,
         scale=scale,
         value=weight @ value,
-        function_value=weight @ raw,
-        expected=lambda H: np.asarray(weight @ structure_power_law(lag, H)),
+        function_value=weight @ structure_values,
+        expected_value=lambda H: np.asarray(weight @ structure_power_law(lag, H)),
         covariance=smoothed_covariance,
     )
 
@@ -236,14 +236,14 @@ def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
         weight = weight / weight.sum(axis=1, keepdims=True)
         return np.asarray((weight * (per_mode / count)) @ weight.T)
 
-    value = np.maximum(kernel @ power / norm, MIN_VALUE)
+    value = np.maximum(kernel @ power / norm, MIN_SERIES_VALUE)
     return ScaleSeries(
         method="psd",
         direction=direction,
         scale=wavelength,
         value=value,
         function_value=value * wavelength,
-        expected=lambda H: np.asarray(kernel @ expected_power(H) / norm),
+        expected_value=lambda H: np.asarray(kernel @ expected_power(H) / norm),
         covariance=covariance,
     )
 

@@ -43,9 +43,9 @@ from jointfmu.quantity import (
     smooth_step_slopes,
 )
 
-from .system_joint import joint_file
+from .system_joint import load_joint_file
 
-AXES: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.array([0.0, 0.0, 1.0])}
+AXIS_VECTORS: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.array([0.0, 0.0, 1.0])}
 """{name of a rotation axis: unit vector (3) in the frame of the link}."""
 
 
@@ -72,20 +72,20 @@ class Arm:
     duration      : duration of the motion [s]
     """
 
-    names: Sequence[str]
-    axes: Sequence[str]
+    axis_names: Sequence[str]
+    rotation_axes: Sequence[str]
     links: Sequence[Link]
     start: float
     duration: float
 
-    def motion(self, time: ArrayLike) -> tuple[Array, Array, Array]:
+    def compute_motion(self, time: ArrayLike) -> tuple[Array, Array, Array]:
         """Angles [rad], speeds [rad/s], accelerations [rad/s2] of all axes, shape (times, axes)."""
         x = (np.asarray(time, dtype=np.float64)[:, None] - self.start) / self.duration
         travel = np.array([link.travel for link in self.links])
         first, second = smooth_step_slopes(x)
         return (travel * smooth_step(x), travel * first / self.duration, travel * second / self.duration**2)
 
-    def frames(self, q: Array) -> tuple[list[Array], list[Array], Array]:
+    def compute_frames(self, q: Array) -> tuple[list[Array], list[Array], Array]:
         """Kinematics at angles (n, axes) [rad].
 
         Returns the rotation matrix (n, 3, 3) of each link, the position (n, 3) [m] of each axis, and the
@@ -93,33 +93,35 @@ class Arm:
         """
         rotation, position = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
         rotations, positions = [], []
-        for k, (axis, link) in enumerate(zip(self.axes, self.links, strict=True)):
-            rotation = rotation @ _rotation(axis, q[:, k])
+        for k, (axis, link) in enumerate(zip(self.rotation_axes, self.links, strict=True)):
+            rotation = rotation @ _rotation_matrices(axis, q[:, k])
             rotations.append(rotation)
             positions.append(position)
             position = position + link.length * rotation[:, :, 2]
         return rotations, positions, position
 
-    def tip(self, q: Array) -> Array:
+    def tip_position(self, q: Array) -> Array:
         """Position (n, 3) [m] of the tip at angles (n, axes) [rad]."""
-        return self.frames(q)[2]
+        return self.compute_frames(q)[2]
 
-    def torques(self, q: Array, speed: Array, acceleration: Array, gravity: float = GRAVITY) -> Array:
+    def inverse_dynamics(
+        self, q: Array, speed: Array, acceleration: Array, gravity: float = GRAVITY
+    ) -> Array:
         """Inverse dynamics: torques (n, axes) [N.m] of the rigid arm for a motion, with inertia and weight.
 
         q, speed, acceleration : (n, axes) [rad], [rad/s], [rad/s2]
         gravity                : [m/s2]
         """
-        rotations, positions, tip = self.frames(q)
+        rotations, positions, tip = self.compute_frames(q)
         n = len(q)
         w, alpha = np.zeros((n, 3)), np.zeros((n, 3))
         a = np.broadcast_to(np.array([0.0, 0.0, gravity]), (n, 3))
         forces, moments, centres = [], [], []
-        for k, (axis, link) in enumerate(zip(self.axes, self.links, strict=True)):
+        for k, (axis, link) in enumerate(zip(self.rotation_axes, self.links, strict=True)):
             if k:
                 lever = positions[k] - positions[k - 1]
                 a = a + np.cross(alpha, lever) + np.cross(w, np.cross(w, lever))
-            axis_vector = rotations[k] @ AXES[axis]
+            axis_vector = rotations[k] @ AXIS_VECTORS[axis]
             relative_speed = axis_vector * speed[:, k, None]
             alpha = alpha + axis_vector * acceleration[:, k, None] + np.cross(w, relative_speed)
             w = w + relative_speed
@@ -127,7 +129,7 @@ class Arm:
             forces.append(link.mass * (a + np.cross(alpha, centre) + np.cross(w, np.cross(w, centre))))
             inertia = np.diag([link.J_across, link.J_across, link.J_along])
             inertia = rotations[k] @ inertia @ rotations[k].transpose(0, 2, 1)
-            moments.append(_of(inertia, alpha) + np.cross(w, _of(inertia, w)))
+            moments.append(_multiply(inertia, alpha) + np.cross(w, _multiply(inertia, w)))
             centres.append(centre)
         torques = np.empty((n, len(self.links)))
         force, moment, next_position = np.zeros((n, 3)), np.zeros((n, 3)), tip
@@ -135,17 +137,19 @@ class Arm:
             lever = next_position - positions[k]
             moment = moments[k] + np.cross(centres[k], forces[k]) + moment + np.cross(lever, force)
             force, next_position = force + forces[k], positions[k]
-            torques[:, k] = np.sum(moment * (rotations[k] @ AXES[self.axes[k]]), axis=1)
+            torques[:, k] = np.sum(moment * (rotations[k] @ AXIS_VECTORS[self.rotation_axes[k]]), axis=1)
         return torques
 
-    def inertias(self, q: Array) -> Array:
+    def axis_inertias(self, q: Array) -> Array:
         """Inertia (axes) [kg.m2] about each axis at angles q (axes) [rad], with the other axes locked."""
         count = len(self.links)
         angles = np.broadcast_to(q, (count, count))
-        return np.asarray(np.diag(self.torques(angles, np.zeros((count, count)), np.eye(count), 0.0)))
+        return np.asarray(
+            np.diag(self.inverse_dynamics(angles, np.zeros((count, count)), np.eye(count), 0.0))
+        )
 
 
-def _rotation(axis: str, angle: Array) -> Array:
+def _rotation_matrices(axis: str, angle: Array) -> Array:
     """Rotation matrices (n, 3, 3) about an axis of AXIS_VECTORS by angles (n) [rad]."""
     c, s, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
     rows = {
@@ -155,12 +159,12 @@ def _rotation(axis: str, angle: Array) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def _of(matrices: Array, vectors: Array) -> Array:
+def _multiply(matrices: Array, vectors: Array) -> Array:
     """Products (n, 3) of matrices (n, 3, 3) and vectors (n, 3)."""
     return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
 
 
-_MOTION = {
+_MOTION_ENTRIES = {
     "start": quantity_field("s", "begin of the motion", ge=0.0),
     "duration": quantity_field("s", "from its begin to its end", gt=0.0),
 }
@@ -168,7 +172,7 @@ Sections = dict[str, dict[str, object]]
 """{component: its section, as in a system file}."""
 
 
-def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[str, str]]]:
+def read_arm(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[str, str]]]:
     """Read the section [arm]: the arm, and sections and connections of its components.
 
     The components of an axis NAME are `NAME_motor`, `NAME_drive`, `NAME_link` and `NAME_load`.
@@ -177,17 +181,17 @@ def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[st
     """
     if not isinstance(section, Mapping):
         raise ValueError(f"arm = {section!r}, expected a section [arm]")
-    motion = {key: value for key, value in section.items() if key in _MOTION}
-    axes = {key: value for key, value in section.items() if key not in _MOTION}
-    times, _, _ = read_entries(path, _MOTION, motion)
-    for name, item in _MOTION.items():
+    motion = {key: value for key, value in section.items() if key in _MOTION_ENTRIES}
+    axes = {key: value for key, value in section.items() if key not in _MOTION_ENTRIES}
+    times, _, _ = read_entries(path, _MOTION_ENTRIES, motion)
+    for name, item in _MOTION_ENTRIES.items():
         if text := find_problem(name, times.get(name), item):
             raise ValueError(f"arm.{text}")
     fields, links, drives = dict(flat_fields(Link)), [], {}
     for name, axis_section in axes.items():
-        if not isinstance(axis_section, Mapping) or axis_section.get("axis") not in AXES:
+        if not isinstance(axis_section, Mapping) or axis_section.get("axis") not in AXIS_VECTORS:
             axis_name = axis_section.get("axis") if isinstance(axis_section, Mapping) else axis_section
-            raise ValueError(f"arm.{name}.axis = {axis_name!r}, allowed are {', '.join(AXES)}")
+            raise ValueError(f"arm.{name}.axis = {axis_name!r}, allowed are {', '.join(AXIS_VECTORS)}")
         try:
             values, _, _ = read_entries(path, fields, {k: v for k, v in axis_section.items() if k in fields})
             links.append(build_parameter_set(Link, values))
@@ -208,8 +212,8 @@ def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[st
     sections: Sections = {}
     wires: list[tuple[str, str]] = []
     for name, drive in drives.items():
-        ratio = _ratio(path, name, drive)
-        sections |= _axis(arm, name, drive, ratio)
+        ratio = _find_ratio(path, name, drive)
+        sections |= _make_axis_sections(arm, name, drive, ratio)
         wires += [
             (f"{name}_motor", f"{name}_drive.flange1"),
             (f"{name}_drive.flange2", f"{name}_link.flange_b"),
@@ -218,7 +222,7 @@ def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[st
     return arm, sections, wires
 
 
-def _ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
+def _find_ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
     """Gear ratio of the drive of an axis: given in its section, or by its parameter file."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
@@ -228,34 +232,34 @@ def _ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
     if isinstance(entry, Mapping) and isinstance(entry.get("value"), int | float):
         return float(entry["value"])
     joint = MODELS[model].joint
-    file = joint_file(path.parent, f"arm.{name}", joint, drive) or load_default(joint)
+    file = load_joint_file(path.parent, f"arm.{name}", joint, drive) or load_default(joint)
     return float(file.values_by_name["ratio"])
 
 
-def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sections:
+def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sections:
     """Sections of the components of one axis."""
-    k = arm.names.index(name)
+    k = arm.axis_names.index(name)
     link = arm.links[k]
     end = np.array([[link.travel for link in arm.links]])
-    inertia = float(arm.inertias(end[0])[k])
+    inertia = float(arm.axis_inertias(end[0])[k])
     phase = np.linspace(0.0, 1.0, 201)
-    q, speed, acceleration = arm.motion(arm.start + arm.duration * phase)
-    load = inertia * acceleration[:, k] - arm.torques(q, speed, acceleration)[:, k]
-    points = TorqueCurve.fitted(phase, load)  # digits beyond 1e-8 N.m depend on the processor
+    q, speed, acceleration = arm.compute_motion(arm.start + arm.duration * phase)
+    load = inertia * acceleration[:, k] - arm.inverse_dynamics(q, speed, acceleration)[:, k]
+    points = TorqueCurve.fit_points(phase, load)  # digits beyond 1e-8 N.m depend on the processor
     times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
     return {
-        f"{name}_motor": _section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),
+        f"{name}_motor": _make_section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),
         f"{name}_drive": dict(drive),
-        f"{name}_link": _section(
+        f"{name}_link": _make_section(
             "RotationalInertia", {"J": (inertia, "kg.m2"), "m": (0.0, "kg"), "l": (0.0, "m")}
         ),
-        f"{name}_load": _section(
+        f"{name}_load": _make_section(
             "TorqueCurve", times | {key: (round(value, 8) + 0.0, "N.m") for key, value in points.items()}
         ),
     }
 
 
-def _section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
+def _make_section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
     """Section of a component with derived values; values : {name: (value, unit)}."""
     source = "kinematics and inverse dynamics of [arm]"
     return {"model": model} | {

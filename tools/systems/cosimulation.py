@@ -10,9 +10,9 @@ from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
 from .master import Slave
-from .ssp import MASTERS, Master, fmu_names, values
-from .system import System, systems
-from .wiring import lags, wires
+from .ssp import MASTERS, Master, find_fmu_names, list_values
+from .system import System, load_systems
+from .wiring import find_lag_parameters, find_signals
 
 
 def simulate(
@@ -33,7 +33,7 @@ def simulate(
     """
     step = system.interval if step is None else step
     count = round((system.stop_time if stop is None else stop) / step)
-    signals, names, lag_parameters = wires(system), fmu_names(system), lags(system)
+    signals, names, lag_parameters = find_signals(system), find_fmu_names(system), find_lag_parameters(system)
     inputs = {name: [w for w in signals if w.target == name] for name in system.components}
     outputs_read = {
         name: list(dict.fromkeys(w.output for w in signals if w.source == name)) for name in system.components
@@ -44,12 +44,12 @@ def simulate(
     with ExitStack() as stack:
         slaves: dict[str, Slave] = {}
         for name, component in system.components.items():
-            start = {key: entry.value for key, entry in values(component).items()}
+            start = {key: entry.value for key, entry in list_values(component).items()}
             start |= dict.fromkeys(lag_parameters.get(name, ()), master.lag)
             path = folder / f"{names[name]}.fmu"
             input_names = [w.input for w in inputs[name]]
             slaves[name] = stack.enter_context(Slave(path, start, input_names, outputs_read[name]))
-        joints = [name for name, component in system.components.items() if component.file]
+        joints = [name for name, component in system.components.items() if component.parameter_file]
         others = [name for name in slaves if name not in joints]
         sources = {name: [position[f"{w.source}.{w.output}"] for w in inputs[name]] for name in slaves}
         ends = dict(zip(outputs_read, accumulate(map(len, outputs_read.values())), strict=True))
@@ -58,28 +58,28 @@ def simulate(
 
         def set_inputs(group: list[str]) -> None:
             for name in group:
-                slaves[name].set(*[current[k] for k in sources[name]])
+                slaves[name].set_inputs(*[current[k] for k in sources[name]])
 
         def get_outputs(group: list[str]) -> None:
             for name in group:
-                current[spans[name]] = slaves[name].get()
+                current[spans[name]] = slaves[name].get_outputs()
 
         get_outputs(others)
         set_inputs(joints)
         get_outputs(joints)
         rows[0] = current
-        groups = [others, joints] if master.in_turn else [[*others, *joints]]
+        groups = [others, joints] if master.is_sequential else [[*others, *joints]]
         for k in track_progress(range(count), f"run {system.name}", count):
             for group in groups:
                 set_inputs(group)
                 for name in group:
-                    slaves[name].step(k * step, step)
+                    slaves[name].do_step(k * step, step)
                 get_outputs(group)
             rows[k + 1] = current
     time = np.asarray(step * np.arange(count + 1), dtype=np.float64)
     return {"time": time} | {column: rows[:, k] for column, k in position.items()}
 
 
-def arms(folder: Path) -> dict[str, tuple[System, dict[str, Array]]]:
+def simulate_arms(folder: Path) -> dict[str, tuple[System, dict[str, Array]]]:
     """Simulate the shipped systems that are arms, {name: (system, results)}; `folder` has FMI 2.0 FMUs."""
-    return {name: (system, simulate(system, folder)) for name, system in systems().items() if system.arm}
+    return {name: (system, simulate(system, folder)) for name, system in load_systems().items() if system.arm}

@@ -15,12 +15,12 @@ from jointfmu.quantity import Array
 from ..fitting import decay
 from ..fitting.hysteresis import HysteresisLaw
 from ..ramps import loops
-from .master import Slave, motion
-from .ringing import PER_PERIOD, Body, Rest, VibratingJoint, vibrating_joints
+from .master import Slave, simulate_motion
+from .ringing import STEPS_PER_PERIOD, VibratingJoint, VibrationTest, WorkingPoint, find_vibrating_joints
 
-PERIODS = 60
+PERIOD_COUNT = 60
 """Number of periods of a simulated decay [1]."""
-SETTLED = 10
+FINAL_PERIODS = 10
 """Number of last periods [1], whose mean is the final position; friction shifts it from the working point."""
 MAX_LOGARITHM_RATIO = 2.0
 """Logarithm of the start amplitude of a half cycle over its mean amplitude, over the damping ratio [1].
@@ -59,27 +59,27 @@ class Decay:
     amplitude: Array
     frequency: Array
     damping: Array
-    expected: Array
-    stated: Array
-    law: Array | None
+    expected_frequency: Array
+    expected_damping: Array
+    half_eta_loop: Array | None
     time: Array
     signal: Array
     messages: tuple[str, ...]
 
 
-def examples(folder: Path) -> dict[str, list[Decay]]:
+def simulate_examples(folder: Path) -> dict[str, list[Decay]]:
     """Simulate decays with slip for all shipped systems of one vibrating joint, {system: decays}.
 
     folder : folder of the FMUs (FMI 2.0)
     """
-    pulls = [(name, joint, joint.body.pull) for name, joint in vibrating_joints().items()]
-    return {name: decays(joint, folder, pull.deflection, [pull.load]) for name, joint, pull in pulls}
+    pulls = [(name, joint, joint.test.slip_deflection) for name, joint in find_vibrating_joints().items()]
+    return {name: simulate_decays(joint, folder, pull.deflection, [pull.load]) for name, joint, pull in pulls}
 
 
-def decays(
+def simulate_decays(
     joint: VibratingJoint,
     folder: Path,
-    first: float,
+    initial_deflection: float,
     loads: Sequence[float] | None = None,
     inertia: float | None = None,
     settings: Mapping[str, object] | None = None,
@@ -95,76 +95,98 @@ def decays(
     Raises ValueError if an FMU is missing or returns an error, or if too few periods can be resolved.
     """
     parameters = {**joint.parameters, **(settings or {})}
-    loads = [max(joint.body.loads(folder / f"{joint.fmu}.fmu", parameters))] if loads is None else loads
+    loads = (
+        [max(joint.test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters))]
+        if loads is None
+        else loads
+    )
     inertia = joint.inertia if inertia is None else inertia
     return [
-        _decay_at(joint, folder, load, parameters, inertia, first)
+        _simulate_decay(joint, folder, load, parameters, inertia, initial_deflection)
         for load in track_progress(loads, "ring", len(loads))
     ]
 
 
-def _decay_at(
+def _simulate_decay(
     joint: VibratingJoint,
     folder: Path,
     load: float,
     parameters: Mapping[str, Any],
-    mass: float,
-    first: float,
+    inertia: float,
+    initial_deflection: float,
 ) -> Decay:
     """Simulate the free decay at one load, and compute frequency and damping by the joint's loops."""
-    body, path = joint.body, folder / f"{joint.fmu}.fmu"
-    rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
+    body, path = joint.test, folder / f"{joint.fmu_name}.fmu"
+    rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
     states = [v.name for v in partner.outputs[: partner.state_count]]
     # away from zero: monotonic loading, as the FMU starts at zero
-    pulled = rest.position + np.copysign(first, rest.position)
-    start, settings = {joint.key: mass, states[0]: pulled}, {**parameters, **body.start(load)}
-    step = 2.0 * np.pi / np.sqrt(rest.stiffness / mass) / PER_PERIOD
+    pulled = rest.position + np.copysign(initial_deflection, rest.position)
+    start = {joint.inertia_parameter: inertia, states[0]: pulled}
+    settings = {**parameters, **body.find_start_values(load)}
+    step = 2.0 * np.pi / np.sqrt(rest.stiffness / inertia) / STEPS_PER_PERIOD
     with (
-        Slave(path, {**settings, body.motion[0]: pulled}, body.motion, (body.force,)) as slave,
-        Slave(folder / f"{body.partner}.fmu", start, [v.name for v in partner.inputs], states) as moving,
+        Slave(
+            path, {**settings, body.motion_inputs[0]: pulled}, body.motion_inputs, (body.force_output,)
+        ) as slave,
+        Slave(folder / f"{body.body_model}.fmu", start, [v.name for v in partner.inputs], states) as moving,
     ):
-        signal = motion(slave, moving, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
+        signal = (
+            simulate_motion(slave, moving, rest.force, step, PERIOD_COUNT * STEPS_PER_PERIOD)[:, 0]
+            - rest.position
+        )
         messages = tuple(dict.fromkeys(slave.messages + moving.messages))
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
     points = decay.analyse_decay(time, signal, f"load = {load:g}: ")
-    is_resolved = points.amplitude > MIN_AMPLITUDE_RATIO * first
+    is_resolved = points.amplitude > MIN_AMPLITUDE_RATIO * initial_deflection
     amplitude = points.amplitude[is_resolved]
-    loop_amplitudes = amplitude * np.exp(MAX_LOGARITHM_RATIO * points.damping[is_resolved])
-    settled = rest._replace(position=rest.position + float(np.mean(signal[-SETTLED * PER_PERIOD :])))
-    expected, stated, law = _of_loops(path, settings, body, settled, mass, amplitude, loop_amplitudes)
+    loop_amplitudes = amplitude * np.exp(MAX_LOGARITHM_RATIO * points.damping_ratio[is_resolved])
+    settled = rest._replace(
+        position=rest.position + float(np.mean(signal[-FINAL_PERIODS * STEPS_PER_PERIOD :]))
+    )
+    expected, stated, law = _evaluate_loops(
+        path, settings, body, settled, inertia, amplitude, loop_amplitudes
+    )
     frequency = 2.0 * np.pi * points.frequency[is_resolved]
-    damping = points.damping[is_resolved]
+    damping = points.damping_ratio[is_resolved]
     return Decay(load, amplitude, frequency, damping, expected, stated, law, time, signal, messages)
 
 
-def _of_loops(
+def _evaluate_loops(
     path: Path,
     settings: Mapping[str, object],
-    body: Body,
-    rest: Rest,
-    mass: float,
+    vibration_test: VibrationTest,
+    working_point: WorkingPoint,
+    inertia: float,
     amplitudes: Array,
-    widest: Array,
+    loop_amplitudes: Array,
 ) -> tuple[Array, Array, Array | None]:
     """Frequency (n) [rad/s], damping ratio (n) [1] by the energy of loops, and half of `eta_loop` (n) [1].
 
     amplitudes      : (n) [m or rad] at which the loops are evaluated
     loop_amplitudes : (n) [m or rad] of the simulated loops, a little larger
     """
-    swing = loops.CyclicPath(centre=rest.position, shape="sine", cycles=1)
-    run = loops.run_loops(path, body.motion[0], widest.tolist(), swing, body.force, settings)
+    swing = loops.CyclicPath(centre=working_point.position, shape="sine", cycles=1)
+    run = loops.run_loops(
+        path,
+        vibration_test.motion_inputs[0],
+        loop_amplitudes.tolist(),
+        swing,
+        vibration_test.force_output,
+        settings,
+    )
     results = [
-        of_loop(loop, rest.damping).decay(np.array([a]), mass)
+        fit_masing_law(loop, working_point.damping).decay(np.array([a]), inertia)
         for loop, a in zip(run.loops, amplitudes, strict=True)
     ]
     frequency, decrement = np.array(results)[:, :, 0].T
-    deflection, eta = np.abs(run.loops[0].motion - rest.position), run.loops[0].result.columns.get("eta_loop")
+    deflection = np.abs(run.loops[0].motion - working_point.position)
+    eta = run.loops[0].result.columns.get("eta_loop")
     first = slice(None, swing.points // 4 + 1)
     law = None if eta is None else 0.5 * np.interp(amplitudes, deflection[first], eta[first])
     return frequency, decrement / np.hypot(np.pi, decrement), law
 
 
-def of_loop(loop: loops.HysteresisLoop, viscous: float) -> HysteresisLaw:
+def fit_masing_law(loop: loops.HysteresisLoop, viscous_damping: float) -> HysteresisLaw:
     """Hysteresis law by Masing's rule, whose branch is the mean of the two branches of a loop."""
     motion, force = loop.motion[loop.cycle_start :], loop.force[loop.cycle_start :]
     half = motion.size // 2
@@ -172,4 +194,4 @@ def of_loop(loop: loops.HysteresisLoop, viscous: float) -> HysteresisLaw:
     deflection = 0.5 * (motion[0] - motion[falling])
     friction = 0.25 * (force[0] - force[falling] + force[rising] - force[half])
     curve = CubicSpline(deflection, friction)
-    return HysteresisLaw(curve, curve.antiderivative(), viscous=viscous)
+    return HysteresisLaw(curve, curve.antiderivative(), viscous_damping=viscous_damping)

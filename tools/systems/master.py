@@ -19,42 +19,42 @@ T = TypeVar("T")
 class Slave:
     """Initialized instance of an FMU with selected inputs and outputs; a context manager.
 
-    start    : {variable: start value}
-    messages : log messages of the FMU
+    start_values : {variable: start value}
+    messages     : log messages of the FMU
 
     Raises ValueError if the file is no FMU for this platform, a name is unknown, or the FMU returns an error
     (with the message of the FMU).
     """
 
     def __init__(
-        self, path: Path, start: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
+        self, path: Path, start_values: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
     ) -> None:
         self.messages: list[str] = []
         self._path = path
         with ExitStack() as entered:
             folder, description = entered.enter_context(unpack_fmu(path))
             known = [v.name for v in description.modelVariables]
-            for name in (*start, *inputs, *outputs):
+            for name in (*start_values, *inputs, *outputs):
                 if name not in known:
                     raise ValueError(f"{path}: unknown name {name!r}, allowed are {', '.join(known)}")
             self._fmu = entered.enter_context(open_instance(folder, description, str(path), self.messages))
             try:
                 self._fmu.enter_initialization()
-                self._fmu.set_values(start)
+                self._fmu.set_values(start_values)
                 self._fmu.fmu.exitInitializationMode()
             except FMICallException as error:
                 raise ValueError(f"{path}: {self.messages[0] if self.messages else error}") from None
             self._in, self._out = self._fmu.group_reals(inputs), self._fmu.group_reals(outputs)
             self._entered = entered.pop_all()
 
-    def set(self, *values: float) -> None:
+    def set_inputs(self, *values: float) -> None:
         self._call(self._in.set_values, *values)
 
-    def get(self) -> list[float]:
+    def get_outputs(self) -> list[float]:
         return self._call(self._out.get_values)
 
-    def step(self, time: float, size: float) -> None:
-        self._call(self._fmu.do_step, time, size)
+    def do_step(self, time: float, step_size: float) -> None:
+        self._call(self._fmu.do_step, time, step_size)
 
     def _call(self, function: Callable[..., T], *arguments: float) -> T:
         """Call a function of the FMU; raises ValueError with the FMU's message if it returns an error."""
@@ -72,8 +72,8 @@ class Slave:
         self._entered.close()
 
 
-def motion(
-    joint: Slave, body: Slave, load: float, step: float, count: int, side_by_side: bool = False
+def simulate_motion(
+    joint: Slave, body: Slave, load: float, step: float, step_count: int, has_late_force: bool = False
 ) -> Array:
     """Simulate position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
 
@@ -83,24 +83,24 @@ def motion(
     has_late_force : whether the body gets the force of the previous communication point, as with a parallel
         master; otherwise the current force
     """
-    states = np.empty((count + 1, 2))
-    states[0] = body.get()
-    joint.set(*states[0])
-    (force,) = joint.get()
-    for k in range(count):
-        body.set(load, force)
-        body.step(k * step, step)
-        if side_by_side:
-            (force,) = joint.get()
-        states[k + 1] = body.get()
-        joint.set(*states[k + 1])
-        joint.step(k * step, step)
-        if not side_by_side:
-            (force,) = joint.get()
+    states = np.empty((step_count + 1, 2))
+    states[0] = body.get_outputs()
+    joint.set_inputs(*states[0])
+    (force,) = joint.get_outputs()
+    for k in range(step_count):
+        body.set_inputs(load, force)
+        body.do_step(k * step, step)
+        if has_late_force:
+            (force,) = joint.get_outputs()
+        states[k + 1] = body.get_outputs()
+        joint.set_inputs(*states[k + 1])
+        joint.do_step(k * step, step)
+        if not has_late_force:
+            (force,) = joint.get_outputs()
     return states
 
 
-def peak(signal: Array, step: float) -> float:
+def peak_frequency(signal: Array, step: float) -> float:
     """Angular frequency [rad/s] of the highest peak in the spectrum of a signal without its mean."""
     n = signal.size
     windowed = (signal - signal.mean()) * np.hanning(n)

@@ -7,38 +7,38 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 
 from jointfmu.joints import KINDS
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array, flat_fields
 
 from ..joint_parts import load_tool_module
-from .master import Slave, damping_ratio, motion, peak
-from .ssp import fmu_names, values
-from .system import Component, System, systems
-from .wiring import wires
+from .master import Slave, damping_ratio, peak_frequency, simulate_motion
+from .ssp import find_fmu_names, list_values
+from .system import Component, System, load_systems
+from .wiring import find_signals
 
-PER_PERIOD = 100
+STEPS_PER_PERIOD = 100
 """Communication steps per period [1]."""
-PERIODS = 25
+PERIOD_COUNT = 25
 """Number of periods of a simulation [1]."""
 RESONANCE_TOLERANCE = 5e-3
 """Relative tolerance [1] of the spectral peak frequency against sqrt(K/J)."""
 DAMPING_TOLERANCE = 1e-2
 """Relative tolerance [1] of the damping ratio by the decrement against that of the joint."""
-LINE = 41
+CURVE_POINTS = 41
 """Number of points of a curve over the load [1]."""
-RESOLVED = 1e-10
+MIN_DEFLECTION_RATIO = 1e-10
 """Smallest initial deflection over that of the working point [1]: round-off is then 1e-6 of the former."""
-MOST_DAMPED = 0.1
+MAX_DAMPING_RATIO = 0.1
 """Largest damping ratio [1]: more leaves too few periods to determine frequency and decrement."""
-_LEAST_DAMPED = 1e-6
+_MIN_DAMPING_RATIO = 1e-6
 """Damping ratio [1] below which the damping is not compared: the decrement is accurate to 2e-9."""
 
 
 @dataclass(frozen=True, slots=True)
-class Ringing:
+class FreeVibration:
     """Free vibration about one working point.
 
     load               : load on the joint, in SI units
@@ -55,24 +55,24 @@ class Ringing:
     load: float
     inertia: float
     frequency: float
-    expected: float
+    expected_frequency: float
     damping: float
-    stated: float
+    expected_damping: float
     time: Array
     signal: Array
     messages: tuple[str, ...]
 
     @property
-    def damped(self) -> bool:
+    def is_damped(self) -> bool:
         """Whether the joint has enough damping to be resolved by the decrement."""
-        return self.stated > _LEAST_DAMPED
+        return self.expected_damping > _MIN_DAMPING_RATIO
 
     @property
-    def misses(self) -> list[str]:
+    def list_deviations(self) -> list[str]:
         """Texts on deviations beyond the tolerances, one line each."""
-        pairs = [("frequency", self.frequency, self.expected, RESONANCE_TOLERANCE)]
-        if self.damped:
-            pairs.append(("damping", self.damping, self.stated, DAMPING_TOLERANCE))
+        pairs = [("frequency", self.frequency, self.expected_frequency, RESONANCE_TOLERANCE)]
+        if self.is_damped:
+            pairs.append(("damping", self.damping, self.expected_damping, DAMPING_TOLERANCE))
         return [
             f"load = {self.load:g}: {name} {simulated:.6g}, expected {expected:.6g} within {tolerance:g}"
             for name, simulated, expected, tolerance in pairs
@@ -80,7 +80,7 @@ class Ringing:
         ]
 
 
-class Rest(NamedTuple):
+class WorkingPoint(NamedTuple):
     """Working point of a joint with a body, in SI units.
 
     force     : constant force or torque
@@ -95,7 +95,7 @@ class Rest(NamedTuple):
     damping: float
 
 
-class Axis(NamedTuple):
+class PlotAxis(NamedTuple):
     """Axis of a plot: name of the quantity, its unit, and the factor from SI to this unit."""
 
     name: str
@@ -107,7 +107,7 @@ class Axis(NamedTuple):
         return f"{self.name} [{self.unit}]"
 
 
-class Pull(NamedTuple):
+class SlipDeflection(NamedTuple):
     """Initial deflection that makes the joint slip, load on the joint (SI units), and description."""
 
     load: float
@@ -116,7 +116,7 @@ class Pull(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Body:
+class VibrationTest:
     """Vibration test of a joint with a body: RINGING in the joint's tool module.
 
     model_name              : FMU of the joint, with motion as input
@@ -138,30 +138,30 @@ class Body:
         amplitudes
     """
 
-    model: str
-    motion: tuple[str, str]
-    force: str
-    partner: str
-    over: str
-    loads: Callable[[Path, Mapping[str, Any]], Sequence[float]]
-    start: Callable[[float], Mapping[str, float]]
-    rest: Callable[[Path, float, Mapping[str, float]], Rest]
-    release: float
-    load: Axis
-    deflection: Axis
+    model_name: str
+    motion_inputs: tuple[str, str]
+    force_output: str
+    body_model: str
+    load_variable: str
+    find_example_loads: Callable[[Path, Mapping[str, Any]], Sequence[float]]
+    find_start_values: Callable[[float], Mapping[str, float]]
+    find_working_point: Callable[[Path, float, Mapping[str, float]], WorkingPoint]
+    release_force: float
+    load_axis: PlotAxis
+    deflection_axis: PlotAxis
     doc: str
-    stiffness: str
-    pull: Pull
-    elastic: Mapping[str, float] = field(default_factory=dict)
+    stiffness_output: str
+    slip_deflection: SlipDeflection
+    frictionless_parameters: Mapping[str, float] = field(default_factory=dict)
 
 
-def body_on(joint: str) -> Body:
+def load_vibration_test(joint: str) -> VibrationTest:
     """Vibration test of a kind of joint; raises ValueError if the joint defines none."""
     tool_module = load_tool_module(KINDS[joint], "ringing")
     if tool_module is None:
         joints = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
         raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(joints)}")
-    body: Body = tool_module.RINGING
+    body: VibrationTest = tool_module.RINGING
     return body
 
 
@@ -175,11 +175,11 @@ class VibratingJoint:
     inertia_parameter : parameter of this body that is its inertia
     """
 
-    body: Body
+    test: VibrationTest
     joint: Component
-    fmu: str
-    moving: Component
-    key: str
+    fmu_name: str
+    moving_body: Component
+    inertia_parameter: str
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -188,33 +188,35 @@ class VibratingJoint:
         All parameters if the system has its own FMU of the joint, which several joints may share. Otherwise
         only those that the system gives, as the FMU in `--fmus` may have other parameters.
         """
-        if not self.joint.own:
+        if not self.joint.has_own_fmu:
             return self.joint.parameters
-        return {name: entry.value for name, entry in values(self.joint).items()}
+        return {name: entry.value for name, entry in list_values(self.joint).items()}
 
     @property
     def inertia(self) -> float:
         """Inertia [kg.m2] or mass [kg] of the body."""
-        value = self.moving.values.get(self.key)
+        value = self.moving_body.values.get(self.inertia_parameter)
         return float(
-            partner_parameters(self.moving.model).values_by_name[self.key] if value is None else value
+            partner_parameters(self.moving_body.model_name).values_by_name[self.inertia_parameter]
+            if value is None
+            else value
         )
 
     @property
     def inertia_unit(self) -> str:
-        fields = dict(flat_fields(PARTNERS[self.moving.model].parameters))
-        return str(fields[self.key].metadata["unit"])
+        fields = dict(flat_fields(PARTNERS[self.moving_body.model_name].parameters))
+        return str(fields[self.inertia_parameter].metadata["unit"])
 
     @property
     def motion_unit(self) -> str:
-        return KINDS[self.joint.kind].variables[self.body.motion[0]].unit
+        return KINDS[self.joint.joint_kind].variables[self.test.motion_inputs[0]].unit
 
     @property
     def load_unit(self) -> str:
-        return KINDS[self.joint.kind].variables[self.body.over].unit
+        return KINDS[self.joint.joint_kind].variables[self.test.load_variable].unit
 
 
-def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
+def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
     """Find a joint of a system and the body that vibrates on it.
 
     joint : name of the joint; None: the only joint of the system
@@ -227,30 +229,37 @@ def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
     name = next(iter(joints)) if joint is None else joint
     if name not in joints:
         raise ValueError(f"joint {name!r} is not in {system.name}, allowed are {', '.join(joints)}")
-    body = body_on(joints[name].kind)
-    body_names = [w.source for w in wires(system) if (w.target, w.input) == (name, body.motion[0])]
+    body = load_vibration_test(joints[name].joint_kind)
+    body_names = [
+        w.source for w in find_signals(system) if (w.target, w.input) == (name, body.motion_inputs[0])
+    ]
     moving = system.components[body_names[0]] if body_names else None
-    if joints[name].model != body.model or moving is None or moving.model != body.partner:
-        raise ValueError(f"{name}: expected a {body.model} that takes {body.motion[0]} from a {body.partner}")
-    key = next(iter(dict(flat_fields(PARTNERS[body.partner].parameters))))
-    return VibratingJoint(body, joints[name], fmu_names(system)[name], moving, key)
+    if joints[name].model_name != body.model_name or moving is None or moving.model_name != body.body_model:
+        raise ValueError(
+            f"{name}: expected a {body.model_name} that takes {body.motion_inputs[0]} from a "
+            f"{body.body_model}"
+        )
+    key = next(iter(dict(flat_fields(PARTNERS[body.body_model].parameters))))
+    return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)
 
 
-def examples(folder: Path) -> dict[str, list[Ringing]]:
+def simulate_examples(folder: Path) -> dict[str, list[FreeVibration]]:
     """Simulate all shipped systems of one vibrating joint, {system: results}; `folder` has FMI 2.0 FMUs."""
-    return {name: ring(joint, folder) for name, joint in vibrating_joints().items()}
+    return {name: simulate_vibrations(joint, folder) for name, joint in find_vibrating_joints().items()}
 
 
-def vibrating_joints() -> dict[str, VibratingJoint]:
+def find_vibrating_joints() -> dict[str, VibratingJoint]:
     """{system: vibrating joint} of the shipped systems with one joint that has a vibration test."""
-    single = {n: s for n, s in systems().items() if len(s.joints) == 1}
-    kinds = {n: next(iter(s.joints.values())).kind for n, s in single.items()}
-    return {n: vibrating_joint(s) for n, s in single.items() if load_tool_module(KINDS[kinds[n]], "ringing")}
+    single = {n: s for n, s in load_systems().items() if len(s.joints) == 1}
+    kinds = {n: next(iter(s.joints.values())).joint_kind for n, s in single.items()}
+    return {
+        n: find_vibrating_joint(s) for n, s in single.items() if load_tool_module(KINDS[kinds[n]], "ringing")
+    }
 
 
-def ring(
+def simulate_vibrations(
     joint: VibratingJoint, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
-) -> list[Ringing]:
+) -> list[FreeVibration]:
     """Simulate free vibrations of a body on its joint without friction, one for each load.
 
     folder  : folder of the FMUs (FMI 2.0) of joint and body
@@ -259,65 +268,72 @@ def ring(
 
     Raises ValueError if an FMU is missing or returns an error, or if there is no vibration.
     """
-    parameters = {**joint.parameters, **joint.body.elastic}
+    parameters = {**joint.parameters, **joint.test.frictionless_parameters}
     if loads is None:
-        loads = joint.body.loads(folder / f"{joint.fmu}.fmu", parameters)
+        loads = joint.test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters)
     if inertia is None:
         inertia = joint.inertia
     return [
-        _ring_at(joint, folder, load, parameters, inertia)
+        _simulate_vibration(joint, folder, load, parameters, inertia)
         for load in track_progress(loads, "ring", len(loads))
     ]
 
 
-def stiffness_line(
-    vibrating_joint: VibratingJoint, folder: Path, points: Sequence[Ringing]
+def frequency_curve(
+    vibrating_joint: VibratingJoint, folder: Path, vibrations: Sequence[FreeVibration]
 ) -> tuple[Array, Array]:
     """Loads (n), evenly spaced over the range of simulated points, and sqrt(K/J) (n) [rad/s] there."""
-    joint, path = (
-        {**vibrating_joint.parameters, **vibrating_joint.body.elastic},
-        folder / f"{vibrating_joint.fmu}.fmu",
+    joint = {**vibrating_joint.parameters, **vibrating_joint.test.frictionless_parameters}
+    path = folder / f"{vibrating_joint.fmu_name}.fmu"
+    ends, inertia = [point.load for point in vibrations], vibrations[0].inertia
+    loads = np.linspace(min(ends), max(ends), CURVE_POINTS)
+    stiffness = np.array(
+        [vibrating_joint.test.find_working_point(path, float(load), joint).stiffness for load in loads]
     )
-    ends, inertia = [point.load for point in points], points[0].inertia
-    loads = np.linspace(min(ends), max(ends), LINE)
-    stiffness = np.array([vibrating_joint.body.rest(path, float(load), joint).stiffness for load in loads])
     return loads, np.sqrt(stiffness / inertia)
 
 
-def _ring_at(
+def _simulate_vibration(
     joint: VibratingJoint, folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
-) -> Ringing:
+) -> FreeVibration:
     """Simulate the free vibration at one load, with given parameters of the joint."""
-    body, path = joint.body, folder / f"{joint.fmu}.fmu"
-    rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
-    initial, smallest = body.release / rest.stiffness, RESOLVED * abs(rest.position)
+    body, path = joint.test, folder / f"{joint.fmu_name}.fmu"
+    rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
+    initial, smallest = body.release_force / rest.stiffness, MIN_DEFLECTION_RATIO * abs(rest.position)
     if not initial > smallest:
         raise ValueError(
             f"load = {load:g}: too large, its deflection of {rest.position:g} hides a first one of "
             f"{initial:.3g}; allowed is more than {smallest:.3g}"
         )
     states = [v.name for v in partner.outputs[: partner.state_count]]
-    start = {joint.key: inertia, states[0]: rest.position + initial}
+    start = {joint.inertia_parameter: inertia, states[0]: rest.position + initial}
     forces = [v.name for v in partner.inputs]
     with (
-        Slave(path, {**parameters, **body.start(load)}, body.motion, (body.force,)) as slave,
-        Slave(folder / f"{body.partner}.fmu", start, forces, states) as mass,
+        Slave(
+            path, {**parameters, **body.find_start_values(load)}, body.motion_inputs, (body.force_output,)
+        ) as slave,
+        Slave(folder / f"{body.body_model}.fmu", start, forces, states) as mass,
     ):
-        return _ring(slave, mass, rest, load, inertia)
+        return _run_vibration(slave, mass, rest, load, inertia)
 
 
-def _ring(joint: Slave, body: Slave, rest: Rest, load: float, inertia: float) -> Ringing:
+def _run_vibration(
+    joint: Slave, body: Slave, working_point: WorkingPoint, load: float, inertia: float
+) -> FreeVibration:
     """Simulate the free vibration of two running FMUs about a working point."""
-    expected = float(np.sqrt(rest.stiffness / inertia))
-    stated = rest.damping / (2.0 * inertia * expected)
-    if not stated < MOST_DAMPED:
+    expected = float(np.sqrt(working_point.stiffness / inertia))
+    stated = working_point.damping / (2.0 * inertia * expected)
+    if not stated < MAX_DAMPING_RATIO:
         raise ValueError(
             f"load = {load:g}: damping ratio {stated:.3g} with the inertia {inertia:g}; allowed is "
-            f"less than {MOST_DAMPED:g}, so that there are periods to count: take a larger inertia"
+            f"less than {MAX_DAMPING_RATIO:g}, so that there are periods to count: take a larger inertia"
         )
-    step = 2.0 * np.pi / (expected * PER_PERIOD)
-    signal = motion(joint, body, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
+    step = 2.0 * np.pi / (expected * STEPS_PER_PERIOD)
+    signal = (
+        simulate_motion(joint, body, working_point.force, step, PERIOD_COUNT * STEPS_PER_PERIOD)[:, 0]
+        - working_point.position
+    )
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
     messages = tuple(dict.fromkeys(joint.messages + body.messages))
-    results = peak(signal, step), expected, damping_ratio(signal), stated
-    return Ringing(load, inertia, *results, time, signal, messages)
+    results = peak_frequency(signal, step), expected, damping_ratio(signal), stated
+    return FreeVibration(load, inertia, *results, time, signal, messages)

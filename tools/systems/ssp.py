@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
-from jointfmu_fmu_src.archive import pack, workshop
-from jointfmu_fmu_src.licence import copyright_line
+from jointfmu_fmu_src.archive import staging_folder, write_archive
+from jointfmu_fmu_src.licence import find_copyright_line
 from jointfmu_fmu_src.native.build import build
-from jointfmu_fmu_src.native.compiled.kept import VERSIONS
-from jointfmu_fmu_src.partners import parameters as partner_parameters
-from jointfmu_fmu_src.ssv import NUMBER, SSP, Value, add_units, parameter_set
-from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialized
+from jointfmu_fmu_src.native.compiled.compiled_models import FMI_VERSIONS
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
+from jointfmu_fmu_src.ssv import REAL_ELEMENT, SSP_NAMESPACE, ParameterValue, add_units, format_parameter_set
+from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialize_xml
 
 from jointfmu import __version__
 from jointfmu.files.outputs import ARCHIVE, check_outputs
@@ -22,11 +22,11 @@ from jointfmu.files.timestamp import fixed_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import map_jobs
 
-from .system import Component, System, systems
-from .wiring import lags, model_of, wires
+from .system import Component, System, load_systems
+from .wiring import find_lag_parameters, find_model, find_signals
 
-_OMS = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
-_TYPE = "application/x-fmu-sharedlibrary"
+_OMS_NAMESPACE = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
+_FMU_TYPE = "application/x-fmu-sharedlibrary"
 
 
 class Master(NamedTuple):
@@ -42,7 +42,7 @@ class Master(NamedTuple):
     suffix: str
     lag: float
     doc: str
-    in_turn: bool = False
+    is_sequential: bool = False
 
 
 MASTERS = (
@@ -57,32 +57,34 @@ MASTERS = (
         0.0,
         "For masters that update components in turn (Gauss-Seidel: OMSimulator): the force of a joint "
         "reaches a body at once, so the lag is 0; a lag of 1 would carry a present force on.",
-        in_turn=True,
+        is_sequential=True,
     ),
 )
 
 
-def structure(system: System, names: Mapping[str, str], version: str, master: Master) -> bytes:
+def format_structure(
+    system: System, fmu_names_by_component: Mapping[str, str], version: str, master: Master
+) -> bytes:
     """Content of SystemStructure.ssd; parameter sets are in `parameters/`, FMUs in `resources/`.
 
     fmu_names_by_component : {component: name of its FMU}
     """
-    spaces = {"xmlns:ssd": f"{SSP}Description", "xmlns:ssc": f"{SSP}Common"}
-    head = {**spaces, "version": version, "name": system.name, **metadata()}
+    spaces = {"xmlns:ssd": f"{SSP_NAMESPACE}Description", "xmlns:ssc": f"{SSP_NAMESPACE}Common"}
+    head = {**spaces, "version": version, "name": system.name, **file_attributes()}
     root = Element("ssd:SystemStructureDescription", head)
     description = f"{system.description}. {master.doc}"
     root.set("description", description)
     system_node = SubElement(root, "ssd:System", name=system.name, description=description)
-    _bindings(system_node, system.name)
+    _add_parameter_binding(system_node, system.name)
     elements = SubElement(system_node, "ssd:Elements")
-    signals = wires(system)
+    signals = find_signals(system)
     units = set()
     for component in system.components.values():
-        model = model_of(component)
-        source = f"resources/{names[component.name]}.fmu"
-        node = SubElement(elements, "ssd:Component", name=component.name, source=source, type=_TYPE)
-        if component.file:
-            node.set("description", component.file.name)
+        model = find_model(component)
+        source = f"resources/{fmu_names_by_component[component.name]}.fmu"
+        node = SubElement(elements, "ssd:Component", name=component.name, source=source, type=_FMU_TYPE)
+        if component.parameter_file:
+            node.set("description", component.parameter_file.name)
         if version == "2.0":
             node.set("implementation", "CoSimulation")
         connectors = SubElement(node, "ssd:Connectors")
@@ -91,25 +93,25 @@ def structure(system: System, names: Mapping[str, str], version: str, master: Ma
         for kind, variables, used in (("input", model.inputs, inputs), ("output", model.outputs, outputs)):
             for v in (v for v in variables if (component.name, v.name) in used):
                 connector = SubElement(connectors, "ssd:Connector", name=v.name, kind=kind, description=v.doc)
-                SubElement(connector, f"ssc:{NUMBER[version]}", unit=v.unit)
+                SubElement(connector, f"ssc:{REAL_ELEMENT[version]}", unit=v.unit)
                 units.add(v.unit)
-        _bindings(node, component.name)
+        _add_parameter_binding(node, component.name)
     connections = SubElement(system_node, "ssd:Connections")
     for wire in signals:
         ends = zip(("startElement", "startConnector", "endElement", "endConnector"), wire, strict=True)
         SubElement(connections, "ssd:Connection", dict(ends))
-    if master.in_turn:
-        _for_omsimulator(system_node, system.interval)
+    if master.is_sequential:
+        _add_omsimulator_annotation(system_node, system.interval)
     add_units(root, "ssd", units)
     SubElement(root, "ssd:DefaultExperiment", startTime="0", stopTime=repr(system.stop_time))
-    return serialized(root)
+    return serialize_xml(root)
 
 
-def metadata() -> dict[str, str]:
+def file_attributes() -> dict[str, str]:
     """XML attributes of an SSP file: author, copyright, licence, generation tool, date if fixed."""
     attributes = {
         "author": "the jointfmu authors",
-        "copyright": copyright_line(),
+        "copyright": find_copyright_line(),
         "license": "MIT",
         "generationTool": f"jointfmu {__version__}",
     }
@@ -118,30 +120,30 @@ def metadata() -> dict[str, str]:
     return attributes
 
 
-def _bindings(node: Element, name: str) -> None:
+def _add_parameter_binding(node: Element, name: str) -> None:
     """Bind the parameter set `parameters/NAME.ssv` to a system or component."""
     bindings = SubElement(node, "ssd:ParameterBindings")
     SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{name}.ssv")
 
 
-def _for_omsimulator(system: Element, step: float) -> None:
+def _add_omsimulator_annotation(system_node: Element, step: float) -> None:
     """Add the annotation by which OMSimulator selects co-simulation with a fixed step [s]."""
-    annotations = SubElement(system, "ssd:Annotations")
+    annotations = SubElement(system_node, "ssd:Annotations")
     annotation = SubElement(annotations, "ssc:Annotation", type="org.openmodelica")
-    oms_node = SubElement(annotation, "oms:Annotations", {"xmlns:oms": _OMS})
+    oms_node = SubElement(annotation, "oms:Annotations", {"xmlns:oms": _OMS_NAMESPACE})
     information = SubElement(oms_node, "oms:SimulationInformation")
     SubElement(information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(step))
 
 
-FOLDERS = {"1.0": ("ssp", "fmi2"), "2.0": ("ssp2", "fmi3")}
+ARCHIVE_FOLDERS = {"1.0": ("ssp", "fmi2"), "2.0": ("ssp2", "fmi3")}
 """{version of SSP: (folder of the archives, folder of their FMUs)}."""
 
 
 def build_systems(
     out: Path,
-    wanted: Sequence[System] | None = None,
+    chosen_systems: Sequence[System] | None = None,
     parameters: ParameterFile | None = None,
-    joints: bool = True,
+    build_joints: bool = True,
     variability: str = VARIABILITIES[0],
     pool: Executor | None = None,
     force: bool = False,
@@ -158,101 +160,117 @@ def build_systems(
 
     Raises as `native.build.build` and `write_archives`, and ValueError if no system has this kind of joint.
     """
-    chosen = list(systems().values()) if wanted is None else list(wanted)
+    chosen = list(load_systems().values()) if chosen_systems is None else list(chosen_systems)
     if parameters:
-        kinds = {kind for system in chosen for kind in system.kinds}
+        kinds = {kind for system in chosen for kind in system.shared_joint_kinds}
         if parameters.joint not in kinds:
             allowed = ", ".join(sorted(kinds))
             raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
-        chosen = [system.with_joint(parameters) for system in chosen if parameters.joint in system.kinds]
+        chosen = [
+            system.with_joint(parameters)
+            for system in chosen
+            if parameters.joint in system.shared_joint_kinds
+        ]
     components: dict[str, Component] = {}
     for system in chosen:
-        wires(system)
-        for name, fmu in fmu_names(system).items():
+        find_signals(system)
+        for name, fmu in find_fmu_names(system).items():
             components.setdefault(fmu, system.components[name])
     built_components = {
         fmu: component
         for fmu, component in components.items()
-        if joints or component.own or not component.file
+        if build_joints or component.has_own_fmu or not component.parameter_file
     }
-    fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in VERSIONS for fmu in built_components]
-    archives = [_target(system, out, *kind) for system in chosen for kind in product(FOLDERS, MASTERS)]
+    fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in FMI_VERSIONS for fmu in built_components]
+    archives = [
+        _archive_path(system, out, *kind) for system in chosen for kind in product(ARCHIVE_FOLDERS, MASTERS)
+    ]
     check_outputs([*fmus_out, *archives], ARCHIVE, force)
-    build_versions = partial(_versions, out, variability)
+    build_versions = partial(_build_versions, out, variability)
     fmu_paths = map_jobs(
         pool, build_versions, "build FMUs of systems", [*built_components], [*built_components.values()]
     )
     fmus = [path for paths in zip(*fmu_paths, strict=True) for path in paths]
-    return fmus + [path for system in chosen for path in pack_system(system, out)]
+    return fmus + [path for system in chosen for path in write_archives(system, out)]
 
 
-def _versions(out: Path, variability: str, fmu: str, component: Component) -> list[Path]:
+def _build_versions(out: Path, variability: str, fmu_name: str, component: Component) -> list[Path]:
     """Build the FMU of a component for all FMI versions, which share the compiled model; return the files."""
-    file = (component.file if component.own else component.base) or partner_parameters(component.model)
-    alias = "" if fmu == component.model else fmu
+    file = (component.parameter_file if component.has_own_fmu else component.base_file) or partner_parameters(
+        component.model_name
+    )
+    alias = "" if fmu_name == component.model_name else fmu_name
     return [
-        build(component.model, file, out / f"fmi{version}", version, variability, alias)
-        for version in VERSIONS
+        build(component.model_name, file, out / f"fmi{version}", version, variability, alias)
+        for version in FMI_VERSIONS
     ]
 
 
-def pack_system(system: System, out: Path) -> list[Path]:
+def write_archives(system: System, out: Path) -> list[Path]:
     """Write `out/ssp/NAME.ssp` (SSP 1.0) and `out/ssp2/NAME.ssp` (SSP 2.0) for each kind of master.
 
     They contain the FMUs in `out/fmi2` and `out/fmi3`, and the parameters of the system.
 
     Raises ValueError for invalid connections, see `wiring.find_connections`, or an unwritable folder.
     """
-    return [_pack(system, out, version, master) for version, master in product(FOLDERS, MASTERS)]
+    return [
+        _write_archive(system, out, version, master) for version, master in product(ARCHIVE_FOLDERS, MASTERS)
+    ]
 
 
-def _target(system: System, out: Path, version: str, master: Master) -> Path:
+def _archive_path(system: System, out: Path, version: str, master: Master) -> Path:
     """Path of an archive."""
-    return out / FOLDERS[version][0] / f"{system.name}{master.suffix}.ssp"
+    return out / ARCHIVE_FOLDERS[version][0] / f"{system.name}{master.suffix}.ssp"
 
 
-def _pack(system: System, out: Path, version: str, master: Master) -> Path:
+def _write_archive(system: System, out: Path, version: str, master: Master) -> Path:
     """Write the archive of a system for one SSP version and one kind of master."""
-    lag_parameters, names = lags(system), fmu_names(system)
-    members = {"SystemStructure.ssd": structure(system, names, version, master)}
-    system_values: dict[str, Value] = {}
+    lag_parameters, names = find_lag_parameters(system), find_fmu_names(system)
+    members = {"SystemStructure.ssd": format_structure(system, names, version, master)}
+    system_values: dict[str, ParameterValue] = {}
     for name, component in system.components.items():
-        lag_values = {lag: Value(master.lag, "1", master.doc) for lag in lag_parameters.get(name, ())}
-        component_values = values(component) | lag_values
+        lag_values = {
+            lag: ParameterValue(master.lag, "1", master.doc) for lag in lag_parameters.get(name, ())
+        }
+        component_values = list_values(component) | lag_values
         system_values |= {f"{name}.{variable}": value for variable, value in component_values.items()}
         members[f"resources/{names[name]}.fmu"] = (
-            out / FOLDERS[version][1] / f"{names[name]}.fmu"
+            out / ARCHIVE_FOLDERS[version][1] / f"{names[name]}.fmu"
         ).read_bytes()
-        members[f"parameters/{name}.ssv"] = parameter_set(system.name, component_values, version, metadata())
-    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, system_values, version, metadata())
-    target = _target(system, out, version, master)
-    with workshop(target) as work:
-        pack(members, work / target.name)
+        members[f"parameters/{name}.ssv"] = format_parameter_set(
+            system.name, component_values, version, file_attributes()
+        )
+    members[f"parameters/{system.name}.ssv"] = format_parameter_set(
+        system.name, system_values, version, file_attributes()
+    )
+    target = _archive_path(system, out, version, master)
+    with staging_folder(target) as work:
+        write_archive(members, work / target.name)
     return target
 
 
-def values(component: Component) -> dict[str, Value]:
+def list_values(component: Component) -> dict[str, ParameterValue]:
     """{variable: value} of a component, from the parameter file of its joint and from the system file.
 
     Booleans of the parameter file are omitted: they are start values of the FMU, and fmpy reads every Boolean
     of a parameter set as true.
     """
-    joint_values: dict[str, Value] = {}
-    if component.file:
-        for name, item in model_of(component).parameter_fields().items():
-            value = component.file.values_by_name[name]
+    joint_values: dict[str, ParameterValue] = {}
+    if component.parameter_file:
+        for name, item in find_model(component).parameter_fields().items():
+            value = component.parameter_file.values_by_name[name]
             if not isinstance(value, bool):
-                joint_values[name] = Value(
-                    value, item.metadata.get("unit", ""), component.file.sources.get(name, "")
+                joint_values[name] = ParameterValue(
+                    value, item.metadata.get("unit", ""), component.parameter_file.sources.get(name, "")
                 )
     return joint_values | {
-        name: Value(value, component.units[name], component.sources[name])
+        name: ParameterValue(value, component.units[name], component.sources[name])
         for name, value in component.values.items()
-        if name in component.parameters or name in component.state
+        if name in component.parameters or name in component.constant_inputs
     }
 
 
-def fmu_names(system: System) -> dict[str, str]:
+def find_fmu_names(system: System) -> dict[str, str]:
     """{component: name of its FMU}.
 
     The name is that of the model, or SYSTEM_COMPONENT if the system has its own FMU of the joint. Components
@@ -261,19 +279,19 @@ def fmu_names(system: System) -> dict[str, str]:
     names: dict[str, str] = {}
     variants: list[tuple[str, Mapping[str, Any], str]] = []
     for name, component in system.components.items():
-        if not (component.file and component.own):
-            names[name] = component.model
+        if not (component.parameter_file and component.has_own_fmu):
+            names[name] = component.model_name
             continue
-        exposed = model_of(component).parameter_fields()
+        exposed = find_model(component).parameter_fields()
         fixed_values = {
             key: value
-            for key, value in component.file.values_by_name.items()
+            for key, value in component.parameter_file.values_by_name.items()
             if key not in exposed or isinstance(value, bool)
-        } | {"law": component.file.law}
+        } | {"law": component.parameter_file.law}
         equal_fmus = [
-            fmu for model, values, fmu in variants if (model, values) == (component.model, fixed_values)
+            fmu for model, values, fmu in variants if (model, values) == (component.model_name, fixed_values)
         ]
         names[name] = equal_fmus[0] if equal_fmus else f"{system.name}_{name}"
         if not equal_fmus:
-            variants.append((component.model, fixed_values, names[name]))
+            variants.append((component.model_name, fixed_values, names[name]))
     return names

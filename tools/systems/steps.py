@@ -5,19 +5,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
 
-from jointfmu.mechanics.steps import MAX_STEP, STABLE_STEP_OUTPUTS
+from jointfmu.mechanics.stable_steps import MAX_STABLE_STEP, STABLE_STEP_OUTPUTS
 from jointfmu.quantity import Array, replace_values
 
 from .system import Component, System
-from .wiring import End, ends, model_of, wires
+from .wiring import ConnectionEnd, find_connections, find_model, find_signals
 
-_BODIES = {"flange1": "inertia1", "flange2": "inertia2"} | dict.fromkeys(
+_INERTIA_PARAMETERS = {"flange1": "inertia1", "flange2": "inertia2"} | dict.fromkeys(
     ("flange_x", "flange_y", "flange_z"), "mass"
 )
 """{flange of a joint: parameter with the inertia of the body on this flange}."""
 
 
-def longest_step(system: System, run: Mapping[str, Array] | None = None) -> tuple[float, str]:
+def find_largest_stable_step(system: System, results: Mapping[str, Array] | None = None) -> tuple[float, str]:
     """Largest stable step [s] of a system with a parallel master, and the name of the joint that limits it.
 
     Each joint is treated alone with the bodies on it. An undamped joint has no stable step with a parallel
@@ -27,36 +27,46 @@ def longest_step(system: System, run: Mapping[str, Array] | None = None) -> tupl
 
     Raises ValueError as `wiring.find_connections`.
     """
-    connected, signals, steps = ends(system), wires(system), [(MAX_STEP, "")]
+    connected, signals, steps = find_connections(system), find_signals(system), [(MAX_STABLE_STEP, "")]
     for name, component in system.joints.items():
-        bodies = _bodies(component, connected)
-        if not component.file or not any(bodies.values()):
+        bodies = _find_inertias(component, connected)
+        if not component.parameter_file or not any(bodies.values()):
             continue
-        model = model_of(component)
-        spring = model.tabulate(replace_values(component.file.values, bodies))
-        start = {v.name: component.file.start_value(v.name) for v in model.inputs} | component.state
+        model = find_model(component)
+        spring = model.tabulate(replace_values(component.parameter_file.values, bodies))
+        start = {
+            v.name: component.parameter_file.start_value(v.name) for v in model.inputs
+        } | component.constant_inputs
         operating_points: list[dict[str, float]] = [{}]
-        if run:
-            rows = {int(np.argmax(np.abs(run[f"{name}.{w.output}"]))) for w in signals if w.source == name}
-            input_values = {w.input: run[f"{w.source}.{w.output}"] for w in signals if w.target == name}
+        if results:
+            rows = {
+                int(np.argmax(np.abs(results[f"{name}.{w.output}"]))) for w in signals if w.source == name
+            }
+            input_values = {w.input: results[f"{w.source}.{w.output}"] for w in signals if w.target == name}
             operating_points = [{key: float(column[k]) for key, column in input_values.items()} for k in rows]
         for inputs in operating_points:
             out = model.evaluate(spring, start | inputs)
-            sequential, parallel = (float(out.get(key, MAX_STEP)) for key, _ in STABLE_STEP_OUTPUTS)
+            sequential, parallel = (float(out.get(key, MAX_STABLE_STEP)) for key, _ in STABLE_STEP_OUTPUTS)
             steps.append((parallel or sequential, name))
     return min(steps)
 
 
-def _bodies(component: Component, connected: Sequence[tuple[End, End]]) -> dict[str, float]:
+def _find_inertias(
+    component: Component, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]
+) -> dict[str, float]:
     """{parameter of a joint: inertia of the body on its flange}; 0 for a flange on the ground."""
     inertias = {
         key: 0.0
         for key in ("inertia1", "inertia2")
-        if component.file and key in component.file.values_by_name
+        if component.parameter_file and key in component.parameter_file.values_by_name
     }
-    for first, second in connected:
-        key = _BODIES.get(first.flange.name) if first.component is component and first.flange else None
+    for first, second in connections:
+        key = (
+            _INERTIA_PARAMETERS.get(first.flange.name)
+            if first.component is component and first.flange
+            else None
+        )
         if key and second.component:
-            inertia = second.component.values[PARTNERS[second.component.model].parameters.inertia]
+            inertia = second.component.values[PARTNERS[second.component.model_name].parameters.inertia_name]
             inertias[key] = min(inertia, inertias.get(key) or inertia)
     return inertias

@@ -28,16 +28,16 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, load_default, read_document, read_entries
 from jointfmu.quantity import find_problem, flat_fields, quantity_field
 
-from .arm import arm_parts
-from .system_joint import KEYS, joint_file
+from .arm import read_arm
+from .system_joint import FILE_KEYS, load_joint_file
 
 GROUND = "ground"
 """Name of the ground in connections; it fixes a flange of a joint."""
-_EXPERIMENT = {
+_EXPERIMENT_ENTRIES = {
     "stop_time": quantity_field("s", "end of the simulation", gt=0.0),
     "interval": quantity_field("s", "between two points of the result", gt=0.0),
 }
-_HEAD = ("schema", "name", "description", "connect", "experiment", "arm")
+_RESERVED_KEYS = ("schema", "name", "description", "connect", "experiment", "arm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,29 +53,29 @@ class Component:
     """
 
     name: str
-    model: str
-    base: ParameterFile | None
-    file: ParameterFile | None
-    own: bool
+    model_name: str
+    base_file: ParameterFile | None
+    parameter_file: ParameterFile | None
+    has_own_fmu: bool
     values: Mapping[str, Any]
     units: Mapping[str, str]
     sources: Mapping[str, str]
 
     @property
-    def kind(self) -> str:
+    def joint_kind(self) -> str:
         """Kind of joint; empty for a partner."""
-        return self.file.joint if self.file else ""
+        return self.parameter_file.joint if self.parameter_file else ""
 
     @property
-    def state(self) -> dict[str, float]:
+    def constant_inputs(self) -> dict[str, float]:
         """{input of a joint: value} that the system keeps constant."""
-        inputs = {v.name for v in MODELS[self.model].inputs} if self.file else set()
+        inputs = {v.name for v in MODELS[self.model_name].inputs} if self.parameter_file else set()
         return {name: value for name, value in self.values.items() if name in inputs}
 
     @property
     def parameters(self) -> dict[str, Any]:
         """{parameter of its FMU: value} given in the system file."""
-        constant_inputs, fields = self.state, _exposed(self.model, self.file)
+        constant_inputs, fields = self.constant_inputs, _variable_fields(self.model_name, self.parameter_file)
         return {
             name: value
             for name, value in self.values.items()
@@ -104,20 +104,20 @@ class System:
     stop_time: float
     interval: float
     arm: Any = None
-    sources: Mapping[str, str] = field(default_factory=dict)
+    experiment_sources: Mapping[str, str] = field(default_factory=dict)
 
     @property
-    def kinds(self) -> set[str]:
+    def shared_joint_kinds(self) -> set[str]:
         """Kinds of the joints that use the FMU of their model with its default parameters."""
-        return {joint.kind for joint in self.joints.values() if not joint.own}
+        return {joint.joint_kind for joint in self.joints.values() if not joint.has_own_fmu}
 
     @property
     def joints(self) -> dict[str, Component]:
         """{name: component} of the joints."""
-        return {name: component for name, component in self.components.items() if component.file}
+        return {name: component for name, component in self.components.items() if component.parameter_file}
 
     @property
-    def values(self) -> dict[str, Any]:
+    def list_values(self) -> dict[str, Any]:
         """{COMPONENT.NAME: SI value} of all parameters and inputs given in the system file."""
         return {
             f"{component.name}.{name}": value
@@ -129,38 +129,40 @@ class System:
         """Copy of the system with another parameter file for all joints of its kind without their own FMU."""
         components = dict(self.components)
         for name, joint in self.joints.items():
-            if joint.kind == file.joint and not joint.own:
-                changes = {key: value for key, value in joint.values.items() if key not in joint.state}
+            if joint.joint_kind == file.joint and not joint.has_own_fmu:
+                changes = {
+                    key: value for key, value in joint.values.items() if key not in joint.constant_inputs
+                }
                 changed_file = file.with_values(changes, "user", f"system {self.name}")
-                components[name] = replace(joint, base=file, file=changed_file)
+                components[name] = replace(joint, base_file=file, parameter_file=changed_file)
         return replace(self, components=components)
 
 
-def names() -> tuple[str, ...]:
+def list_system_names() -> tuple[str, ...]:
     """Sorted names of the shipped systems."""
     paths = (files("jointfmu_models") / "systems").iterdir()
     return tuple(sorted(path.name.removesuffix(".toml") for path in paths if path.name.endswith(".toml")))
 
 
-def systems() -> dict[str, System]:
+def load_systems() -> dict[str, System]:
     """{name: system} of all shipped systems."""
-    return {name: system(name) for name in names()}
+    return {name: load_system(name) for name in list_system_names()}
 
 
-def system(name: str) -> System:
+def load_system(name: str) -> System:
     """Read a system: a shipped one by name, or a file by path.
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
-    if name in names():
-        return _shipped(name)
+    if name in list_system_names():
+        return _load_shipped(name)
     if not name.endswith(".toml"):
-        raise ValueError(f"system {name!r}: allowed are {', '.join(names())}, or a file .toml")
+        raise ValueError(f"system {name!r}: allowed are {', '.join(list_system_names())}, or a file .toml")
     return read_system(Path(name))
 
 
 @cache
-def _shipped(name: str) -> System:
+def _load_shipped(name: str) -> System:
     """Read a shipped system; cached."""
     return read_system(Path(str(files("jointfmu_models") / "systems" / f"{name}.toml")))
 
@@ -174,34 +176,34 @@ def read_system(path: Path) -> System:
     if not is_identifier(path.stem):
         raise ValueError(f"{path}: the file's name is the system's; allowed are {NAME_RULE}")
     try:
-        return _system(path, document)
+        return _make_system(path, document)
     except ValueError as error:
         raise ValueError(f"{path}: {str(error).removeprefix(f'{path}: ')}") from None
 
 
-def _system(path: Path, document: Mapping[str, Any]) -> System:
+def _make_system(path: Path, document: Mapping[str, Any]) -> System:
     """Make a system from the document of its file."""
     if "experiment" not in document:
         hint = f"; it is of a {document['joint']}" if "joint" in document else ""
         raise ValueError(f"has no section [experiment], expected a system's file{hint}")
-    experiment, _, times = read_entries(path, _EXPERIMENT, document["experiment"])
-    for name, item in _EXPERIMENT.items():
+    experiment, _, times = read_entries(path, _EXPERIMENT_ENTRIES, document["experiment"])
+    for name, item in _EXPERIMENT_ENTRIES.items():
         if text := find_problem(name, experiment.get(name), item):
             raise ValueError(f"experiment.{text}")
-    sections = {key: value for key, value in document.items() if key not in _HEAD}
-    connections = _pairs(document.get("connect", []))
+    sections = {key: value for key, value in document.items() if key not in _RESERVED_KEYS}
+    connections = _check_connections(document.get("connect", []))
     arm = None
     if "arm" in document:
-        arm, arm_sections, arm_connections = arm_parts(path, document["arm"])
+        arm, arm_sections, arm_connections = read_arm(path, document["arm"])
         sections, connections = arm_sections | sections, [*arm_connections, *connections]
-    components = {key: _component(path, key, value) for key, value in sections.items()}
+    components = {key: _make_component(path, key, value) for key, value in sections.items()}
     for prefix in components:
         if longer := [name for name in components if name != prefix and name.startswith(prefix)]:
             raise ValueError(
                 f"component {longer[0]!r} begins like {prefix!r}, which fmpy mixes up; allowed are names of "
                 "which none begins another"
             )
-    if not any(component.file for component in components.values()):
+    if not any(component.parameter_file for component in components.values()):
         raise ValueError(f"no component is a joint, allowed models are {', '.join(MODELS)}")
     return System(
         path.stem,
@@ -216,7 +218,7 @@ def _system(path: Path, document: Mapping[str, Any]) -> System:
     )
 
 
-def _pairs(value: Any) -> list[tuple[str, str]]:
+def _check_connections(value: Any) -> list[tuple[str, str]]:
     """Check the value of `connect` and convert it to pairs of ends."""
     pairs = []
     for pair in value if isinstance(value, list) else [value]:
@@ -226,7 +228,7 @@ def _pairs(value: Any) -> list[tuple[str, str]]:
     return pairs
 
 
-def _component(path: Path, name: str, section: Any) -> Component:
+def _make_component(path: Path, name: str, section: Any) -> Component:
     """Make a component from its section."""
     models = [*MODELS, *PARTNERS]
     if not isinstance(section, Mapping):
@@ -236,16 +238,16 @@ def _component(path: Path, name: str, section: Any) -> Component:
     model = section.get("model")
     if not isinstance(model, str) or model not in models:
         raise ValueError(f"{name}.model = {model!r}, allowed are {', '.join(models)}")
-    body = {key: value for key, value in section.items() if key not in ("model", *KEYS)}
+    body = {key: value for key, value in section.items() if key not in ("model", *FILE_KEYS)}
     joint_parameters = None
     if model in PARTNERS:
-        for key in KEYS:
+        for key in FILE_KEYS:
             if key in section:
                 raise ValueError(
                     f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
                 )
         file, declared, inputs = None, dict(flat_fields(PARTNERS[model].parameters)), {}
-        needed = getattr(PARTNERS[model].parameters, "inertia", None)
+        needed = getattr(PARTNERS[model].parameters, "inertia_name", None)
         if needed and needed not in section:
             missing = declared[needed].metadata
             raise ValueError(
@@ -253,7 +255,7 @@ def _component(path: Path, name: str, section: Any) -> Component:
             )
     else:
         joint = MODELS[model].joint
-        joint_parameters = joint_file(path.parent, name, joint, section)
+        joint_parameters = load_joint_file(path.parent, name, joint, section)
         file = joint_parameters or load_default(joint)
         declared = {key: item for key, item in flat_fields(type(file.values)) if key in file.values_by_name}
         inputs = {v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in MODELS[model].inputs}
@@ -272,12 +274,12 @@ def _component(path: Path, name: str, section: Any) -> Component:
     if file:
         changes = {key: value for key, value in values.items() if key not in inputs}
         file = file.with_values(changes, "user", f"system {path.stem}")
-        own |= not changes.keys() <= _exposed(model, file).keys()
+        own |= not changes.keys() <= _variable_fields(model, file).keys()
     units = {key: declared[key].metadata.get("unit", "") for key in values}
     return Component(name, model, base, file, own, values, units, sources)
 
 
-def _exposed(model: str, file: ParameterFile | None) -> dict[str, Any]:
+def _variable_fields(model: str, file: ParameterFile | None) -> dict[str, Any]:
     """{parameter: dataclass field} of the FMU variables of a model."""
     if file is None:
         return dict(flat_fields(PARTNERS[model].parameters))

@@ -10,11 +10,11 @@ from jointfmu.parameters import ParameterFile, load_parameter_file
 
 from ..joint_parts import load_tool_module
 
-KEYS = {"parameters", "catalogue"}
+FILE_KEYS = {"parameters", "catalogue"}
 """Entries that select a parameter file: a path relative to the system file, or a name in the catalogue."""
 
 
-def joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) -> ParameterFile | None:
+def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) -> ParameterFile | None:
     """Load the parameter file that the section `name` gives a joint; None: the section gives none.
 
     folder : folder of the system file
@@ -22,34 +22,34 @@ def joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) 
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
-    entries = {key: value for key, value in section.items() if key in KEYS}
+    entries = {key: value for key, value in section.items() if key in FILE_KEYS}
     if len(entries) > 1:
         raise ValueError(f"{name} has {' and '.join(sorted(entries))}, allowed is one of them")
     for key, value in entries.items():
         if not isinstance(value, str):
             raise ValueError(f"{name}.{key} = {value!r}, expected a text")
     if "catalogue" in entries:
-        return _bought(name, joint, entries["catalogue"])
+        return _load_catalogue_item(name, joint, entries["catalogue"])
     return load_parameter_file(folder / entries["parameters"], joint) if entries else None
 
 
-def _bought(name: str, joint: str, wanted: str) -> ParameterFile:
+def _load_catalogue_item(name: str, joint: str, item: str) -> ParameterFile:
     """Load a catalogue item for the section `name`, as `jointfmu new` does; raises ValueError."""
     tool_module = load_tool_module(KINDS[joint], "new")
     if tool_module is None or "catalogue" not in {option.name for option in tool_module.NEW.options}:
-        raise ValueError(f"{name}.catalogue = {wanted!r}, expected none of a {joint}: it has no catalogue")
+        raise ValueError(f"{name}.catalogue = {item!r}, expected none of a {joint}: it has no catalogue")
     try:
-        return _catalogue_file(joint, wanted)
+        return _make_catalogue_file(joint, item)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
 
 
 @cache
-def _catalogue_file(joint: str, wanted: str) -> ParameterFile:
+def _make_catalogue_file(joint: str, item: str) -> ParameterFile:
     """Make the parameter file of a catalogue item; cached, as an arm needs it twice (first for its ratio)."""
     tool_module = load_tool_module(KINDS[joint], "new")
     assert tool_module is not None
     options = {option.name: None for option in tool_module.NEW.options}
-    file = tool_module.NEW.make_joint(options | {"catalogue": wanted}).file
+    file = tool_module.NEW.make_joint(options | {"catalogue": item}).file
     assert isinstance(file, ParameterFile)
     return file

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from jointfmu_fmu_src.joint_parts.terminals import Terminal
-from jointfmu_fmu_src.native.terminals import terminals
+from jointfmu_fmu_src.native.terminals import find_terminals
 from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS
@@ -13,7 +13,7 @@ from jointfmu.joints.model import Model
 from .system import GROUND, Component, System
 
 
-class Wire(NamedTuple):
+class Signal(NamedTuple):
     """Signal from an output of the component `source` to an input of the component `target`."""
 
     source: str
@@ -22,48 +22,50 @@ class Wire(NamedTuple):
     input: str
 
 
-class End(NamedTuple):
+class ConnectionEnd(NamedTuple):
     """End of a connection: a flange, a prescribed load (no flange), or the ground (no component).
 
     label   : the end as written in the system file
     members : {Modelica member: variable}; of a load {output: output}
     """
 
-    text: str
+    label: str
     component: Component | None
     flange: Terminal | None
     members: Mapping[str, str]
 
     @property
-    def joint(self) -> bool:
+    def is_joint(self) -> bool:
         """Whether the end is a flange of a joint."""
-        return self.component is not None and self.component.file is not None
+        return self.component is not None and self.component.parameter_file is not None
 
     @property
-    def load(self) -> bool:
+    def is_load(self) -> bool:
         """Whether the end is a prescribed load or motion over time."""
         return self.component is not None and self.flange is None
 
     @property
-    def body(self) -> bool:
+    def is_body(self) -> bool:
         """Whether the end is a flange of a body (inertia or mass)."""
-        return not self.joint and self.flange is not None
+        return not self.is_joint and self.flange is not None
 
     @property
-    def flow(self) -> str:
+    def flow_member(self) -> str:
         """Name of the flange member that is a force or torque."""
         assert self.flange
         return next(name for name, (_, kind) in self.flange.members.items() if kind != "signal")
 
 
-def model_of(component: Component) -> Model:
+def find_model(component: Component) -> Model:
     """Model of the FMU of a component."""
-    if component.file is None:
-        return PARTNERS[component.model]
-    return MODELS[component.model].with_parameters(component.file.joint, component.file.values)
+    if component.parameter_file is None:
+        return PARTNERS[component.model_name]
+    return MODELS[component.model_name].with_parameters(
+        component.parameter_file.joint, component.parameter_file.values
+    )
 
 
-def ends(system: System) -> list[tuple[End, End]]:
+def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]]:
     """Connections of a system as pairs of ends: a load or joint first, then a body; the ground last.
 
     Raises ValueError, one line that names the end and what is allowed, for: an unknown component or flange,
@@ -72,19 +74,19 @@ def ends(system: System) -> list[tuple[End, End]]:
     pairs = []
     partners: dict[str, str] = {}
     for connection in system.connections:
-        pair = [_end(system, text) for text in connection]
+        pair = [_parse_end(system, text) for text in connection]
         for end, other in zip(connection, reversed(connection), strict=True):
             if end != GROUND and end in partners:
                 raise ValueError(
                     f"{end} is connected to {partners[end]} and to {other}; allowed is one of them"
                 )
             partners[end] = other
-        pair.sort(key=lambda end: (end.component is None, not end.load, not end.joint))
+        pair.sort(key=lambda end: (end.component is None, not end.is_load, not end.is_joint))
         _check_pair(*pair)
         pairs.append((pair[0], pair[1]))
     for component in system.components.values():
-        flanges = [f"{component.name}.{flange.name}" for flange in terminals(model_of(component))]
-        if component.file and (unconnected := [name for name in flanges if name not in partners]):
+        flanges = [f"{component.name}.{flange.name}" for flange in find_terminals(find_model(component))]
+        if component.parameter_file and (unconnected := [name for name in flanges if name not in partners]):
             raise ValueError(
                 f'{unconnected[0]} is connected to nothing; allowed are a flange of a body, or "{GROUND}"'
             )
@@ -93,94 +95,100 @@ def ends(system: System) -> list[tuple[End, End]]:
                 f"{component.name} is connected to nothing; allowed is a flange of a body or joint"
             )
     _check_loops(pairs)
-    _check_held(system, pairs)
+    _check_moved_joints(system, pairs)
     return pairs
 
 
-def wires(system: System) -> list[Wire]:
-    """All signals of a system. Raises ValueError as `find_connections`."""
+def find_signals(system: System) -> list[Signal]:
+    """List all signals of a system. Raises ValueError for the same faults as `find_connections`."""
     signals = []
-    for first, second in ends(system):
+    for first, second in find_connections(system):
         if first.component is None or second.component is None:
             continue
         first_name, second_name = first.component.name, second.component.name
-        driving_members = [*first.members] if first.load else [first.flow]
+        driving_members = [*first.members] if first.is_load else [first.flow_member]
         signals += [
-            Wire(first_name, first.members[m], second_name, second.members[m]) for m in driving_members
+            Signal(first_name, first.members[m], second_name, second.members[m]) for m in driving_members
         ]
-        if first.joint:
+        if first.is_joint:
             motion_members = [m for m in first.members if m not in driving_members]
             signals += [
-                Wire(second_name, second.members[m], first_name, first.members[m]) for m in motion_members
+                Signal(second_name, second.members[m], first_name, first.members[m]) for m in motion_members
             ]
     return signals
 
 
-def lags(system: System) -> dict[str, list[str]]:
+def find_lag_parameters(system: System) -> dict[str, list[str]]:
     """{body: its parameters `lag_...`, for the flanges that are connected to a joint}."""
     lag_parameters: dict[str, list[str]] = {}
-    for first, second in ends(system):
-        if first.joint and second.component and second.flange:
+    for first, second in find_connections(system):
+        if first.is_joint and second.component and second.flange:
             lag_parameters.setdefault(second.component.name, []).append(f"lag_{second.flange.side}")
     return lag_parameters
 
 
-def _end(system: System, text: str) -> End:
+def _parse_end(system: System, text: str) -> ConnectionEnd:
     """Parse an end of a connection: `COMPONENT.FLANGE`, the name of a load, or "ground"."""
     name, _, flange = text.partition(".")
     if text == GROUND:
-        return End(text, None, None, {})
+        return ConnectionEnd(text, None, None, {})
     if name not in system.components:
         raise ValueError(
             f"connect: unknown component {name!r}, allowed are {', '.join(system.components)}, {GROUND}"
         )
     component = system.components[name]
-    model = model_of(component)
-    known = {terminal.name: terminal for terminal in terminals(model)}
-    if not known and component.file is None:
+    model = find_model(component)
+    known = {terminal.name: terminal for terminal in find_terminals(model)}
+    if not known and component.parameter_file is None:
         if flange:
             raise ValueError(f"connect: {text!r}: a {model.name} has no flange, allowed is {name}")
-        return End(text, component, None, {v.name: v.name for v in model.outputs})
+        return ConnectionEnd(text, component, None, {v.name: v.name for v in model.outputs})
     if flange not in known:
         allowed = ", ".join(f"{name}.{known_flange}" for known_flange in known) or "none"
         raise ValueError(f"connect: unknown flange {text!r} of a {model.name}, allowed are {allowed}")
     members = known[flange].members
-    if component.file and "inflow" in {kind for _, kind in members.values()}:
+    if component.parameter_file and "inflow" in {kind for _, kind in members.values()}:
         raise ValueError(
             f"{name}: a {model.name} takes a load and gives a motion; allowed are joints that take the "
             "motion of bodies"
         )
-    return End(text, component, known[flange], {key: variable for key, (variable, _) in members.items()})
+    return ConnectionEnd(
+        text, component, known[flange], {key: variable for key, (variable, _) in members.items()}
+    )
 
 
-def _check_pair(first: End, second: End) -> None:
+def _check_pair(first: ConnectionEnd, second: ConnectionEnd) -> None:
     """Raise ValueError if two ends are incompatible."""
-    prefix = f"{first.text} and {second.text} do not fit"
+    prefix = f"{first.label} and {second.label} do not fit"
     if second.component is None:
-        if not first.joint:
+        if not first.is_joint:
             raise ValueError(f'{prefix}; allowed on "{GROUND}" are flanges of joints')
-    elif first.load:
+    elif first.is_load:
         expected_members = (
-            {second.flow} if second.body else {*second.members} - ({second.flow} if second.flange else set())
+            {second.flow_member}
+            if second.is_body
+            else {*second.members} - ({second.flow_member} if second.flange else set())
         )
-        if second.load or {*first.members} != expected_members:
+        if second.is_load or {*first.members} != expected_members:
             raise ValueError(
                 f"{prefix}; allowed are a force or torque on a body's flange, an angle on a joint's flange"
             )
-    elif first.joint == second.joint:
+    elif first.is_joint == second.is_joint:
         raise ValueError(f"{prefix}; allowed is a joint's flange on a body's")
     elif first.members.keys() != second.members.keys():
         raise ValueError(f"{prefix}; allowed are two that turn or two that shift")
 
 
-def _check_held(system: System, connections: Sequence[tuple[End, End]]) -> None:
+def _check_moved_joints(system: System, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]) -> None:
     """Raise ValueError if all flanges of a joint are on the ground."""
     moved_joints = {
         first.component.name
         for first, second in connections
-        if first.joint and first.component and second.component
+        if first.is_joint and first.component and second.component
     }
-    moved_joints |= {second.component.name for _, second in connections if second.joint and second.component}
+    moved_joints |= {
+        second.component.name for _, second in connections if second.is_joint and second.component
+    }
     for name in system.joints:
         if name not in moved_joints:
             raise ValueError(
@@ -188,20 +196,20 @@ def _check_held(system: System, connections: Sequence[tuple[End, End]]) -> None:
             )
 
 
-def _check_loops(connections: Sequence[tuple[End, End]]) -> None:
+def _check_loops(connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]) -> None:
     """Raise ValueError if bodies and joints form a closed loop."""
     parents: dict[str, str] = {}
 
-    def root(name: str) -> str:
+    def find_root(name: str) -> str:
         while parents.get(name, name) != name:
             name = parents[name]
         return name
 
     for first, second in connections:
-        if first.joint and second.body and first.component and second.component:
-            roots = root(first.component.name), root(second.component.name)
+        if first.is_joint and second.is_body and first.component and second.component:
+            roots = find_root(first.component.name), find_root(second.component.name)
             if roots[0] == roots[1]:
                 raise ValueError(
-                    f"{first.text} on {second.text} closes a loop; allowed are chains of joints and bodies"
+                    f"{first.label} on {second.label} closes a loop; allowed are chains of joints and bodies"
                 )
             parents[roots[0]] = roots[1]

@@ -13,7 +13,7 @@ from .worker import KILLED_MESSAGE, LoadRamp
 
 RUNS_PER_WORKER = 4
 """Runs submitted at once for each worker thread [1]: enough to keep the workers busy."""
-MAX_LOSSES = 3
+MAX_RESTARTS = 3
 """Maximum number of restarts of a run whose result was lost with its worker [1]."""
 
 
@@ -27,14 +27,15 @@ def run_on_cluster(
     """Run the ramps on a dask cluster, and yield the journal entry of each run when it ends.
 
     scheduler : address of the dask scheduler
-    runs, todo : settings of all runs, and the indices of those to be run
+    runs      : settings of all runs
+    pending   : indices of the runs to be executed
 
     At most RUNS_PER_WORKER runs for each worker thread are submitted at the same time.
 
     Raises ValueError if dask is missing or the scheduler does not answer. Raises RuntimeError if the cluster
     has no worker, or a worker cannot run the FMU at all.
     """
-    with _client(scheduler) as client:
+    with _connect(scheduler) as client:
         from .plugin import FmuDistribution
 
         try:
@@ -51,7 +52,7 @@ def run_on_cluster(
 
 
 @contextmanager
-def _client(scheduler: str) -> Iterator[Any]:
+def _connect(scheduler: str) -> Iterator[Any]:
     """Connect to a dask scheduler; TLS settings are those of dask's own configuration."""
     try:
         from distributed import Client
@@ -72,11 +73,11 @@ def _client(scheduler: str) -> Iterator[Any]:
 
 
 def _submit_runs(
-    client: Any, key: str, load_ramp: LoadRamp, runs: Sequence[Mapping[str, Any]], pending: Sequence[int]
+    client: Any, fmu_key: str, load_ramp: LoadRamp, runs: Sequence[Mapping[str, Any]], pending: Sequence[int]
 ) -> Iterator[dict[str, object]]:
     """Submit runs to a dask client, and yield the journal entry of each run when it ends.
 
-    key : key under which the workers have the FMU
+    fmu_key : key under which the workers have the FMU
     """
     from distributed import KilledWorker, as_completed
 
@@ -85,7 +86,7 @@ def _submit_runs(
     waiting, indices, lost = iter(pending), {}, Counter[int]()
 
     def submit(index: int) -> object:
-        future = client.submit(run_on_dask_worker, key, load_ramp, index, runs[index], pure=False)
+        future = client.submit(run_on_dask_worker, fmu_key, load_ramp, index, runs[index], pure=False)
         indices[future.key] = index
         return future
 
@@ -99,7 +100,7 @@ def _submit_runs(
             yield {"run": index, "parameters": dict(runs[index]), "error": KILLED_MESSAGE}
         except Exception as error:
             lost[index] += 1
-            if not isinstance(error, CancelledError) or lost[index] > MAX_LOSSES:
+            if not isinstance(error, CancelledError) or lost[index] > MAX_RESTARTS:
                 text = " ".join(str(error).split())[:200]
                 error_name = type(error).__name__
                 raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None

@@ -19,9 +19,9 @@ from typing import Any
 
 from jointfmu.files.reading import check_regular, read_bytes
 from jointfmu.files.text import check_text, replace_unprintable
-from jointfmu.files.writing import existing_folder, write_text
+from jointfmu.files.writing import ensure_folder, write_text
 
-STUDY, RUNS, BANDS = "study.json", "runs.jsonl", "bands.csv"
+STUDY_FILE, RUNS_FILE, BANDS_FILE = "study.json", "runs.jsonl", "bands.csv"
 LOCK_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
@@ -31,12 +31,12 @@ def sha256_text(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def claim(folder: Path, study: Mapping[str, object]) -> None:
+def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
     """Write a study into its folder, or check that the folder already holds this study.
 
     Raises ValueError if the folder holds another study (the message names a difference) or other files.
     """
-    path = folder / STUDY
+    path = folder / STUDY_FILE
     if not path.exists():
         if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
             raise ValueError(f"{folder}: holds something else than a sweep; expected a new or empty folder")
@@ -62,47 +62,47 @@ def claim(folder: Path, study: Mapping[str, object]) -> None:
 
 @contextmanager
 def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
-    """Context of a claimed folder, see `claim`.
+    """Context of a claimed folder, see `claim_folder`.
 
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """
-    new = not (folder / STUDY).exists()
-    with existing_folder(folder):
-        claim(folder, study)
+    new = not (folder / STUDY_FILE).exists()
+    with ensure_folder(folder):
+        claim_folder(folder, study)
         try:
             yield
         except ValueError:
-            runs = folder / RUNS
+            runs = folder / RUNS_FILE
             if new and not (runs.exists() and runs.stat().st_size):
                 runs.unlink(missing_ok=True)
-                (folder / STUDY).unlink()
+                (folder / STUDY_FILE).unlink()
             raise
 
 
 class Journal:
     """File of finished runs of a sweep, open for appending and locked by this process.
 
-    count         : number of runs of the study
-    finished      : indices of the finished runs
-    failed        : number of failed runs
+    run_count     : number of runs of the study
+    finished_runs : indices of the finished runs
+    failed_count  : number of failed runs
     first_failure : entry of the first failed run, or None
 
     Entering the context raises ValueError, one line, if another process has locked the file, or if a row is
     no run of the study.
     """
 
-    def __init__(self, folder: Path, count: int) -> None:
-        self.count = count
-        self.path = folder / RUNS
-        self.finished: set[int] = set()
-        self.failed = 0
+    def __init__(self, folder: Path, run_count: int) -> None:
+        self.run_count = run_count
+        self.path = folder / RUNS_FILE
+        self.finished_runs: set[int] = set()
+        self.failed_count = 0
         self.first_failure: dict[str, object] | None = None
 
     def __enter__(self) -> "Journal":
         check_regular(self.path, "the journal of a sweep")
         self.file = self.path.open("ab")
         try:
-            _lock(self.file.fileno())
+            _lock_file(self.file.fileno())
         except OSError:
             self.file.close()
             raise ValueError(
@@ -111,9 +111,9 @@ class Journal:
         end = 0
         try:
             for row, (entry, end) in enumerate(_read_lines(self.path), 1):  # noqa: B007
-                if entry["run"] >= self.count:
+                if entry["run"] >= self.run_count:
                     raise _row_error(
-                        self.path, row, f"the study has {self.count} runs, no run {entry['run']}"
+                        self.path, row, f"the study has {self.run_count} runs, no run {entry['run']}"
                     )
                 self._count_entry(entry)
             self.file.truncate(end)
@@ -129,7 +129,7 @@ class Journal:
 
     def add(self, entry: Mapping[str, object]) -> None:
         """Append the entry of a finished run, unless the run is already in the file."""
-        if entry["run"] in self.finished:
+        if entry["run"] in self.finished_runs:
             return
         self.file.write(json.dumps(entry).encode() + b"\n")
         self.file.flush()
@@ -138,15 +138,15 @@ class Journal:
 
     def _count_entry(self, entry: Mapping[str, Any]) -> None:
         """Update the counts and the first failure with an entry."""
-        self.finished.add(int(entry["run"]))
+        self.finished_runs.add(int(entry["run"]))
         if "error" in entry:
-            self.failed += 1
+            self.failed_count += 1
             self.first_failure = self.first_failure or dict(entry)
 
 
 def read_entries(folder: Path) -> Iterator[dict[str, Any]]:
     """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is no run."""
-    return (entry for entry, _ in _read_lines(folder / RUNS))
+    return (entry for entry, _ in _read_lines(folder / RUNS_FILE))
 
 
 def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
@@ -233,7 +233,7 @@ def _format_value(value: object) -> str:
     return json.dumps(value)[:60]
 
 
-def _lock(handle: int) -> None:
+def _lock_file(handle: int) -> None:
     """Lock a file for this process until it is closed; OSError if another process has locked it."""
     if sys.platform == "win32":
         import msvcrt

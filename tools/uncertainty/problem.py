@@ -20,7 +20,7 @@ from jointfmu.quantity.refusal import InputRefusal
 from ..joint_parts import load_tool_module
 from .study import UncertainParameter, draw_samples, is_relative, split_settings
 
-Evaluate = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
+EvaluateFunction = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
 """Type of `ReducedCurves.evaluate`."""
 
 
@@ -41,7 +41,7 @@ class ReducedCurves:
     outputs: Sequence[Variable]
     default_end: Callable[[Any], float]
     max_load: Callable[[Any], Any]
-    evaluate: Evaluate
+    evaluate: EvaluateFunction
     exact: Callable[[Any, Array], dict[str, Array]]
 
     @property
@@ -62,7 +62,7 @@ def reduced_curves(kind: JointKind) -> ReducedCurves:
     return curves
 
 
-INTERVAL = "interval"
+INTERVAL_SETTING = "interval"
 """Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
 _INTERVAL_PATTERN = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 """Interval in the text of a source: its two ends."""
@@ -75,17 +75,17 @@ class Problem:
     """Uncertainty propagation problem of a joint.
 
     joint      : name of the kind of joint
-    parameters : class of the parameter set
+    parameter_class : class of the parameter set
     values     : {name: value} of the parameter file, with the settings that are plain values
-    uncertain  : parameters with a distribution; the load is the last one if it has a distribution
+    uncertain_parameters : parameters with a distribution; the load is the last one if it has a distribution
     loads      : load ramp (m), ascending; one point if the load itself was set
-    relative   : whether the distribution of the load is a factor on the ramp; None if it has none
+    load_is_relative : whether the distribution of the load is a factor on the ramp; None if it has none
     """
 
     joint: str
-    parameters: type[object]
+    parameter_class: type[object]
     values: Mapping[str, object]
-    uncertain: tuple[UncertainParameter, ...]
+    uncertain_parameters: tuple[UncertainParameter, ...]
     loads: Array
     load_is_relative: bool | None = None
 
@@ -98,7 +98,7 @@ class Problem:
 
         points : points (n, d) of the unit cube
         """
-        samples = draw_samples(self.uncertain, points)
+        samples = draw_samples(self.uncertain_parameters, points)
         load = samples.pop(self.curves.load.name, None)
         factor = (
             np.ones(len(points)) if load is None else load if self.load_is_relative else load / self.loads[-1]
@@ -107,12 +107,12 @@ class Problem:
 
 
 def state_problem(
-    file: ParameterFile, settings: Mapping[str, object], to: float | None, points: int
+    file: ParameterFile, settings: Mapping[str, object], ramp_end: float | None, points: int
 ) -> Problem:
     """State the problem of a parameter file and settings.
 
     settings : {name: value or text of a distribution}
-    to       : end of the load ramp; None: end of the joint's law, or of the file
+    ramp_end : end of the load ramp; None: end of the joint's law, or of the file
     points   : number of points of the ramp
 
     A parameter without setting is uniformly distributed over the range that the file states, if it does.
@@ -128,7 +128,7 @@ def state_problem(
     if unknown := [name for name in settings if name not in settable]:
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in settable)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
-    settings = dict.fromkeys(file.ranges, INTERVAL) | dict(settings)
+    settings = dict.fromkeys(file.ranges, INTERVAL_SETTING) | dict(settings)
     settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
     load_text = settings.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
@@ -146,28 +146,31 @@ def state_problem(
     load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
     median = None if load is None or relative else float(load.distribution.median())
     single = set_load if set_load is not None else median
-    end = to if to is not None or single is not None else file.start_value(curves.load.name) or None
-    loads = _loads(curves, nominal.values, single, end, points, load)
+    end = (
+        ramp_end if ramp_end is not None or single is not None else file.start_value(curves.load.name) or None
+    )
+    loads = _ramp_loads(curves, nominal.values, single, end, points, load)
     return Problem(
         file.joint, type(file.values), nominal.values_by_name, order, loads, relative if load else None
     )
 
 
 def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
-    """Replace the setting INTERVAL by the text LOW..HIGH; other settings are returned unchanged.
+    """Replace the setting "interval" by the text LOW..HIGH; other settings are returned unchanged.
 
     The ends are the range of the parameter in the file, else the interval stated in the text of its source.
 
     Raises ValueError if the file states neither.
     """
-    if value != INTERVAL:
+    if value != INTERVAL_SETTING:
         return value
     if name in file.ranges:
         return "{!r}..{!r}".format(*file.ranges[name])
     source = file.sources.get(name, "")
     if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(
-            f"{name} = {INTERVAL}: its source states none: {source!r}; expected '... interval LOW to HIGH'"
+            f"{name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... interval "
+            "LOW to HIGH'"
         )
     return f"{match[1]}..{match[2]}"
 
@@ -190,35 +193,41 @@ def _check_uncertain(parameter: UncertainParameter, item: Any) -> None:
             raise ValueError(f"{parameter.name} = {parameter.text}: {text}")
 
 
-def _loads(
+def _ramp_loads(
     curves: ReducedCurves,
     values: object,
     single_load: object,
-    to: float | None,
+    ramp_end: float | None,
     points: int,
-    load: UncertainParameter | None,
+    uncertain_load: UncertainParameter | None,
 ) -> Array:
-    """Loads (m): a ramp from 0 to `to`, or the single load that was set.
+    """Loads (m): a ramp from 0 to `ramp_end`, or the single load that was set.
 
-    values      : parameter set
-    single_load : the load that was set, or None
-    load        : distribution of the load, or None
+    values         : parameter set
+    single_load    : the load that was set, or None
+    uncertain_load : distribution of the load, or None
 
     Raises ValueError for a load outside of the tabulated law, or a wrong ramp.
     """
     allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(values))
     if single_load is not None:
-        if to is not None:
-            raise ValueError(f"{curves.load.name} is set and cannot be ramped as well; drop to = {to:g}")
+        if ramp_end is not None:
+            raise ValueError(
+                f"{curves.load.name} is set and cannot be ramped as well; drop to = {ramp_end:g}"
+            )
         if not isinstance(single_load, int | float) or isinstance(single_load, bool):
             raise ValueError(f"{curves.load.name} = {single_load!r} is not a number in {curves.load.unit}")
-        ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []
+        ends = (
+            [end for end in uncertain_load.support if np.isfinite(end) and end != 0.0]
+            if uncertain_load
+            else []
+        )
         for value in (float(single_load), *ends):
             if not allowed.contains(value):
                 text = f"{curves.load.name} = {value:g} {curves.load.unit}"
                 raise ValueError(f"{text} is outside {allowed}: {LOAD_LIMIT_TEXT}")
         return np.array([float(single_load)])
-    end = curves.default_end(values) if to is None else to
+    end = curves.default_end(values) if ramp_end is None else ramp_end
     if not allowed.contains(end):
         raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_LIMIT_TEXT}")
     if not 2 <= points <= 10_000:

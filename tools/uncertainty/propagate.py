@@ -18,10 +18,10 @@ from jointfmu.quantity import Array, Interval, build_parameter_set
 
 from ..batch.approach import columns, inside
 from .problem import LOAD_LIMIT_TEXT, Problem
-from .study import RefusedSamples, draw_samples, unit_design
+from .study import RefusedSamples, draw_samples, unit_cube_points
 
 Mask = NDArray[np.bool_]
-Singles = NDArray[np.float32]
+SinglePrecisionArray = NDArray[np.float32]
 
 QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 """Probabilities of the quantiles that bands consist of."""
@@ -43,26 +43,26 @@ class SampledOutputs:
     accepted : mask (n) of the samples that the law accepts
     """
 
-    outputs: Mapping[str, Singles]
+    outputs: Mapping[str, SinglePrecisionArray]
     accepted: Mask
 
 
-def evaluate_samples(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
+def evaluate_samples(problem: Problem, points: Array, loads: Array, progress_label: str) -> SampledOutputs:
     """Evaluate all outputs at loads (m) for points (n, d) of the unit cube.
 
-    text : label of the progress bar
+    progress_label : label of the progress bar
     """
-    values, factor = task.sample_values(points)
+    values, factor = problem.sample_values(points)
     n = len(points)
-    joint = columns(task.parameters, values)
-    good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.curves.max_load(joint))
-    outputs: dict[str, Singles] = {
-        name: np.full((loads.size, n), np.nan, np.float32) for name in task.curves.units
+    joint = columns(problem.parameter_class, values)
+    good = inside(joint, n) & (factor > 0.0) & (factor * problem.loads[-1] <= problem.curves.max_load(joint))
+    outputs: dict[str, SinglePrecisionArray] = {
+        name: np.full((loads.size, n), np.nan, np.float32) for name in problem.curves.units
     }
     index = np.flatnonzero(good)
     blocks = [index[i : i + BLOCK_SAMPLES] for i in range(0, index.size, BLOCK_SAMPLES)]
-    for block in track_progress(blocks, text, len(blocks)):
-        for part_indices, results in _evaluate_block(task, values, factor, block, loads):
+    for block in track_progress(blocks, progress_label, len(blocks)):
+        for part_indices, results in _evaluate_block(problem, values, factor, block, loads):
             for name, value in results.items():
                 outputs[name][:, part_indices] = value.T
     for column in outputs.values():
@@ -71,7 +71,7 @@ def evaluate_samples(task: Problem, points: Array, loads: Array, text: str) -> S
 
 
 def _evaluate_block(
-    task: Problem, values: Mapping[str, Any], factor: Array, block: Any, loads: Array
+    problem: Problem, values: Mapping[str, Any], factor: Array, block: Any, loads: Array
 ) -> Iterator[tuple[Any, dict[str, Array]]]:
     """Evaluate a block of samples: yield (indices of samples, {output: (samples, m)}).
 
@@ -80,11 +80,13 @@ def _evaluate_block(
     block_values = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
     try:
         with np.errstate(all="ignore"):
-            results = task.curves.evaluate(task.parameters, block_values, loads, factor[block][:, None])
+            results = problem.curves.evaluate(
+                problem.parameter_class, block_values, loads, factor[block][:, None]
+            )
     except (ValueError, RuntimeError):
         halves = (block[: block.size // 2], block[block.size // 2 :]) if block.size > 1 else ()
         for half in halves:
-            yield from _evaluate_block(task, values, factor, half, loads)
+            yield from _evaluate_block(problem, values, factor, half, loads)
     else:
         yield block, results
 
@@ -95,11 +97,11 @@ class Bands:
 
     loads     : nominal loads (m)
     quantiles : {output: (len(QUANTILES), m)}
-    mean, sd  : mean and standard deviation, {output: (m)}
+    mean, standard_deviation : mean and standard deviation, {output: (m)}
     nominal   : outputs for the values of the parameter file, {output: (m)}
-    samples   : number of samples drawn
-    refused   : the samples that the law refuses
-    error     : largest relative difference [1] between reduced curves and exported spring model, at
+    sample_count : number of samples drawn
+    refusals  : the samples that the law refuses
+    reduction_error : largest relative difference [1] between reduced curves and exported spring model, at
         CHECKED_SAMPLES samples
     units     : {output: unit}
     """
@@ -107,9 +109,9 @@ class Bands:
     loads: Array
     quantiles: Mapping[str, Array]
     mean: Mapping[str, Array]
-    sd: Mapping[str, Array]
+    standard_deviation: Mapping[str, Array]
     nominal: Mapping[str, Array]
-    samples: int
+    sample_count: int
     refusals: RefusedSamples
     reduction_error: float
     units: Mapping[str, str] = field(default_factory=dict)
@@ -127,36 +129,36 @@ class Bands:
         )
 
 
-def compute_bands(task: Problem, points: Array) -> Bands:
+def compute_bands(problem: Problem, points: Array) -> Bands:
     """Bands of all outputs, from points (n, d) of the unit cube.
 
     Raises RuntimeError if the law refuses all samples, or if the reduced curves differ from the exported
     spring model by more than MAX_REDUCTION_ERROR.
     """
-    outcome = evaluate_samples(task, points, task.loads, "samples")
-    refused = summarise_refusals(task, points, outcome.accepted)
+    outcome = evaluate_samples(problem, points, problem.loads, "samples")
+    refused = summarise_refusals(problem, points, outcome.accepted)
     if not np.any(outcome.accepted):
         raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
-    error = check_reduction(task, points, outcome)
-    nominal = task.curves.evaluate(task.parameters, task.values, task.loads, np.ones((1, 1)))
+    error = check_reduction(problem, points, outcome)
+    nominal = problem.curves.evaluate(problem.parameter_class, problem.values, problem.loads, np.ones((1, 1)))
     statistics = {
         name: np.stack([_statistics(row, outcome.accepted) for row in value], axis=1)
         for name, value in outcome.outputs.items()
     }
     return Bands(
-        loads=task.loads,
+        loads=problem.loads,
         quantiles={name: value[2:] for name, value in statistics.items()},
         mean={name: value[0] for name, value in statistics.items()},
-        sd={name: value[1] for name, value in statistics.items()},
+        standard_deviation={name: value[1] for name, value in statistics.items()},
         nominal={name: value[0] for name, value in nominal.items()},
-        samples=len(points),
+        sample_count=len(points),
         refusals=refused,
         reduction_error=error,
-        units=task.curves.units,
+        units=problem.curves.units,
     )
 
 
-def _statistics(row: Singles, accepted: Mask) -> Array:
+def _statistics(row: SinglePrecisionArray, accepted: Mask) -> Array:
     """Mean, standard deviation and quantiles (linear between samples) of one output at one load.
 
     row, accepted : output (n), and mask (n) of the samples to be used
@@ -166,15 +168,19 @@ def _statistics(row: Singles, accepted: Mask) -> Array:
     return np.array([values.mean(), values.std(), *np.interp(positions, np.arange(values.size), values)])
 
 
-def one_sample(task: Problem, points: Array, i: int) -> tuple[dict[str, object], float, dict[str, float]]:
+def select_sample(
+    problem: Problem, points: Array, i: int
+) -> tuple[dict[str, object], float, dict[str, float]]:
     """Sample i: values of all parameters, load factor, and values of the uncertain parameters alone."""
-    values, factor = task.sample_values(points[i : i + 1])
+    values, factor = problem.sample_values(points[i : i + 1])
     single = {k: float(v[0]) if isinstance(v, np.ndarray) else v for k, v in values.items()}
-    uncertain = {name: float(v[0]) for name, v in draw_samples(task.uncertain, points[i : i + 1]).items()}
+    uncertain = {
+        name: float(v[0]) for name, v in draw_samples(problem.uncertain_parameters, points[i : i + 1]).items()
+    }
     return single, float(factor[0]), uncertain
 
 
-def summarise_refusals(task: Problem, points: Array, accepted: Mask) -> RefusedSamples:
+def summarise_refusals(problem: Problem, points: Array, accepted: Mask) -> RefusedSamples:
     """Refused samples: their number, and the first one with the error message of the law.
 
     accepted : mask (n) of the accepted samples
@@ -182,33 +188,35 @@ def summarise_refusals(task: Problem, points: Array, accepted: Mask) -> RefusedS
     refused = np.flatnonzero(~accepted)
     if not refused.size:
         return RefusedSamples(0, {}, "")
-    values, factor, sample = one_sample(task, points, int(refused[0]))
+    values, factor, sample = select_sample(problem, points, int(refused[0]))
     reason = "the law gives no finite value"
-    load, ramped = factor * float(task.loads[-1]), task.curves.load
-    allowed = Interval.from_bounds(gt=0.0, le=task.curves.max_load(columns(task.parameters, values)))
+    load, ramped = factor * float(problem.loads[-1]), problem.curves.load
+    allowed = Interval.from_bounds(
+        gt=0.0, le=problem.curves.max_load(columns(problem.parameter_class, values))
+    )
     if not allowed.contains(load):
         reason = f"{ramped.name} = {load:g} {ramped.unit} is outside {allowed}: {LOAD_LIMIT_TEXT}"
     try:
-        task.curves.exact(build_parameter_set(task.parameters, values), load * np.ones(1))
+        problem.curves.exact(build_parameter_set(problem.parameter_class, values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
         reason = str(error)
     return RefusedSamples(int(refused.size), sample, reason)
 
 
-def check_reduction(task: Problem, points: Array, outcome: SampledOutputs) -> float:
+def check_reduction(problem: Problem, points: Array, outcome: SampledOutputs) -> float:
     """Largest relative difference [1] between reduced curves and exported spring model.
 
     It is computed at CHECKED_SAMPLES samples and at most 6 loads.
 
     Raises RuntimeError if it exceeds MAX_REDUCTION_ERROR; the message names the output and the sample.
     """
-    load_indices = np.unique(np.linspace(0, task.loads.size - 1, 6).astype(int))
-    load_indices = load_indices[task.loads[load_indices] > 0.0]
+    load_indices = np.unique(np.linspace(0, problem.loads.size - 1, 6).astype(int))
+    load_indices = load_indices[problem.loads[load_indices] > 0.0]
     largest = 0.0
     for i in np.flatnonzero(outcome.accepted)[:CHECKED_SAMPLES]:
-        values, factor, uncertain = one_sample(task, points, int(i))
-        exact = task.curves.exact(
-            build_parameter_set(task.parameters, values), factor * task.loads[load_indices]
+        values, factor, uncertain = select_sample(problem, points, int(i))
+        exact = problem.curves.exact(
+            build_parameter_set(problem.parameter_class, values), factor * problem.loads[load_indices]
         )
         for name, value in exact.items():
             scale = np.where(value == 0.0, 1.0, np.abs(value))
@@ -223,10 +231,10 @@ def check_reduction(task: Problem, points: Array, outcome: SampledOutputs) -> fl
     return largest
 
 
-def sample_designs(task: Problem, count: int, seed: int) -> tuple[Array, Array]:
+def sample_designs(problem: Problem, count: int, seed: int) -> tuple[Array, Array]:
     """Two independent sets of points (count, d) of the unit cube: for bands and indices, for indices only."""
-    d = len(task.uncertain)
-    both = unit_design(count, 2 * d, seed)
+    d = len(problem.uncertain_parameters)
+    both = unit_cube_points(count, 2 * d, seed)
     return both[:, :d], both[:, d:]
 
 
@@ -235,7 +243,7 @@ MAX_INDEX_LOADS = 21
 
 
 @dataclass(frozen=True, slots=True)
-class Indices:
+class SobolIndices:
     """First-order and total Sobol' indices (s, d) of s outputs with respect to d parameters.
 
     first_half, total_half : half widths (s, d) of their 95 % confidence intervals
@@ -251,19 +259,19 @@ class Indices:
 class Sensitivity:
     """Sobol' indices along the load ramp.
 
-    loads   : (m)
-    names   : names of the uncertain parameters (d)
-    outputs : {output: indices (m, d)}
-    rows    : number of base samples
+    loads           : (m)
+    parameter_names : names of the uncertain parameters (d)
+    outputs         : {output: indices (m, d)}
+    base_samples    : number of base samples
     """
 
     loads: Array
-    names: tuple[str, ...]
-    outputs: Mapping[str, Indices]
-    rows: int
+    parameter_names: tuple[str, ...]
+    outputs: Mapping[str, SobolIndices]
+    base_samples: int
 
 
-def sobol_indices_of(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
+def sobol_indices_of(f_A: Array, f_B: Array, f_AB: Array) -> SobolIndices:
     """Sobol' indices of s outputs from n base samples.
 
     f_A, f_B : outputs (s, n) at two independent sets of points A and B
@@ -283,31 +291,33 @@ def sobol_indices_of(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
     level = np.mean(variance, axis=1)
     level = np.where(level > 0.0, level, np.inf)
 
-    def half(terms: Array, index: Array) -> Array:
+    def half_width(terms: Array, index: Array) -> Array:
         """Half width of the 95 % interval: 1.96 standard errors of a ratio of means (delta method)."""
         deviation = np.std(terms - index.T[:, :, None] * variance, axis=2)
         return np.asarray(1.96 * (deviation / level).T / np.sqrt(n))
 
-    return Indices(first, half(b * (ab - a), first), total, half(0.5 * (a - ab) ** 2, total))
+    return SobolIndices(first, half_width(b * (ab - a), first), total, half_width(0.5 * (a - ab) ** 2, total))
 
 
-def compute_sensitivity(task: Problem, A: Array, B: Array) -> Sensitivity:
+def compute_sensitivity(problem: Problem, A: Array, B: Array) -> Sensitivity:
     """Sobol' indices of all outputs along the load ramp.
 
     A, B : two independent sets of points (n, d) of the unit cube, n a power of two
     """
     n, d = A.shape
-    load_indices = np.unique(np.linspace(0, task.loads.size - 1, MAX_INDEX_LOADS).astype(int))
-    loads = task.loads[load_indices]
+    load_indices = np.unique(np.linspace(0, problem.loads.size - 1, MAX_INDEX_LOADS).astype(int))
+    loads = problem.loads[load_indices]
     loads = loads[loads > 0.0]
     sets = [A, B]
     for i in range(d):
         mixed = A.copy()
         mixed[:, i] = B[:, i]
         sets.append(mixed)
-    outputs = evaluate_samples(task, np.concatenate(sets), loads, "indices").outputs
+    outputs = evaluate_samples(problem, np.concatenate(sets), loads, "indices").outputs
     by_output = {}
     for name, value in outputs.items():
         f = value.astype(np.float64).reshape(loads.size, d + 2, n)
         by_output[name] = sobol_indices_of(f[:, 0], f[:, 1], np.moveaxis(f[:, 2:], 1, 0))
-    return Sensitivity(loads, tuple(parameter.name for parameter in task.uncertain), by_output, n)
+    return Sensitivity(
+        loads, tuple(parameter.name for parameter in problem.uncertain_parameters), by_output, n
+    )

@@ -14,29 +14,29 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-TABLE_ROWS = 6
+MAX_TABLE_ROWS = 6
 """Maximum number of loads in the printed table."""
 
 
-def table_loads(task: Problem) -> list[float]:
+def table_loads(problem: Problem) -> list[float]:
     """Loads above zero in the printed table."""
-    return [float(load) for load in task.loads[_table_indices(task.loads)] if load > 0.0]
+    return [float(load) for load in problem.loads[_table_indices(problem.loads)] if load > 0.0]
 
 
 def _table_indices(values: Any) -> Any:
-    """Indices of at most TABLE_ROWS equally spaced values of a ramp."""
-    return np.unique(np.linspace(0, values.size - 1, TABLE_ROWS).astype(int))
+    """Indices of at most MAX_TABLE_ROWS equally spaced values of a ramp."""
+    return np.unique(np.linspace(0, values.size - 1, MAX_TABLE_ROWS).astype(int))
 
 
-def bands_csv(task: Problem, bands: Bands) -> str:
+def format_bands_csv(problem: Problem, bands: Bands) -> str:
     """CSV text of the bands: one row for each load; nominal value, mean, standard deviation, quantiles.
 
     Numbers are written without rounding.
     """
-    load = task.curves.load
+    load = problem.curves.load
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
-        statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
+        statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.standard_deviation))
         for statistic, by_output in statistics:
             heads.append((f"{name} {statistic}", unit))
             values.append(by_output[name])
@@ -45,26 +45,26 @@ def bands_csv(task: Problem, bands: Bands) -> str:
     return columns.format_table(heads, values)
 
 
-def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
+def as_json(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
     """Bands, refused samples and Sobol' indices as one JSON object."""
     outputs = {
         name: {
             "unit": unit,
             "nominal": bands.nominal[name].tolist(),
             "mean": bands.mean[name].tolist(),
-            "sd": bands.sd[name].tolist(),
+            "sd": bands.standard_deviation[name].tolist(),
             "quantiles": {
                 f"{q:g}": row.tolist() for q, row in zip(QUANTILES, bands.quantiles[name], strict=True)
             },
         }
         for name, unit in bands.units.items()
     }
-    refused, load = bands.refusals, task.curves.load
+    refused, load = bands.refusals, problem.curves.load
     return {
-        "joint": task.joint,
-        "parameters": {parameter.name: parameter.text for parameter in task.uncertain},
+        "joint": problem.joint,
+        "parameters": {parameter.name: parameter.text for parameter in problem.uncertain_parameters},
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
-        "samples": bands.samples,
+        "samples": bands.sample_count,
         "refused": {"count": refused.count, "example": dict(refused.example), "reason": refused.reason},
         "reduction_error": bands.reduction_error,
         "outputs": outputs,
@@ -75,25 +75,25 @@ def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dic
 def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
     numbers = ("first", "first_half", "total", "total_half")
     return {
-        "rows": sensitivity.rows,
+        "rows": sensitivity.base_samples,
         "loads": sensitivity.loads.tolist(),
         "outputs": {
             output: {
                 parameter: {number: getattr(indices, number)[:, i].tolist() for number in numbers}
-                for i, parameter in enumerate(sensitivity.names)
+                for i, parameter in enumerate(sensitivity.parameter_names)
             }
             for output, indices in sensitivity.outputs.items()
         },
     }
 
 
-def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
+def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     """Printed table: bands at a few loads, and Sobol' indices at the end of the ramp."""
     lines = []
     load_indices = _table_indices(bands.loads)
     quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
     for name in bands.nonzero_outputs:
-        head = f"{task.curves.load.name} [{task.curves.load.unit}]"
+        head = f"{problem.curves.load.name} [{problem.curves.load.unit}]"
         lines.append(f"{name} [{bands.units[name]}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
         for j in load_indices:
@@ -102,13 +102,13 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
             lines.append("".join(f"{x:16.5g}" for x in row))
         lines.append("")
     if sensitivity is not None:
-        lines += _indices_table(task, sensitivity, bands.nonzero_outputs)
-    varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in task.uncertain)
-    lines.append(f"over {task.curves.load.name}: {task.curves.load.doc}")
+        lines += _indices_table(problem, sensitivity, bands.nonzero_outputs)
+    varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in problem.uncertain_parameters)
+    lines.append(f"over {problem.curves.load.name}: {problem.curves.load.doc}")
     lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on that'}")
     if zero := [name for name in bands.units if name not in bands.nonzero_outputs]:
         lines.append(f"zero throughout: {', '.join(zero)}")
-    lines.append(f"{bands.samples} samples, {bands.refusals.count} refused by the law")
+    lines.append(f"{bands.sample_count} samples, {bands.refusals.count} refused by the law")
     if bands.refusals.count:
         example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refusals.example.items())
         lines.append(f"the first refused: {example}: {bands.refusals.reason}")
@@ -119,13 +119,13 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     return "\n".join(lines)
 
 
-def _indices_table(task: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
+def _indices_table(problem: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
     """Lines of a table: Sobol' indices at the end of the load ramp."""
-    load = f"{task.curves.load.name} = {sensitivity.loads[-1]:g} {task.curves.load.unit}"
+    load = f"{problem.curves.load.name} = {sensitivity.loads[-1]:g} {problem.curves.load.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
-    width = max(len(name) for name in sensitivity.names) + 2
+    width = max(len(name) for name in sensitivity.parameter_names) + 2
     lines.append(" " * width + "".join(f"{name:>32}" for name in outputs))
-    for i, parameter in enumerate(sensitivity.names):
+    for i, parameter in enumerate(sensitivity.parameter_names):
         cells = []
         for indices in (sensitivity.outputs[name] for name in outputs):
             first = f"{indices.first[-1, i]:.3f} +- {indices.first_half[-1, i]:.3f}"
@@ -138,7 +138,7 @@ def _indices_table(task: Problem, sensitivity: Sensitivity, outputs: Sequence[st
 _COLOURS = (plots.BLUE, plots.RED, plots.GREEN, "#b8860b", "#7b4fa3", "#3a9ca6", plots.GREY, "#a65628")
 
 
-def draw(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -> None:
+def draw_bands_and_indices(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -> None:
     """Draw bands and Sobol' indices over the load, one column of plots for each output that is not zero.
 
     Solid lines are total indices, dashed lines first-order indices.
@@ -182,12 +182,10 @@ def _draw_distribution(axes: "Axes", bands: Bands, name: str, label: str) -> Non
 def _draw_indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
     """Draw the Sobol' indices of an output over the load."""
     indices = sensitivity.outputs[name]
-    for i, parameter in enumerate(sensitivity.names):
+    for i, parameter in enumerate(sensitivity.parameter_names):
         colour = _COLOURS[i % len(_COLOURS)]
-        low, high = (
-            indices.total[:, i] - indices.total_half[:, i],
-            indices.total[:, i] + indices.total_half[:, i],
-        )
+        low = indices.total[:, i] - indices.total_half[:, i]
+        high = indices.total[:, i] + indices.total_half[:, i]
         axes.fill_between(sensitivity.loads, low, high, color=colour, alpha=0.2, linewidth=0)
         axes.plot(sensitivity.loads, indices.total[:, i], color=colour, label=parameter)
         axes.plot(sensitivity.loads, indices.first[:, i], color=colour, linestyle="--")

@@ -59,15 +59,16 @@ class UncertainParameter:
         return float(low), float(high)
 
 
-def parse_distribution(name: str, text: str, base: float | None) -> UncertainParameter | None:
+def parse_distribution(name: str, text: str, file_value: float | None) -> UncertainParameter | None:
     """Parse the text of a distribution; None if the text is a plain value or word.
 
-    base : value of the parameter file, to which a percentage without a value refers; None if there is none
+    file_value : value of the parameter file, to which a percentage without a value refers; None if there is
+        none
 
     Raises ValueError that names the parameter, the text and the allowed forms.
     """
     try:
-        law = _parse_distribution(text.strip(), base)
+        law = _parse_distribution(text.strip(), file_value)
     except ValueError as error:
         raise ValueError(
             f"{name} = {text}: {error or 'is no distribution'}; allowed are {DISTRIBUTION_FORMS}"
@@ -75,19 +76,21 @@ def parse_distribution(name: str, text: str, base: float | None) -> UncertainPar
     return law and UncertainParameter(name, text, law)
 
 
-def _parse_distribution(text: str, base: float | None) -> Any:
-    """Parse a distribution of scipy.stats; None if the text is a plain value or word. See `parse`."""
+def _parse_distribution(text: str, file_value: float | None) -> Any:
+    """Parse a distribution of scipy.stats; None if the text is a plain value or word."""
     if ".." in text:
         return _uniform(*_parse_numbers(text.split(".."), 2))
     if "+-" in text:
         middle, _, spread = text.partition("+-")
-        m = _parse_number(middle) if middle.strip() else _require_base(base)
+        m = _parse_number(middle) if middle.strip() else _require_file_value(file_value)
         half_width = abs(m) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
         return _uniform(m - half_width, m + half_width)
     if call := _CALL_PATTERN.fullmatch(text):
-        if call[1] not in _DISTRIBUTIONS:
+        if call[1] not in _DISTRIBUTION_PARSERS:
             raise ValueError(f"there is no distribution {call[1]!r}")
-        return _DISTRIBUTIONS[call[1]]([argument.strip() for argument in call[2].split(",")], base)
+        return _DISTRIBUTION_PARSERS[call[1]](
+            [argument.strip() for argument in call[2].split(",")], file_value
+        )
     return None
 
 
@@ -96,7 +99,7 @@ def _uniform(low: float, high: float) -> object:
     return stats.uniform(low, high - low)
 
 
-def _loguniform(texts: list[str], base: float | None) -> object:
+def _loguniform(texts: list[str], file_value: float | None) -> object:
     low, high = _parse_numbers(texts, 2)
     if low <= 0.0:
         raise ValueError(f"low = {low:g} is outside (0, inf)")
@@ -104,16 +107,16 @@ def _loguniform(texts: list[str], base: float | None) -> object:
     return stats.loguniform(low, high)
 
 
-def _normal(texts: list[str], base: float | None) -> object:
-    mean, spread = _centre_and_spread(texts, base)
+def _normal(texts: list[str], file_value: float | None) -> object:
+    mean, spread = _centre_and_spread(texts, file_value)
     sd = abs(mean) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if sd <= 0.0:
         raise ValueError(f"standard deviation = {sd:g} is outside (0, inf)")
     return stats.norm(mean, sd)
 
 
-def _lognormal(texts: list[str], base: float | None) -> object:
-    median, spread = _centre_and_spread(texts, base)
+def _lognormal(texts: list[str], file_value: float | None) -> object:
+    median, spread = _centre_and_spread(texts, file_value)
     factor = 1.0 + _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if median <= 0.0:
         raise ValueError(f"median = {median:g} is outside (0, inf)")
@@ -122,7 +125,7 @@ def _lognormal(texts: list[str], base: float | None) -> object:
     return stats.lognorm(math.log(factor), scale=median)
 
 
-def _triangular(texts: list[str], base: float | None) -> object:
+def _triangular(texts: list[str], file_value: float | None) -> object:
     low, mode, high = _parse_numbers(texts, 3)
     _check_ascending(low, high)
     if not low <= mode <= high:
@@ -130,7 +133,7 @@ def _triangular(texts: list[str], base: float | None) -> object:
     return stats.triang((mode - low) / (high - low), low, high - low)
 
 
-_DISTRIBUTIONS = {
+_DISTRIBUTION_PARSERS = {
     "uniform": lambda parts, base: _uniform(*_parse_numbers(parts, 2)),
     "loguniform": _loguniform,
     "normal": _normal,
@@ -139,10 +142,10 @@ _DISTRIBUTIONS = {
 }
 
 
-def _centre_and_spread(texts: list[str], base: float | None) -> tuple[float, str]:
+def _centre_and_spread(texts: list[str], file_value: float | None) -> tuple[float, str]:
     """Centre, and text of the spread, from one or two arguments; one percentage: about the file's value."""
     if len(texts) == 1 and _is_percent(texts[0]):
-        return _require_base(base), texts[0]
+        return _require_file_value(file_value), texts[0]
     if len(texts) != 2:
         raise ValueError(f"has {len(texts)} numbers, expected 2")
     return _parse_number(texts[0]), texts[1]
@@ -184,11 +187,11 @@ def _parse_percent(text: str) -> float:
     return value / 100.0
 
 
-def _require_base(base: float | None) -> float:
+def _require_file_value(file_value: float | None) -> float:
     """Return the value of the parameter file; ValueError if there is none."""
-    if base is None:
+    if file_value is None:
         raise ValueError("a percentage needs a value before it here")
-    return base
+    return file_value
 
 
 def is_relative(text: str) -> bool:
@@ -227,18 +230,18 @@ def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, objec
 
 
 def split_settings(
-    settings: Mapping[str, object], base: Mapping[str, object]
+    settings: Mapping[str, object], file_values: Mapping[str, object]
 ) -> tuple[dict[str, object], tuple[UncertainParameter, ...]]:
     """Split settings into plain values, {name: value}, and uncertain parameters.
 
-    base : {name: value} to which percentages refer
+    file_values : {name: value} to which percentages refer
 
     Raises ValueError for a wrong text of a distribution.
     """
     plain: dict[str, object] = {}
     uncertain = []
     for name, value in settings.items():
-        centre = base.get(name)
+        centre = file_values.get(name)
         centre = float(centre) if isinstance(centre, int | float) and not isinstance(centre, bool) else None
         parameter = parse_distribution(name, value, centre) if isinstance(value, str) else None
         if parameter is None:
@@ -264,18 +267,18 @@ def check_seed(seed: int) -> None:
         raise ValueError(f"seed = {seed} is outside [0, inf)")
 
 
-def unit_design(count: int, dimensions: int, seed: int) -> Array:
+def unit_cube_points(count: int, dimensions: int, seed: int) -> Array:
     """Points (count, dimensions) of a scrambled Sobol' sequence in the open unit cube, count = 2^k."""
     sequence = qmc.Sobol(dimensions, scramble=True, bits=64, seed=seed)
     points = sequence.random_base2(int(math.log2(count)))
     return np.asarray(np.clip(points, 2.0**-40, 1.0 - 2.0**-40))
 
 
-def draw_samples(uncertain: Sequence[UncertainParameter], points: Array) -> dict[str, Array]:
+def draw_samples(uncertain_parameters: Sequence[UncertainParameter], points: Array) -> dict[str, Array]:
     """Map points (n, d) of the unit cube to samples, {name: (n)}, by the inverse distribution functions."""
     return {
         parameter.name: np.asarray(parameter.distribution.ppf(points[:, i]))
-        for i, parameter in enumerate(uncertain)
+        for i, parameter in enumerate(uncertain_parameters)
     }
 
 

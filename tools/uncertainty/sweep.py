@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import FOLDER
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 
 from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes
@@ -24,32 +24,32 @@ from ..host import unpack_fmu
 from ..ramps import ramp
 from . import journal
 from .journal import Journal
-from .problem import INTERVAL, resolve_interval
+from .problem import INTERVAL_SETTING, resolve_interval
 from .propagate import QUANTILES
-from .study import draw_samples, split_settings, unit_design
+from .study import draw_samples, split_settings, unit_cube_points
 from .worker import KILLED_MESSAGE, LoadRamp, run_locally, write_slim_fmu
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class SweepSummary:
     """Summary of a sweep.
 
-    runs          : number of runs of the study
+    run_count     : number of runs of the study
     new_runs      : number of runs finished by this call
-    failed        : number of failed runs of the study
+    failed_count  : number of failed runs of the study
     first_failure : journal entry of the first failed run, or None
     """
 
-    runs: int
+    run_count: int
     new_runs: int
-    failed: int
+    failed_count: int
     first_failure: Mapping[str, Any] | None
 
 
 def plan_runs(
-    fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object], count: int, seed: int
+    fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object], run_count: int, seed: int
 ) -> tuple[dict[str, object], list[dict[str, object]]]:
-    """Plan a sweep: the study as a JSON object for its folder, and the settings of each of `count` runs.
+    """Plan a sweep: the study as a JSON object for its folder, and the settings of each of `run_count` runs.
 
     settings : {name: value or text of a distribution} of parameters and inputs
     seed     : seed of the Sobol' sequence
@@ -68,7 +68,7 @@ def plan_runs(
             raise ValueError(f"{fmu}: unknown name {name!r}, allowed are {', '.join(settable)}")
         if name == load_ramp.input:
             raise ValueError(f"{fmu}: {name} is driven by the ramp and cannot be set as well")
-    if INTERVAL in settings.values():
+    if INTERVAL_SETTING in settings.values():
         file = _parameter_file_of(fmu)
         settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
     real = [name for name in settable if variables[name].type in ("Real", "Float64")]
@@ -81,13 +81,13 @@ def plan_runs(
         raise ValueError(
             f"{fmu}: {wrong[0].name} = {wrong[0].text}: is no real number and cannot be uncertain"
         )
-    samples = draw_samples(uncertain, unit_design(count, len(uncertain), seed))
-    runs = [plain | {name: float(column[i]) for name, column in samples.items()} for i in range(count)]
+    samples = draw_samples(uncertain, unit_cube_points(run_count, len(uncertain), seed))
+    runs = [plain | {name: float(column[i]) for name, column in samples.items()} for i in range(run_count)]
     record = {
         "fmu": fmu.name,
         "fmu_sha256": journal.sha256_text(read_bytes(fmu, "an FMU")),
         **asdict(load_ramp),
-        "samples": count,
+        "samples": run_count,
         "seed": seed,
         "parameters": {parameter.name: parameter.text for parameter in uncertain} | plain,
     }
@@ -100,12 +100,14 @@ def _parameter_file_of(fmu: Path) -> ParameterFile:
     Raises ValueError if the FMU contains none.
     """
     with archives.open_archive(fmu) as archive, TemporaryDirectory() as folder:
-        members = [name for name in archive.namelist() if fnmatch(name, f"{FOLDER}/parameters/*.toml")]
+        members = [
+            name for name in archive.namelist() if fnmatch(name, f"{REFERENCE_FOLDER}/parameters/*.toml")
+        ]
         if parameter_files := [name for name in members if Path(name).name != "study.toml"]:
             file = Path(folder, Path(parameter_files[0]).name)
             file.write_bytes(archives.read_member(archive, parameter_files[0]))
             return load_parameter_file(file)
-    raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL}")
+    raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL_SETTING}")
 
 
 def sweep(
@@ -115,11 +117,11 @@ def sweep(
     out: Path,
     scheduler: str | None = None,
     workers: int | None = None,
-) -> Summary:
+) -> SweepSummary:
     """Execute the runs that are not yet in the folder `out`, and write each run when it is finished.
 
     runs      : settings of all runs of the study
-    out       : folder of the sweep, see `journal.claim`
+    out       : folder of the sweep, see `journal.claim_folder`
     scheduler : address of a dask scheduler, whose workers execute the runs
     workers   : number of processes on this machine, if there is no scheduler; None: one for each core
 
@@ -129,8 +131,8 @@ def sweep(
     execute any run (jointfmu is not installed there, or no worker is left).
     """
     with Journal(out, len(runs)) as runs_file:
-        count_before = len(runs_file.finished)
-        todo = [i for i in range(len(runs)) if i not in runs_file.finished]
+        count_before = len(runs_file.finished_runs)
+        todo = [i for i in range(len(runs)) if i not in runs_file.finished_runs]
         if todo:
             if scheduler is None:
                 entries = _run_locally(fmu, load_ramp, runs, todo, workers)
@@ -141,10 +143,10 @@ def sweep(
             with closing(entries) as finished:
                 for entry in track_progress(finished, "sweep", len(todo)):
                     runs_file.add(entry)
-        new_runs = len(runs_file.finished) - count_before
-        summary = Summary(len(runs), new_runs, runs_file.failed, runs_file.first_failure)
-    if summary.failed < summary.runs:
-        write_text(out / journal.BANDS, bands_csv(out, ramp.variable_units(fmu)))
+        new_runs = len(runs_file.finished_runs) - count_before
+        summary = SweepSummary(len(runs), new_runs, runs_file.failed_count, runs_file.first_failure)
+    if summary.failed_count < summary.run_count:
+        write_text(out / journal.BANDS_FILE, format_bands_csv(out, ramp.variable_units(fmu)))
     return summary
 
 
@@ -165,7 +167,7 @@ def _run_locally(
                 yield entry or {"run": i, "parameters": dict(settings), "error": KILLED_MESSAGE}
 
 
-def bands_csv(folder: Path, units: Mapping[str, str]) -> str:
+def format_bands_csv(folder: Path, units: Mapping[str, str]) -> str:
     """CSV text: quantiles of each output at each point of the ramp, over all runs that did not fail."""
     runs: dict[str, list[Array]] = {}
     for entry in journal.read_entries(folder):

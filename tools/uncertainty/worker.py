@@ -22,7 +22,7 @@ KILLED_MESSAGE = "the process of the run died"
 class LoadRamp:
     """Load ramp of all runs of a sweep: name of the driven input, end and step [unit of the input].
 
-    See `ramp.run`.
+    See `ramp.run_ramp`.
     """
 
     input: str
@@ -61,9 +61,9 @@ def run_locally(job: tuple[Path, LoadRamp, int, Mapping[str, object]]) -> dict[s
     return run_sample(*job)
 
 
-def write_slim_fmu(fmu: Path, small: Path) -> None:
-    """Write a copy `small` of an FMU without sources, documentation and binaries of other platforms."""
-    with archives.open_archive(fmu) as full, zipfile.ZipFile(small, "w") as reduced:
+def write_slim_fmu(fmu: Path, slim_path: Path) -> None:
+    """Write a copy `slim_path` of an FMU without sources, documentation and binaries of other platforms."""
+    with archives.open_archive(fmu) as full, zipfile.ZipFile(slim_path, "w") as reduced:
         for item in full.infolist():
             if is_needed_to_run(item.filename) and not item.is_dir():
                 reduced.writestr(item, archives.read_member(full, item.filename))

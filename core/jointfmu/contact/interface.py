@@ -10,8 +10,8 @@ from .powerlaw import SpotDistribution
 
 LOAD_TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
-RATIOS = ("eta_n", "eta_t", "elastic_fraction")
-"""Quantities that are ratios, not sums over the nominal area."""
+RATIO_QUANTITIES = ("eta_n", "eta_t", "elastic_fraction")
+"""Names of the contact quantities that are ratios [1]; all others are sums over the nominal area."""
 MIN_LOG_AREA, MAX_LOG_AREA = -600.0, 300.0
 """Range of log-areas u [1] in which laws are evaluated: 260 decades below the reference area, 130 above."""
 MIN_PRESSURE = 1e-200
@@ -23,7 +23,7 @@ NEWTON_TOLERANCE = 1e-8
 MAX_ITERATIONS = 200
 """Largest number of iterations of an inversion [1], far above the usual number."""
 ONE_SIDED_OFFSET = 1e-9
-"""Distance in log-area [1] from the end of a regime at which its one-sided derivative is evaluated."""
+"""Distance in log-area [1] from the end of a regime, at which the one-sided derivative is evaluated."""
 _NOT_REPRESENTABLE_TEXT = (
     "the parameters give a reference area of {} m2 or a load that is not representable; "
     "is D close to the end of its interval, or G, h or another one extreme?"
@@ -43,9 +43,9 @@ class InterfaceLaw(Protocol):
         """Hardness of the softer body [Pa]."""
 
     def spots(self) -> SpotDistribution:
-        """Regimes of a single spot, with the size distribution of the spots."""
+        """Load, stiffness and area of a spot in each regime, and the size distribution of the spots."""
 
-    def state(self, u: Number) -> dict[str, Number]:
+    def state(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities, {symbol: value}, for a largest spot of log-area u."""
 
 
@@ -53,21 +53,21 @@ class InterfaceLaw(Protocol):
 class ValidatedLaw(Protocol):
     """Interface law with a range of pressures in which it was validated."""
 
-    def find_range_violations(self, lowest: float, highest: float) -> list[str]:
-        """Messages, one line each, if pressures from `lowest` to `highest` [Pa] leave the validated range."""
+    def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
+        """Messages, one line each, if an interval of pressures [Pa] leaves the validated range."""
 
 
 def newton_step(
-    spots: SpotDistribution, u: Number, log_load: Number
+    spots: SpotDistribution, largest_log_area: Number, log_load: Number
 ) -> tuple[Number, Number, Number, Number]:
     """One safeguarded Newton step for ln F(u) = log_load.
 
     Returns step, lower and upper bound of the root (all relative to u), and residual [1]. The slope of ln F
     over u lies between MIN_LOAD_SLOPE m and MAX_LOAD_SLOPE, so every evaluation brackets the root.
     """
-    value, slope = spots.log_total("load", u)
+    value, slope = spots.log_total("load", largest_log_area)
     residual = log_load - value
-    a, b = residual / (MIN_LOAD_SLOPE * spots.m), residual / MAX_LOAD_SLOPE
+    a, b = residual / (MIN_LOAD_SLOPE * spots.size_exponent), residual / MAX_LOAD_SLOPE
     lower, upper = np.minimum(a, b), np.maximum(a, b)
     step = np.minimum(np.maximum(residual / slope, lower), upper)
     return step, lower, upper, residual
@@ -103,7 +103,7 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
         raise ValueError(
             f"pressure = {np.broadcast_to(p, invalid.shape)[invalid].flat[0]:g} Pa is outside "
             f"[{np.max(min_load / law.A_0):.3g}, {np.min(max_load / law.A_0):.3g}]: its largest spot is not "
-            f"representable beside the critical area {np.max(spots.reference):.3g} m2 of this surface"
+            f"representable beside the critical area {np.max(spots.reference_area):.3g} m2 of this surface"
         )
     parameters = np.shape(min_load)
     shape = np.broadcast_shapes(load.shape, parameters)
@@ -115,12 +115,15 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
 
 
 def find_checked_spots(law: InterfaceLaw) -> SpotDistribution:
-    """Spots of a law. Raises ValueError if their reference area or load over- or underflows (D near 1)."""
+    """Size distribution of a law.
+
+    Raises ValueError if its reference area or its load over- or underflows (D near 1).
+    """
     return _check_spots(law)[0]
 
 
 def _check_spots(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
-    """Spots as from `find_checked_spots`, and their loads [N] at MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
+    """Size distribution of a law, and its loads [N] at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
     ends = (MIN_LOG_AREA, 0.0, MAX_LOG_AREA)
     with np.errstate(all="ignore"):
         try:
@@ -129,11 +132,11 @@ def _check_spots(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
             raise ValueError(_NOT_REPRESENTABLE_TEXT.format("inf")) from None
         logs = [spots.log_total("load", u) for u in ends]
         loads = [np.exp(log) for log, _ in logs]
-        values = [*loads, *(x for log in logs for x in log), *(np.exp(spots.m * u) for u in ends)]
+        values = [*loads, *(x for log in logs for x in log), *(np.exp(spots.size_exponent * u) for u in ends)]
         representable = np.all([np.all(np.isfinite(x)) for x in values])
-        positive = np.all((spots.reference > 0.0) & np.isfinite(1.0 / spots.reference))
+        positive = np.all((spots.reference_area > 0.0) & np.isfinite(1.0 / spots.reference_area))
     if not (representable and positive):
-        raise ValueError(_NOT_REPRESENTABLE_TEXT.format(f"{np.max(spots.reference):g}"))
+        raise ValueError(_NOT_REPRESENTABLE_TEXT.format(f"{np.max(spots.reference_area):g}"))
     return spots, loads
 
 
@@ -156,27 +159,29 @@ def _solve_log_area(spots: SpotDistribution, load: Array) -> Array:
     return np.where(empty, -np.inf, u)
 
 
-def evaluate(law: InterfaceLaw, u: Number) -> dict[str, Number]:
+def evaluate(law: InterfaceLaw, largest_log_area: Number) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at the log-area u [1] of the largest spot.
 
     Contains `largest_spot` [m2], `pressure` [Pa] and the quantities of the law. At zero load (u minus
     infinity) sums are zero and ratios have their limit.
     """
-    empty = np.isneginf(u)
-    state = law.state(np.where(empty, MIN_LOG_AREA, u))
+    empty = np.isneginf(largest_log_area)
+    state = law.state(np.where(empty, MIN_LOG_AREA, largest_log_area))
     zero = np.where(empty, 0.0, 1.0)
-    state = {name: value if name in RATIOS else zero * value for name, value in state.items()}
+    state = {name: value if name in RATIO_QUANTITIES else zero * value for name, value in state.items()}
     spots = law.spots()
-    spot = spots.reference * np.exp(u) if spots.has_spot_area else np.nan * u
+    spot = (
+        spots.reference_area * np.exp(largest_log_area) if spots.has_spot_area else np.nan * largest_log_area
+    )
     return {"largest_spot": spot, "pressure": state["F"] / law.A_0, **state}
 
 
-def at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
+def evaluate_at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa], see `evaluate`."""
     return evaluate(law, solve_largest_spot(law, pressure))
 
 
-def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
+def evaluate_at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 for a largest spot with the area (...) [m2], see `evaluate`.
 
     The area is that of the paper: truncated for Zhao 2018, real for Hu 2023 and Yu 2022. Raises ValueError
@@ -189,33 +194,36 @@ def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
     bad = ~(np.isfinite(a) & (a > 0.0))
     if np.any(bad):
         raise ValueError(f"largest spot = {a[bad].flat[0]:g} m2 is outside (0, inf): area of a spot")
-    u = np.log(a) - np.log(spots.reference)
+    u = np.log(a) - np.log(spots.reference_area)
     if np.any(bad := (u < MIN_LOG_AREA) | (u > MAX_LOG_AREA)):
         raise ValueError(
             f"largest spot = {np.broadcast_to(a, bad.shape)[bad].flat[0]:g} m2 is not representable beside "
-            f"the critical area {np.max(spots.reference):g} m2, allowed are 260 decades below to 130 above"
+            f"the critical area {np.max(spots.reference_area):g} m2, allowed are 260 decades below to "
+            "130 above"
         )
     return evaluate(law, u)
 
 
-def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, name: str = "normal") -> tuple[Array, Array]:
+def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, direction: str = "normal") -> tuple[Array, Array]:
     """Stiffness per nominal area k (...) [N/m3] and dk/dp (...) [1/m] at pressures (...) [Pa] > 0.
 
-    name : stiffness, "normal" or "tangential"
+    direction : stiffness, "normal" or "tangential"
 
     The derivative is exact: (dK/du)/(dF/du) from the same integrals.
     """
     spots = law.spots()
     u = solve_largest_spot(law, pressure)
-    k = spots.total(name, u) / law.A_0
-    return k, spots.total_derivative(name, u) / spots.total_derivative("load", u)
+    k = spots.total(direction, u) / law.A_0
+    return k, spots.total_derivative(direction, u) / spots.total_derivative("load", u)
 
 
-def find_validity_violations(law: InterfaceLaw, pressure: float, lowest: float | None = None) -> list[str]:
-    """Messages, one line each, if a law is outside its validity at a nominal pressure [Pa]; usually none.
+def find_validity_violations(
+    law: InterfaceLaw, pressure: float, lowest_pressure: float | None = None
+) -> list[str]:
+    """Warnings, one line each, if a law is outside its validity at a nominal pressure [Pa]; usually none.
 
-    lowest : [Pa] smallest pressure of interest, for laws that are validated from a smallest load on; None:
-        the same pressure
+    lowest_pressure : [Pa] smallest pressure of interest, for laws that are validated from a smallest load on;
+        None: the same pressure
 
     Above the hardness of the softer body the contact yields as a whole. A real area above the nominal one
     means that spots overlap. Results beyond these limits are extrapolations.
@@ -234,15 +242,17 @@ def find_validity_violations(law: InterfaceLaw, pressure: float, lowest: float |
             f"which the interface law reaches at {limit:.3g} Pa"
         )
     if isinstance(law, ValidatedLaw):
-        messages += law.find_range_violations(pressure if lowest is None else lowest, pressure)
+        messages += law.find_range_violations(
+            pressure if lowest_pressure is None else lowest_pressure, pressure
+        )
     return messages
 
 
 def _full_contact_pressure(law: InterfaceLaw, pressure: float) -> float | None:
     """Pressure [Pa] at which the real area reaches A_0; None if it is smaller at `pressure`."""
     with np.errstate(over="ignore"):
-        if not float(at_pressure(law, pressure)["A_r"]) > law.A_0:
+        if not float(evaluate_at_pressure(law, pressure)["A_r"]) > law.A_0:
             return None
         lower_pressures = np.geomspace(1e-6 * pressure, pressure, 400)
-        area = at_pressure(law, lower_pressures)["A_r"]
+        area = evaluate_at_pressure(law, lower_pressures)["A_r"]
     return float(np.exp(np.interp(np.log(law.A_0), np.log(area), np.log(lower_pressures))))

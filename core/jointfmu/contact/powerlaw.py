@@ -66,28 +66,36 @@ class RegimeTerm(Protocol):
     @property
     def upper(self) -> Number: ...
 
-    def spot_value(self, t: Number) -> Number:
-        """Quantity of a single spot of log-area t; zero outside the regime."""
+    def spot_value(self, log_area: Number) -> Number:
+        """Quantity of a single spot at its log-area t; zero outside the regime."""
 
-    def integral(self, m: Number, u: Number) -> Number:
-        """Integral of the quantity of a spot times exp(-m t) over the regime, for t <= u."""
+    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
+        """Integral of the quantity of a spot times exp(-m t) over the regime, for log-areas t <= u.
+
+        size_exponent, largest_log_area : m and u
+        """
 
 
 @dataclass(frozen=True, slots=True)
 class PowerTerm:
-    """Power law `c exp(p t)` for `lower < t <= upper`; an end None is infinite."""
+    """Power law coefficient exp(exponent t) for log-areas `lower < t <= upper`; an end None is infinite."""
 
-    c: Number
-    p: Number
+    coefficient: Number
+    exponent: Number
     lower: Number = None
     upper: Number = None
 
-    def spot_value(self, t: Number) -> Number:
-        return regime_indicator(t, self.lower, self.upper) * self.c * np.exp(self.p * t)
+    def spot_value(self, log_area: Number) -> Number:
+        return (
+            regime_indicator(log_area, self.lower, self.upper)
+            * self.coefficient
+            * np.exp(self.exponent * log_area)
+        )
 
-    def integral(self, m: Number, u: Number) -> Number:
-        lower, upper = clip_limit(self.lower, u), clip_limit(self.upper, u, open_end=u)
-        return self.c * exp_integral(self.p - m, lower, upper)
+    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
+        lower = clip_limit(self.lower, largest_log_area)
+        upper = clip_limit(self.upper, largest_log_area, open_end=largest_log_area)
+        return self.coefficient * exp_integral(self.exponent - size_exponent, lower, upper)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,120 +106,147 @@ class SmoothTerm:
     lower: Number
     upper: Number
 
-    def spot_value(self, t: Number) -> Number:
-        inside = np.minimum(np.maximum(t, self.lower), self.upper)
-        return regime_indicator(t, self.lower, self.upper) * self.function(inside)
+    def spot_value(self, log_area: Number) -> Number:
+        inside = np.minimum(np.maximum(log_area, self.lower), self.upper)
+        return regime_indicator(log_area, self.lower, self.upper) * self.function(inside)
 
-    def integral(self, m: Number, u: Number) -> Number:
+    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
         def integrand(t: Number) -> Number:
-            return self.function(np.maximum(t, self.lower)) * np.exp(-m * t)
+            return self.function(np.maximum(t, self.lower)) * np.exp(-size_exponent * t)
 
-        if isinstance(u, np.ndarray) and isinstance(self.upper, float) and np.all(u >= self.upper):
-            u = self.upper  # the integral is the same for all points
-        return integrate_gauss(integrand, clip_limit(self.lower, u), clip_limit(self.upper, u))
+        if (
+            isinstance(largest_log_area, np.ndarray)
+            and isinstance(self.upper, float)
+            and np.all(largest_log_area >= self.upper)
+        ):
+            largest_log_area = self.upper  # the integral is the same for all points
+        return integrate_gauss(
+            integrand, clip_limit(self.lower, largest_log_area), clip_limit(self.upper, largest_log_area)
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class SlipTerm:
-    """Tangential stiffness in partial slip, `c exp(p t) (1 - h exp(-q t))^(1/3)`; 0 in full slip.
+    """Tangential stiffness of a spot in partial slip, as a function of its log-area t; 0 in full slip.
 
-    Full slip is where the bracket is negative.
+    coefficient exp(exponent t) (1 - slip_coefficient exp(-slip_exponent t))^(1/3); in full slip the bracket
+    is negative.
 
     The substitution `t = t_slip + r^3` removes the cube root at the end of slip, so Gauss-Legendre converges.
     """
 
-    c: Number
-    p: Number
-    h: Number
-    q: Number
+    coefficient: Number
+    exponent: Number
+    slip_coefficient: Number
+    slip_exponent: Number
     lower: Number
     upper: Number
 
-    def spot_value(self, t: Number) -> Number:
-        stick = np.maximum(1.0 - self.h * np.exp(-self.q * t), 0.0)
+    def spot_value(self, log_area: Number) -> Number:
+        stick = np.maximum(1.0 - self.slip_coefficient * np.exp(-self.slip_exponent * log_area), 0.0)
         return (
-            regime_indicator(t, self.lower, self.upper) * self.c * np.exp(self.p * t) * stick ** (1.0 / 3.0)
+            regime_indicator(log_area, self.lower, self.upper)
+            * self.coefficient
+            * np.exp(self.exponent * log_area)
+            * stick ** (1.0 / 3.0)
         )
 
-    def integral(self, m: Number, u: Number) -> Number:
-        onset = np.log(self.h) / self.q
-        lower = np.maximum(clip_limit(self.lower, u), np.minimum(onset, clip_limit(self.upper, u)))
-        upper = np.maximum(clip_limit(self.upper, u), lower)
+    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
+        onset = np.log(self.slip_coefficient) / self.slip_exponent
+        lower = np.maximum(
+            clip_limit(self.lower, largest_log_area),
+            np.minimum(onset, clip_limit(self.upper, largest_log_area)),
+        )
+        upper = np.maximum(clip_limit(self.upper, largest_log_area), lower)
 
         def integrand(r: Number) -> Number:
             t = onset + r**3
-            stick = np.maximum(-np.expm1(-self.q * r**3), 0.0) ** (1.0 / 3.0)
-            return 3.0 * r**2 * stick * np.exp((self.p - m) * t)
+            stick = np.maximum(-np.expm1(-self.slip_exponent * r**3), 0.0) ** (1.0 / 3.0)
+            return 3.0 * r**2 * stick * np.exp((self.exponent - size_exponent) * t)
 
         start = np.maximum(lower - onset, 0.0) ** (1.0 / 3.0)
         end = np.maximum(upper - onset, 0.0) ** (1.0 / 3.0)
-        return self.c * integrate_gauss(integrand, start, end)
+        return self.coefficient * integrate_gauss(integrand, start, end)
 
 
-def clip_limit(limit: Number, u: Number, open_end: Number = None) -> Number:
+def clip_limit(regime_bound: Number, largest_log_area: Number, open_end: Number = None) -> Number:
     """Smaller of a bound of a regime and u; `open_end` if the bound is None (infinite)."""
-    return open_end if limit is None else np.minimum(limit, u)
+    return open_end if regime_bound is None else np.minimum(regime_bound, largest_log_area)
 
 
-def regime_indicator(t: Number, lower: Number, upper: Number) -> Number:
+def regime_indicator(log_area: Number, lower: Number, upper: Number) -> Number:
     """1 where `lower < t <= upper`, else 0 [1]."""
-    is_above = 1.0 if lower is None else np.where(t > lower, 1.0, 0.0)
-    is_below = 1.0 if upper is None else np.where(t <= upper, 1.0, 0.0)
+    is_above = 1.0 if lower is None else np.where(log_area > lower, 1.0, 0.0)
+    is_below = 1.0 if upper is None else np.where(log_area <= upper, 1.0, 0.0)
     return is_above * is_below
 
 
 @dataclass(frozen=True, slots=True)
 class SpotDistribution:
-    """Spot law with the size distribution of the spots.
+    """Quantities of a spot (load, stiffness, area) in each regime, with the size distribution of the spots.
 
-    reference : [m2] area at t = 0
-    m         : [1]  exponent of the size distribution
-    weight    : [1]  prefactor w of the size distribution
-    terms     : {quantity: regimes}; always contains `load` [N]
+    reference_area : [m2] area a_ref of a spot with the log-area 0
+    size_exponent  : [1]  exponent m of the size distribution
+    size_prefactor : [1]  prefactor w of the size distribution
+    regime_terms   : {quantity: regimes}; always contains `load` [N]
     onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
     has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
     """
 
-    reference: Number
-    m: Number
-    weight: Number
-    terms: Mapping[str, tuple[RegimeTerm, ...]]
+    reference_area: Number
+    size_exponent: Number
+    size_prefactor: Number
+    regime_terms: Mapping[str, tuple[RegimeTerm, ...]]
     onset_log_area: Number = None
     has_spot_area: bool = True
 
-    def total(self, name: str, u: Number) -> Number:
-        """Sum Q(u) of a quantity over all spots, if the largest spot has the log-area u."""
-        return self.m * self.weight * np.exp(self.m * u) * self._integral(name, u)
+    def total(self, quantity: str, largest_log_area: Number) -> Number:
+        """Sum Q(u) of a quantity over all spots; u is the log-area of the largest spot."""
+        return (
+            self.size_exponent
+            * self.size_prefactor
+            * np.exp(self.size_exponent * largest_log_area)
+            * self._integral(quantity, largest_log_area)
+        )
 
-    def total_derivative(self, name: str, u: Number) -> Number:
+    def total_derivative(self, quantity: str, largest_log_area: Number) -> Number:
         """Derivative of `total` with respect to u: m Q + m w q(a_L)."""
-        largest = sum(term.spot_value(u) for term in self.terms[name])
-        return self.m * self.total(name, u) + self.m * self.weight * largest
+        largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
+        return (
+            self.size_exponent * self.total(quantity, largest_log_area)
+            + self.size_exponent * self.size_prefactor * largest
+        )
 
     @property
-    def stiffness_onset(self) -> Number:
+    def stiffness_onset_log_area(self) -> Number:
         """Log-area [1] of the largest spot up to which all spots are plastic and the stiffness is zero."""
         if self.onset_log_area is not None:
             return self.onset_log_area
-        return reduce(np.minimum, (term.lower for term in self.terms["normal"]))
+        return reduce(np.minimum, (term.lower for term in self.regime_terms["normal"]))
 
     @property
-    def sorted_regime_ends(self) -> list[float]:
+    def sorted_regime_end_log_areas(self) -> list[float]:
         """Log-areas [1], ascending, of the ends of the stiffness regimes: its derivative jumps there."""
-        return sorted({float(end) for end in self.regime_ends})
+        return sorted({float(end) for end in self.regime_end_log_areas})
 
     @property
-    def regime_ends(self) -> list[Number]:
+    def regime_end_log_areas(self) -> list[Number]:
         """Log-areas [1] of the ends of the stiffness regimes: numbers or symbols, unsorted, repeated."""
-        ends = [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
+        ends = [
+            end for term in self.regime_terms["normal"] for end in (term.lower, term.upper) if end is not None
+        ]
         return ends if self.onset_log_area is None else [*ends, self.onset_log_area]
 
-    def log_total(self, name: str, u: Number) -> tuple[Number, Number]:
+    def log_total(self, quantity: str, largest_log_area: Number) -> tuple[Number, Number]:
         """Logarithm ln Q of the sum, and its derivative with respect to u; from one evaluation."""
-        integral = self._integral(name, u)
-        largest = sum(term.spot_value(u) for term in self.terms[name])
-        growth = largest * np.exp(-self.m * u) / integral
-        return np.log(self.m * self.weight * integral) + self.m * u, self.m + growth
+        integral = self._integral(quantity, largest_log_area)
+        largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
+        growth = largest * np.exp(-self.size_exponent * largest_log_area) / integral
+        return np.log(
+            self.size_exponent * self.size_prefactor * integral
+        ) + self.size_exponent * largest_log_area, self.size_exponent + growth
 
-    def _integral(self, name: str, u: Number) -> Number:
-        return sum(term.integral(self.m, u) for term in self.terms[name])
+    def _integral(self, quantity: str, largest_log_area: Number) -> Number:
+        return sum(
+            term.integral(self.size_exponent, largest_log_area) for term in self.regime_terms[quantity]
+        )

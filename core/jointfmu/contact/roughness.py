@@ -14,8 +14,8 @@ import numpy as np
 
 from ..quantity import Number, find_problems, quantity_field
 
-GAMMA = 0.45
-"""Approach over which the pressure grows e-fold, over the rms height [1]: p ~ exp(approach/(GAMMA h)) in
+PERSSON_GAMMA = 0.45
+"""Approach over which the pressure grows e-fold, over the rms height h [1]: p ~ exp(approach/(gamma h)) in
 elastic contact of many spots. Boundary elements give 0.40 to 0.48 (docs/validity.md)."""
 RQ_OVER_RA = (pi / 2.0) ** 0.5
 """R_q/R_a [1] of a Gaussian surface, 1.25."""
@@ -44,18 +44,18 @@ def rms_height(Ra: Number) -> Number:
     return RQ_OVER_RA * Ra
 
 
-def combine_heights(first: Number, second: Number) -> Number:
-    """Combined rms height h [m] of two statistically independent surfaces with rms heights [m]."""
-    return np.sqrt(first**2 + second**2)
+def combine_heights(rms_height1: Number, rms_height2: Number) -> Number:
+    """Combined rms height h [m] of two statistically independent surfaces, from their rms heights [m]."""
+    return np.sqrt(rms_height1**2 + rms_height2**2)
 
 
 def predicted_stiffness(pressure: Number, h: Number) -> Number:
-    """Normal stiffness per area k [N/m3] at a nominal pressure p [Pa]: k = p/(GAMMA h).
+    """Normal stiffness per area k [N/m3] at a nominal pressure p [Pa]: k = p/(PERSSON_GAMMA h).
 
     Elastic contact of many spots (Persson 2007; Akarapu, Sharp and Robbins 2011). h [m] is the combined rms
     height of both surfaces.
     """
-    return pressure / (GAMMA * h)
+    return pressure / (PERSSON_GAMMA * h)
 
 
 def conflicting_heights(name: str) -> tuple[str, ...]:

@@ -41,7 +41,7 @@ class Spectrum(CheckedParameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Elastic(CheckedParameters):
+class ElasticConstants(CheckedParameters):
     """Isotropic linear elastic constants of one body."""
 
     E: float = quantity_field("Pa", "Young's modulus", gt=0.0)
@@ -49,13 +49,13 @@ class Elastic(CheckedParameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ElasticPlastic(Elastic):
+class ElasticPlasticConstants(ElasticConstants):
     """Isotropic linear elastic constants and yield strength of one body."""
 
     sigma_y: float = quantity_field("Pa", "yield strength", gt=0.0)
 
 
-def contact_modulus(side1: Elastic, side2: Elastic) -> Number:
+def contact_modulus(side1: ElasticConstants, side2: ElasticConstants) -> Number:
     """Contact modulus E* [Pa], 1/E* = sum (1 - nu_i^2)/E_i.
 
     Zhao 2018 below Eq. 8; Hu 2023 below Eq. 7; Yu 2022 Eq. 21.
@@ -63,7 +63,7 @@ def contact_modulus(side1: Elastic, side2: Elastic) -> Number:
     return 1.0 / ((1.0 - side1.nu**2) / side1.E + (1.0 - side2.nu**2) / side2.E)
 
 
-def contact_shear_modulus(side1: Elastic, side2: Elastic) -> Number:
+def contact_shear_modulus(side1: ElasticConstants, side2: ElasticConstants) -> Number:
     """Contact shear modulus G' [Pa], 1/G' = sum (2 - nu_i)/G_i with G_i = E_i/(2 (1 + nu_i)).
 
     Zhao 2018 below Eq. 21.

@@ -17,14 +17,17 @@ DESCRIPTION_NAME = "modelDescription.xml"
 """Name of the member that every FMU has."""
 MAX_MEMBERS = 20_000
 """Largest number of members of an archive [1]."""
-MAX_SIZE = 1 << 30
+MAX_UNPACKED_SIZE = 1 << 30
 """Largest unpacked size of all members [byte]."""
 MAX_TEXT_SIZE = 1 << 26
 """Largest unpacked size [byte] of a member that is read as a whole, for example XML."""
-MAX_RATIO = 100
-"""Largest ratio [1] of the unpacked size of all members to the size of the archive, above SMALL_SIZE."""
-SMALL_SIZE = 1 << 26
-"""Unpacked size [byte] up to which MAX_RATIO does not apply."""
+MAX_COMPRESSION_RATIO = 100
+"""Largest ratio [1] of the unpacked size of all members to the size of the archive.
+
+It applies to unpacked sizes above MIN_SUSPICIOUS_SIZE.
+"""
+MIN_SUSPICIOUS_SIZE = 1 << 26
+"""Unpacked size [byte] up to which MAX_COMPRESSION_RATIO does not apply."""
 _COMPRESSION_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Compression methods that FMI allows. Python ignores the declared size when it unpacks other methods."""
 _ARCHIVE_ERRORS = (
@@ -83,12 +86,12 @@ def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
         if name.endswith(".xml"):
             _check_text_size(path, member)
     size, packed = sum(member.file_size for member in members), os.stat(path).st_size
-    if size > MAX_SIZE:
-        raise ValueError(f"{path}: has {size} bytes unpacked; allowed are {MAX_SIZE}")
-    if size > SMALL_SIZE and size > MAX_RATIO * packed:
+    if size > MAX_UNPACKED_SIZE:
+        raise ValueError(f"{path}: has {size} bytes unpacked; allowed are {MAX_UNPACKED_SIZE}")
+    if size > MIN_SUSPICIOUS_SIZE and size > MAX_COMPRESSION_RATIO * packed:
         raise ValueError(
             f"{path}: has {size} bytes unpacked, {size / packed:.0f} times its own size; allowed are "
-            f"{MAX_RATIO} times, or {SMALL_SIZE} bytes"
+            f"{MAX_COMPRESSION_RATIO} times, or {MIN_SUSPICIOUS_SIZE} bytes"
         )
 
 

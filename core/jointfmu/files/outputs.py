@@ -20,7 +20,7 @@ PROGRAM_MARK = "written by jointfmu"
 _MARK_PATTERN = re.compile(
     rb'(written|generated) by jointfmu|(generationTool|content)="jointfmu', re.IGNORECASE
 )
-_HEAD_SIZE = 65536
+_MARK_SEARCH_SIZE = 65536
 """Number of bytes [1] at the start of a file in which the mark is searched."""
 _DESCRIPTION_PATTERN = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
 _CHECKSUM_PATTERN = re.compile(rf"# {PROGRAM_MARK}; checksum ([0-9a-f]{{8}})\n")
@@ -34,13 +34,13 @@ _FOREIGN_ENDINGS = re.compile(
 def _is_marked(path: Path) -> bool:
     """Whether the head of a file, or of the description in an FMU or SSP archive, contains the mark."""
     with path.open("rb") as file:
-        head = file.read(_HEAD_SIZE)
+        head = file.read(_MARK_SEARCH_SIZE)
     if head.startswith(b"PK"):
         try:
             with zipfile.ZipFile(path) as archive:
                 member = next(filter(_DESCRIPTION_PATTERN.fullmatch, archive.namelist()))
                 with archive.open(member) as text:
-                    head = text.read(_HEAD_SIZE)
+                    head = text.read(_MARK_SEARCH_SIZE)
         except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, StopIteration):
             return False
     return _MARK_PATTERN.search(head) is not None
@@ -80,7 +80,7 @@ EXCHANGE_TEXT = FileKind(
 )
 MESH = FileKind("mesh", (".vtu",))
 FOLDER = FileKind("folder", ())
-_ENDINGS = {
+_PROGRAM_ENDINGS = {
     end for kind in (PARAMETER_FILE, HTML_PAGE, PICTURE, ARCHIVE, EXCHANGE_TEXT, MESH) for end in kind.endings
 }
 
@@ -97,8 +97,8 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
     """Raise ValueError, which names the path, if a file of this kind may not or cannot be written there.
 
     Errors are a folder, the ending of another kind of file, a write-protected file, a location that cannot be
-    written, and, without `force`, a file with content that the program did not write (Refusal). A device or
-    pipe only has to be writable. Call it before long work; it leaves no file behind.
+    written, and, without `force`, a file with content that the program did not write (InputRefusal). A device
+    or pipe only has to be writable. Call it before long work; it leaves no file behind.
     """
     path = Path(path)
     if kind is FOLDER:
@@ -112,7 +112,7 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
         return
     target = Path(os.path.realpath(path))
     for ending in (path.suffix.lower(), target.suffix.lower()):
-        known = ending in _ENDINGS or _FOREIGN_ENDINGS.fullmatch(ending)
+        known = ending in _PROGRAM_ENDINGS or _FOREIGN_ENDINGS.fullmatch(ending)
         if known and ending not in kind.endings:
             allowed = " or ".join(kind.endings)
             raise ValueError(f"{path}: {ending} is the ending of another kind of file; expected {allowed}")

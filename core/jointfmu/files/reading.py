@@ -5,10 +5,10 @@ import stat
 from pathlib import Path
 
 
-def check_regular(path: str | Path, expected: str) -> None:
+def check_regular(path: str | Path, expected_content: str) -> None:
     """Raise ValueError if a path leads to a pipe, a device or a socket; a missing file is no error here.
 
-    expected : what the file should be, for the error
+    expected_content : what the file should be, for the error
     """
     try:
         mode = os.stat(path).st_mode
@@ -17,18 +17,18 @@ def check_regular(path: str | Path, expected: str) -> None:
     if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
         return
     kind = "a pipe" if stat.S_ISFIFO(mode) else "a socket" if stat.S_ISSOCK(mode) else "a device"
-    raise ValueError(f"{path}: is {kind}, no regular file; expected {expected}")
+    raise ValueError(f"{path}: is {kind}, no regular file; expected {expected_content}")
 
 
-def read_bytes(path: str | Path, expected: str) -> bytes:
-    """Read a file.
+def read_bytes(path: str | Path, expected_content: str) -> bytes:
+    """Read the bytes of a regular file.
 
-    expected : what the file should be, for the error
+    expected_content : what the file should be, for the error
 
     Raises ValueError, one line, if the file does not exist, cannot be read or is no regular file.
     """
-    check_regular(path, expected)
+    check_regular(path, expected_content)
     try:
         return Path(path).read_bytes()
     except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected {expected}") from None
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected {expected_content}") from None

@@ -8,7 +8,7 @@ MAX_NAME_LENGTH = 200
 """Largest number of characters [1] of the name of a parameter set or system, and of a key."""
 MAX_TEXT_LENGTH = 10_000
 """Largest number of characters [1] of any other text in a file."""
-_FORBIDDEN = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+_FORBIDDEN_CHARACTERS = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 """Control characters, line separators, marks of the writing direction, and characters invalid in XML."""
 
 
@@ -19,7 +19,7 @@ def check_text(subject: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> No
     """
     if len(text) > max_length:
         raise ValueError(f"{subject} has {len(text)} characters; allowed are at most {max_length}")
-    if found := _FORBIDDEN.search(text):
+    if found := _FORBIDDEN_CHARACTERS.search(text):
         raise ValueError(
             f"{subject} has the control character U+{ord(found[0]):04X} at position {found.start() + 1}; "
             "expected one line of printable text"
@@ -28,7 +28,7 @@ def check_text(subject: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> No
 
 def replace_unprintable(text: str) -> str:
     """Replace characters that `check_text` does not allow by question marks: for texts of other programs."""
-    return _FORBIDDEN.sub("?", text)
+    return _FORBIDDEN_CHARACTERS.sub("?", text)
 
 
 def check_document(document: Mapping[str, object]) -> None:
@@ -45,16 +45,16 @@ def format_toml_string(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _walk_items(value: object, name: str) -> Iterator[tuple[str, str, object]]:
+def _walk_items(value: object, table_name: str) -> Iterator[tuple[str, str, object]]:
     """(name of the table, key, value) of every item of a document; items of a list have its key."""
     if isinstance(value, Mapping):
         for key, item in value.items():
-            yield name, key, item
-            yield from _walk_items(item, f"{name}.{key}" if name else key)
+            yield table_name, key, item
+            yield from _walk_items(item, f"{table_name}.{key}" if table_name else key)
     elif isinstance(value, list):
-        head, _, key = name.rpartition(".")
+        head, _, key = table_name.rpartition(".")
         for item in value:
             if isinstance(item, str):
                 yield head, key, item
             elif isinstance(item, Mapping | list):
-                yield from _walk_items(item, name)
+                yield from _walk_items(item, table_name)

@@ -94,7 +94,7 @@ def _write_stream(path: str | Path, data: bytes) -> None:
 
 
 @contextmanager
-def existing_folder(path: Path) -> Iterator[None]:
+def ensure_folder(path: Path) -> Iterator[None]:
     """Context in which a folder exists; it is created, with its parents, if necessary.
 
     On an exception the new folders are removed again, if they are empty. Raises ValueError, which names the
@@ -120,7 +120,7 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
     Raises ValueError, which names the folder, if they cannot be written; a new folder is removed again.
     Returns the paths of the files.
     """
-    with existing_folder(folder.parent):
+    with ensure_folder(folder.parent):
         try:
             with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as work:
                 for name, text in files.items():

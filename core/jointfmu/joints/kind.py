@@ -13,12 +13,12 @@ from .model import Model, Variable
 class RoughSurface:
     """Fractal parameters `PREFIX.D` and `PREFIX.G` that can be determined from a measured surface.
 
-    areal     : True: D_s and G_s of the surface; False: D and G of a profile
+    is_areal  : True: D_s and G_s of the surface; False: D and G of a profile
     direction : direction of the profile on a textured surface, "x" or "y"; None: the one with less scatter
     """
 
-    prefix: str
-    areal: bool = False
+    parameter_prefix: str
+    is_areal: bool = False
     direction: str | None = None
 
 
@@ -83,7 +83,7 @@ class JointKind:
 
     @property
     def variables(self) -> dict[str, Variable]:
-        """{name: input or output} of all models."""
+        """Inputs and outputs of all models of the joint, {name: variable}."""
         return {v.name: v for model in self.models for v in (*model.inputs, *model.outputs)}
 
     @property

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..quantity import Interval, Number, flat_fields
 
-Values = Mapping[str, float]
+VariableValues = Mapping[str, float]
 Outputs = Mapping[str, Number]
 History = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ class TabulatedLaw(Protocol):
 
     @property
     def end(self) -> tuple[float, float]:
-        """Largest displacement and load of the table."""
+        """Displacement and load at the end of the table."""
 
 
 class TabulatedJoint(Protocol):
@@ -66,26 +66,29 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class LoadRamp:
-    """Load ramp of one input, the default experiment: the input grows by `step` every `interval` [s].
+    """Load ramp of one input, the default experiment: the input grows in steps.
 
-    end, step  : largest value and increment of the input for the default parameters
-    settings   : {parameter: value} for experiments that show a change over time
-    find_range : function (tabulated joint, start values) -> `onset` and `end` suited to its parameters;
-        None: `onset` and `end` hold for all parameters
-    onset      : value of the input at which the load starts to act
+    end_value, value_step : largest value and increment of the input for the default parameters
+    step_duration : [s] time between two steps
+    settings    : {parameter: value} for experiments that show a change over time
+    find_range  : function (tabulated joint, start values) -> onset and end value suited to its parameters;
+        None: `onset_value` and `end_value` hold for all parameters
+    onset_value : value of the input at which the load starts to act
     """
 
-    input: str
-    end: float
-    step: float
-    interval: float = 1.0
+    input_name: str
+    end_value: float
+    value_step: float
+    step_duration: float = 1.0
     settings: Mapping[str, float] = field(default_factory=dict)
     find_range: Callable[..., tuple[float, float]] | None = None
-    onset: float = 0.0
+    onset_value: float = 0.0
 
-    def sample_inputs(self, count: int) -> NDArray[np.float64]:
-        """Values (count) of the input: 0, then from `onset` to `end`, dense near `onset`."""
-        points = self.onset + (self.end - self.onset) * np.linspace(0.0, 1.0, count) ** 2
+    def sample_inputs(self, value_count: int) -> NDArray[np.float64]:
+        """Values of the input: 0, then from the onset to the end of the ramp, dense near the onset."""
+        points = (
+            self.onset_value + (self.end_value - self.onset_value) * np.linspace(0.0, 1.0, value_count) ** 2
+        )
         points[0] = 0.0
         return points
 
@@ -97,7 +100,7 @@ class LoadCycle:
     settings : {parameter or input: value} for which the loop encloses an area
     """
 
-    input: str
+    input_name: str
     amplitude: float
     settings: Mapping[str, float | bool]
 
@@ -106,14 +109,14 @@ class LoadCycle:
 class ValidityLimit:
     """Validity limit: a warning if a variable leaves an interval, for example the end of the table.
 
-    variable : name of the input or output
-    interval : function (parameter set, (displacement, load) at the end of the table, inputs) -> lower and
-        upper end of the interval; numbers or symbols
-    doc      : text of the warning: what happens outside
+    variable_name : name of the input or output
+    find_interval : function (parameter set, (displacement, load) at the end of the table, inputs) -> lower
+        and upper end of the interval; numbers or symbols
+    doc           : text of the warning: what happens outside
     """
 
-    variable: str
-    interval: Callable[..., tuple[Number, Number]]
+    variable_name: str
+    find_interval: Callable[..., tuple[Number, Number]]
     doc: str
 
 
@@ -141,7 +144,7 @@ class Model:
         the model has no history
     advance  : function (tabulated joint, inputs, history variables) -> outputs and new history variables
         after a straight path to the inputs; the history variables passed in are not modified
-    loop     : load cycle that shows the hysteresis
+    load_cycle : load cycle that shows the hysteresis
     make_variant : function (model, parameter set) -> model with additional outputs for this parameter set
     alias    : name that the user gave to the FMU; "": `name`
 
@@ -166,25 +169,25 @@ class Model:
     find_event_times: Callable[..., Sequence[Number]] | None = None
     initial_history: Callable[..., History] | None = None
     advance: Callable[..., tuple[Outputs, History]] | None = None
-    loop: LoadCycle | None = None
+    load_cycle: LoadCycle | None = None
     make_variant: "Callable[[Model, Any], Model] | None" = None
     alias: str = ""
 
     def __post_init__(self) -> None:
         if (self.initial_history is None) != (self.advance is None):
-            raise ValueError(f"{self.name}: one of rest, evolve is given, expected both or none")
-        if self.loop and self.advance is None:
-            raise ValueError(f"{self.name}: a loop is given without a memory, expected one with evolve")
+            raise ValueError(f"{self.name}: one of initial_history, advance is given, expected both or none")
+        if self.load_cycle and self.advance is None:
+            raise ValueError(f"{self.name}: a load cycle needs history, expected initial_history and advance")
 
     @property
     def title(self) -> str:
         """Displayed name: the alias, if there is one, else the name."""
         return self.alias or self.name
 
-    def is_rate(self, output: int) -> bool:
+    def is_rate(self, output_index: int) -> bool:
         """Whether the output with this index is the time derivative of a state."""
         bodies = self.state_count // 2
-        return bodies <= output < self.state_count + bodies
+        return bodies <= output_index < self.state_count + bodies
 
     def parameter_fields(self) -> dict[str, Any]:
         """{structured name: field} of the numbers and booleans that the FMU exposes as parameters."""
@@ -205,29 +208,31 @@ class Model:
         model = replace(self, parameters=type(parameters))
         return self.make_variant(model, parameters) if self.make_variant else model
 
-    def with_load_range(self, spring: TabulatedJoint, start: Values) -> "Model":
+    def with_load_range(self, spring: TabulatedJoint, start_values: VariableValues) -> "Model":
         """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""
-        ramp, loop = self.ramp, self.loop
+        ramp, loop = self.ramp, self.load_cycle
         if ramp.find_range is None:
             return self
-        onset, end = (float(x) for x in ramp.find_range(spring, start))
-        end = max(end, start[ramp.input])
-        scale = end / ramp.end
-        if loop and loop.input == ramp.input:
+        onset, end = (float(x) for x in ramp.find_range(spring, start_values))
+        end = max(end, start_values[ramp.input_name])
+        scale = end / ramp.end_value
+        if loop and loop.input_name == ramp.input_name:
             loop = replace(loop, amplitude=scale * loop.amplitude)
-        ramp = replace(ramp, onset=max(onset, 0.0), end=end, step=scale * ramp.step)
-        return replace(self, ramp=ramp, loop=loop)
+        ramp = replace(ramp, onset_value=max(onset, 0.0), end_value=end, value_step=scale * ramp.value_step)
+        return replace(self, ramp=ramp, load_cycle=loop)
 
-    def find_warnings(self, spring: TabulatedJoint, values: Values) -> dict[int, str]:
+    def find_warnings(self, spring: TabulatedJoint, variable_values: VariableValues) -> dict[int, str]:
         """{index of the validity limit: warning} for values of inputs and outputs outside their intervals."""
         units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}
         messages = {}
         for i, o in enumerate(self.validity_limits):
-            value, unit = values[o.variable], units[o.variable]
-            low, high = (float(end) for end in o.interval(spring.joint, spring.curve.end, values))
+            value, unit = variable_values[o.variable_name], units[o.variable_name]
+            low, high = (
+                float(end) for end in o.find_interval(spring.joint, spring.curve.end, variable_values)
+            )
             inside = Interval.from_bounds(ge=low, le=high)
             if not inside.contains(value):
-                messages[i] = f"{o.variable} = {value:.6g}{unit} is outside {inside}{unit}: {o.doc}"
+                messages[i] = f"{o.variable_name} = {value:.6g}{unit} is outside {inside}{unit}: {o.doc}"
         return messages
 
     def list_dependencies(self, output: str) -> Sequence[str]:

@@ -25,7 +25,7 @@ from ..quantity import Array, Number
 
 MAX_ERROR = 1e-8
 """Largest allowed relative interpolation error of load and stiffness in a table [1]."""
-MAX_NODES = 2600
+MAX_TABLE_NODES = 2600
 """Largest number of nodes of a table [1], limited by the memory of an FMU instance."""
 MAX_REFINEMENT = 16
 """Largest refinement factor of the number of steps of a table [1]; factors are 1, 2, 4, ..."""
@@ -34,7 +34,7 @@ MIN_STEPS_PER_LOG_AREA = 12
 CLOSING_STEPS = 48
 """Steps of the table over the closing of the contact [1]."""
 GAUSS_RULE = np.polynomial.legendre.leggauss(5)
-_TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
+_HERMITE_TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
     [
         [1, 0, 0, 0, 0, 0],
         [0, 1, 0, 0, 0, 0],
@@ -53,16 +53,18 @@ class Curve:
     """Tabulated monotone load over displacement; linear extrapolation with the end tangents.
 
     displacement, load, stiffness : (n) values at the nodes, in any consistent units
-    slope_start, slope_end : (n - 1) derivative of the stiffness at the start and end of each segment
-    error : [1] largest relative interpolation error of load and stiffness, measured when the table was built
+    stiffness_slope_start, stiffness_slope_end : (n - 1) derivative of the stiffness at the start and at the
+        end of each segment
+    interpolation_error : [1] largest relative interpolation error of load and stiffness, measured when the
+        table was built
     """
 
     displacement: Array
     load: Array
     stiffness: Array
-    slope_start: Array
-    slope_end: Array
-    error: float = 0.0
+    stiffness_slope_start: Array
+    stiffness_slope_end: Array
+    interpolation_error: float = 0.0
     _coefficients: Array = field(init=False, repr=False)
     _energies: Array = field(init=False, repr=False)
 
@@ -70,15 +72,22 @@ class Curve:
         h = np.diff(self.displacement)
         y, s = self.load, self.stiffness
         data = np.stack(
-            [y[:-1], s[:-1] * h, self.slope_start * h**2, y[1:], s[1:] * h, self.slope_end * h**2]
+            [
+                y[:-1],
+                s[:-1] * h,
+                self.stiffness_slope_start * h**2,
+                y[1:],
+                s[1:] * h,
+                self.stiffness_slope_end * h**2,
+            ]
         )
-        object.__setattr__(self, "_coefficients", _TO_POLYNOMIAL @ data)
+        object.__setattr__(self, "_coefficients", _HERMITE_TO_POLYNOMIAL @ data)
         areas = h * (_MONOMIAL_MEANS @ self._coefficients)
         object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(areas)]))
 
     @property
     def closing_end_load(self) -> float:
-        """Load at zero displacement, which is the end of the closing of the contact."""
+        """Load at the end of the closing of the contact, where the displacement is zero."""
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
     @property
@@ -86,35 +95,35 @@ class Curve:
         """Displacement and load at the end of the table."""
         return float(self.displacement[-1]), float(self.load[-1])
 
-    def derivatives(self, x: ArrayLike, order: int = 1) -> list[Array]:
-        """Load and its derivatives up to `order` at displacements x (...): order + 1 arrays (...)."""
-        x = np.asarray(x, dtype=np.float64)
+    def derivatives(self, displacement: ArrayLike, order: int = 1) -> list[Array]:
+        """Load and its derivatives up to `order` at displacements (...): order + 1 arrays (...)."""
+        displacement = np.asarray(displacement, dtype=np.float64)
         nodes = self.displacement
-        i = _find_segment(nodes, x)
-        inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
+        i = _find_segment(nodes, displacement)
+        inside = np.minimum(np.maximum(displacement, nodes[0]), nodes[-1])
         first = nodes[i]
         h = nodes[i + 1] - first
         t = (inside - first) / h
         top, *rest = self._coefficients[::-1]
-        out = [top[i], *(np.zeros(x.shape) for _ in range(order))]
+        out = [top[i], *(np.zeros(displacement.shape) for _ in range(order))]
         for coefficient in rest:  # Horner's scheme for the load and its derivatives divided by factorials
             for n in range(order, 0, -1):
                 out[n] = out[n] * t + out[n - 1]
             out[0] = out[0] * t + coefficient[i]
         out = [value * (factorial(n) / h**n) for n, value in enumerate(out)]
-        is_outside = x != inside
+        is_outside = displacement != inside
         if not np.any(is_outside):
             return out
         slope = out[1] if order else self.derivatives(inside, 1)[1]
-        out[0] = out[0] + (x - inside) * slope
+        out[0] = out[0] + (displacement - inside) * slope
         return out[:2] + [np.where(is_outside, 0.0, value) for value in out[2:]]
 
-    def energy(self, x: ArrayLike) -> Array:
-        """Integral (...) of the load from the first node to displacements x (...)."""
-        x = np.asarray(x, dtype=np.float64)
+    def energy(self, displacement: ArrayLike) -> Array:
+        """Integral (...) of the load from the first node to displacements (...)."""
+        displacement = np.asarray(displacement, dtype=np.float64)
         nodes = self.displacement
-        i = _find_segment(nodes, x)
-        inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
+        i = _find_segment(nodes, displacement)
+        inside = np.minimum(np.maximum(displacement, nodes[0]), nodes[-1])
         step = inside - nodes[i]
         t = step / (nodes[i + 1] - nodes[i])
         mean = np.zeros_like(t)
@@ -123,7 +132,7 @@ class Curve:
         ):
             mean = mean * t + monomial_mean * coefficient
         energy = np.asarray(self._energies[i] + step * mean)
-        excess = x - inside
+        excess = displacement - inside
         if not np.any(excess):
             return energy
         load, stiffness = self.derivatives(inside, 1)
@@ -171,17 +180,17 @@ class Curve:
         return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
 
 
-def _find_segment(nodes: Array, x: Array) -> NDArray[np.intp]:
-    """Index (...) of the segment of the nodes (n) that contains x (...), or of the nearest segment."""
-    return np.minimum(np.maximum(np.searchsorted(nodes, x, side="right") - 1, 0), nodes.size - 2)
+def _find_segment(nodes: Array, abscissas: Array) -> NDArray[np.intp]:
+    """Index (...) of the segment of nodes (n) that contains an abscissa (...), or of the nearest segment."""
+    return np.minimum(np.maximum(np.searchsorted(nodes, abscissas, side="right") - 1, 0), nodes.size - 2)
 
 
-def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:
+def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], data_error: float = 0.0) -> Curve:
     """Join pieces of a curve; estimate the interpolation error.
 
-    pieces : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of nodes.
-        The last node of a piece is the first of the next. The derivative may jump from piece to piece.
-    error  : [1] relative error of the data themselves
+    pieces     : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of
+        nodes. The last node of a piece is the first of the next. The derivative may jump from piece to piece.
+    data_error : [1] relative error of the data themselves
 
     The error is half the largest relative deviation from the curve through every second node: the order of
     convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
@@ -191,34 +200,37 @@ def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], error: float
     fine, coarse = _join_pieces(pieces), _join_pieces(every_second)  # type: ignore[arg-type]
     nodes = fine.displacement
     points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
-    worst = error
+    worst = data_error
     for value, coarse_value in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
         loaded = value > 0.0
         worst = max(worst, float(np.max(np.abs(coarse_value - value)[loaded] / value[loaded])) / 2.0)
-    return Curve(nodes, fine.load, fine.stiffness, fine.slope_start, fine.slope_end, worst)
+    return Curve(
+        nodes, fine.load, fine.stiffness, fine.stiffness_slope_start, fine.stiffness_slope_end, worst
+    )
 
 
-def refine_curve(tabulate: Callable[[int], Curve], steps: int) -> Curve:
+def refine_curve(tabulate: Callable[[int], Curve], initial_steps: int) -> Curve:
     """Refine a table until its error is at most MAX_ERROR.
 
-    tabulate : function, number of steps -> table
-    steps    : initial number of steps, doubled up to MAX_REFINEMENT times as many
+    tabulate      : function, number of steps -> table
+    initial_steps : initial number of steps, doubled up to MAX_REFINEMENT times as many
 
-    Raises RuntimeError if the table then is still inaccurate, or has more than MAX_NODES nodes.
+    Raises RuntimeError if the table then is still inaccurate, or has more than MAX_TABLE_NODES nodes.
     """
     factor = 1
     while factor <= MAX_REFINEMENT:
-        curve = tabulate(steps * factor)
+        curve = tabulate(initial_steps * factor)
         factor *= 2
-        if curve.load.size > MAX_NODES:
+        if curve.load.size > MAX_TABLE_NODES:
             raise RuntimeError(
-                f"the table needs more than {MAX_NODES} nodes: "
+                f"the table needs more than {MAX_TABLE_NODES} nodes: "
                 "the law is not smooth enough with these parameters"
             )
-        if curve.error <= MAX_ERROR:
+        if curve.interpolation_error <= MAX_ERROR:
             return curve
     raise RuntimeError(
-        f"the table of {curve.load.size} nodes has an interpolation error of {curve.error:.2g}, "
+        f"the table of {curve.load.size} nodes has an interpolation error of "
+        f"{curve.interpolation_error:.2g}, "
         f"allowed is {MAX_ERROR:g}: the law is not smooth enough with these parameters"
     )
 
@@ -230,21 +242,23 @@ def _join_pieces(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
     return Curve(x, y, s, start, end)
 
 
-CLOSING_RATIO = 20.0
+CLOSING_AREA_RATIO = 20.0
 """Area of the largest spot over that of the largest plastic spot [1] at the end of the closing."""
 
 
-def closing_pressure(p: Number, k: Number, d2p: Number, z: Number) -> tuple[Number, Number, Number, Number]:
-    """Closing of the contact: pressure from first contact (p = 0, k = 0) up to a point (p, k, dk/d delta).
+def closing_pressure(
+    p: Number, k: Number, d2p: Number, closing_fraction: Number
+) -> tuple[Number, Number, Number, Number]:
+    """Pressure over approach while the contact closes: from first contact (p = 0, k = 0) to a point (p, k).
 
-    p, k, d2p : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
-    z         : (...) [1] displacement from first contact over the length of the closing, 0 to 1
+    p, k, d2p        : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
+    closing_fraction : z (...) [1] displacement from first contact over the length of the closing, 0 to 1
 
     Returns displacement from the end of the closing [m], pressure, stiffness and its derivative at z.
 
     Interface laws have zero stiffness while all spots are plastic, at a finite pressure. The approach, the
     integral of dp/k, would start at minus infinity. So the law is used only above the point where the largest
-    spot is CLOSING_RATIO times the largest plastic spot. Below, the pressure is `p z^3 (a + b z + c z^2)`
+    spot is CLOSING_AREA_RATIO times the largest plastic spot. Below, the pressure is p z^3 (a + b z + c z^2)
     over a length n p/k, twice continuously differentiable at both ends. n is 4. If k grows with a power of p
     below 0.75, this length would make the pressure negative; n is then the largest value that does not.
     """
@@ -252,10 +266,20 @@ def closing_pressure(p: Number, k: Number, d2p: Number, z: Number) -> tuple[Numb
     length = reach * p / k
     c = 0.5 * d2p * length**2 / p - 3.0 * reach + 6.0
     a, b = 4.0 - reach + c, reach - 3.0 - 2.0 * c
-    load = p * z**3 * (a + b * z + c * z**2)
-    stiffness = p / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
-    slope = p / length**2 * z * (6.0 * a + 12.0 * b * z + 20.0 * c * z**2)
-    return (z - 1.0) * length, load, stiffness, slope
+    load = p * closing_fraction**3 * (a + b * closing_fraction + c * closing_fraction**2)
+    stiffness = (
+        p
+        / length
+        * closing_fraction**2
+        * (3.0 * a + 4.0 * b * closing_fraction + 5.0 * c * closing_fraction**2)
+    )
+    slope = (
+        p
+        / length**2
+        * closing_fraction
+        * (6.0 * a + 12.0 * b * closing_fraction + 20.0 * c * closing_fraction**2)
+    )
+    return (closing_fraction - 1.0) * length, load, stiffness, slope
 
 
 def closing_length_ratio(p: Number, k: Number, d2p: Number) -> Number:
@@ -277,7 +301,7 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
     spots, area = find_checked_spots(law), law.A_0
-    first = float(spots.stiffness_onset + np.log(CLOSING_RATIO))
+    first = float(spots.stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO))
     last = float(solve_largest_spot(law, law.hardness))
     if not last > first:
         p = float(spots.total("load", first)) / area
@@ -291,13 +315,20 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
 
 
 def _tabulate_log_areas(
-    spots: SpotDistribution, area: float, first: float, end_log_area: float, steps: int
+    spots: SpotDistribution, area: float, start_log_area: float, end_log_area: float, steps_per_log_area: int
 ) -> Curve:
-    """Table with the closing, and `steps` per unit of log-area from `first` to `end_log_area`."""
-    ends = [first, *(b for b in spots.sorted_regime_ends if first < b < end_log_area), end_log_area]
+    """Table of the pressure over the approach: the closing, then the law between two log-areas.
+
+    steps_per_log_area : number of steps per unit of log-area
+    """
+    ends = [
+        start_log_area,
+        *(b for b in spots.sorted_regime_end_log_areas if start_log_area < b < end_log_area),
+        end_log_area,
+    ]
     pieces, offset = [], 0.0
     for start, end in pairwise(ends):
-        n = max(2 * int(np.ceil(0.5 * steps * (end - start))), 2)
+        n = max(2 * int(np.ceil(0.5 * steps_per_log_area * (end - start))), 2)
         u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])
         inner = u[:-1, None] + half * (1.0 + GAUSS_RULE[0])

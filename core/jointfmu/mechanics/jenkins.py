@@ -38,22 +38,26 @@ def elastic_predictor(
     return [retention * q + secant_stiffness * u for q, u in zip(force, displacement, strict=True)]
 
 
-def yield_function(force: Vector, limit: Number) -> Number:
+def yield_function(force: Vector, friction_limit: Number) -> Number:
     """Yield function: positive if the force exceeds the limit.
 
     |q| - limit along one direction; |q|^2 - (1 + ROUND_OFF_TOLERANCE) limit^2 in a plane.
     """
     if len(force) == 1:
-        return np.abs(force[0]) - limit
-    return force[0] * force[0] + force[1] * force[1] - (1.0 + ROUND_OFF_TOLERANCE) * (limit * limit)
+        return np.abs(force[0]) - friction_limit
+    return (
+        force[0] * force[0]
+        + force[1] * force[1]
+        - (1.0 + ROUND_OFF_TOLERANCE) * (friction_limit * friction_limit)
+    )
 
 
-def limit_function(force: Vector, limit: Number) -> Number:
-    """Positive if the force is at its limit or above; a further motion in its direction causes slip.
+def limit_function(force: Vector, friction_limit: Number) -> Number:
+    """Function of a force, positive at the friction limit: further motion in its direction causes slip.
 
     |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
     """
-    reduced_limit = (1.0 - AT_LIMIT_TOLERANCE) * limit
+    reduced_limit = (1.0 - AT_LIMIT_TOLERANCE) * friction_limit
     if len(force) == 1:
         return np.abs(force[0]) - reduced_limit
     return force[0] * force[0] + force[1] * force[1] - reduced_limit * reduced_limit
@@ -67,17 +71,17 @@ _MappingResult = tuple[Vector, Vector, Number, Number]
 class ReturnMapping:
     """Update of one slider, or many, for a displacement increment.
 
-    force   : friction force, one or two components
-    tangent : tangent stiffness for a further increment. One direction: along and across it. Plane: components
-              xx, xy, yy of K (1 - n n) for a slider at its limit, n the direction of its force; else K.
-    loss    : energy dissipated in the increment
-    slip    : excess of the elastic predictor over the limit; 0 if the slider sticks
+    force             : friction force, one or two components
+    tangent           : tangent stiffness for a further increment. One direction: along and across it. Plane:
+        components xx, xy, yy of K (1 - n n) for a slider at its limit, n the direction of its force; else K.
+    dissipated_energy : energy dissipated in the increment
+    slip_force        : force of the elastic predictor above the friction limit; 0 if the slider sticks
     """
 
     force: Vector
     tangent: Vector
-    loss: Number
-    slip: Number
+    dissipated_energy: Number
+    slip_force: Number
 
 
 def return_map(
@@ -113,9 +117,9 @@ def return_map(
     return ReturnMapping(new_force, tangent, mean * (slip * compliance), slip)
 
 
-def project_to_limit(force: Number, limit: Number) -> Number:
+def project_to_limit(force: Number, friction_limit: Number) -> Number:
     """Clip a force along one direction to the range from -limit to limit."""
-    return np.minimum(np.maximum(force, -limit), limit)
+    return np.minimum(np.maximum(force, -friction_limit), friction_limit)
 
 
 def _return_map_1d(
@@ -135,7 +139,7 @@ def _return_map_2d(
     predictor: Vector,
     displacement: Vector,
     secant_stiffness: Number,
-    limits: Vector,
+    friction_limits: Vector,
     stiffness: Number,
 ) -> _MappingResult:
     """Return mapping in a plane: radial return of the predictor, corrected for the rotation of the force.
@@ -146,7 +150,7 @@ def _return_map_2d(
     force against the displacement does not change its side. The slip is |predictor| - limit, plus
     limit g^2 (sin^2 start - sin^2 end)/12 by Hermite's rule, of the angle between force and displacement.
     """
-    limit_start, limit = limits
+    limit_start, limit = friction_limits
     distance = np.sqrt(
         np.maximum(displacement[0] * displacement[0] + displacement[1] * displacement[1], MIN_DENOMINATOR)
     )
@@ -196,14 +200,14 @@ def _return_map_2d(
 class SliderUpdate:
     """Update of parallel sliders for a displacement increment, in any consistent units (also per area).
 
-    force   : (..., n) friction force of each slider along one direction, (..., 2, n) in a plane
-    loss    : (...) energy dissipated in the increment
-    tangent : (...) tangent stiffness of their sum, see `ReturnMapping`; for a foundation (..., 6): xx, xy,
-              yy, xt, yt, tt, with t the displacement around the centre of the patch
+    force             : (..., n) friction force of each slider along one direction, (..., 2, n) in a plane
+    dissipated_energy : (...) energy dissipated in the increment
+    tangent           : (...) tangent stiffness of their sum, see `ReturnMapping`; for a foundation (..., 6):
+        xx, xy, yy, xt, yt, tt, with t the displacement around the centre of the patch
     """
 
     force: Array
-    loss: Array
+    dissipated_energy: Array
     tangent: Array
 
     @property
@@ -241,17 +245,21 @@ class Sliders:
             [force], 1.0, self.stiffness, increment, limit_start, limit_end, self.stiffness, self.compliance
         )
         return SliderUpdate(
-            np.asarray(mapping.force[0]), np.sum(mapping.loss, axis=-1), np.sum(mapping.tangent[0], axis=-1)
+            np.asarray(mapping.force[0]),
+            np.sum(mapping.dissipated_energy, axis=-1),
+            np.sum(mapping.tangent[0], axis=-1),
         )
 
-    def follow_increments(self, increments: Array, limit: Array) -> Array:
+    def follow_increments(self, increments: Array, friction_limit: Array) -> Array:
         """Total force (m) after each of m displacement increments along one direction, from the virgin state.
 
-        limit : (n) constant friction limits
+        friction_limit : (n) constant friction limits
         """
-        force, totals = np.zeros_like(limit), np.empty(increments.size)
+        force, totals = np.zeros_like(friction_limit), np.empty(increments.size)
         for n, increment in enumerate(increments):
-            force = project_to_limit(elastic_predictor([force], 1.0, self.stiffness, [increment])[0], limit)
+            force = project_to_limit(
+                elastic_predictor([force], 1.0, self.stiffness, [increment])[0], friction_limit
+            )
             totals[n] = np.add.reduce(force)
         return totals
 

@@ -30,7 +30,7 @@ from the derivatives at both ends (fourth order): the difference of its limits w
 SMALL_CYCLE_RATIO = 3e-2
 """Stiffness times displacement over the load [1] below which the energies of a cycle are computed from
 derivatives of the curve: differences of its loads would cancel."""
-GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+GOLDEN_RATIO_CONJUGATE = 0.5 * (np.sqrt(5.0) - 1.0)
 """Golden ratio conjugate (sqrt(5) - 1)/2 [1]."""
 UNIFORM_DEVIATION = 1.0 / np.sqrt(12.0)
 """Standard deviation of a uniform distribution over its range [1]."""
@@ -46,29 +46,27 @@ the end of the curve [1]."""
 
 
 def height_offsets(load: Array) -> Array:
-    """Offsets (n) [1] of the slider heights of n parallel foundations, for which their errors cancel.
+    """Offsets (n) [1] of the slider heights of n parallel foundations, chosen so that their errors cancel.
 
     load : (n) loads of the foundations, any unit. The offsets are multiples of the golden ratio modulo 1, in
         descending order of the loads; equal loads keep their order.
     """
-    return np.asarray((rank_descending(load) * GOLDEN + 0.5) % 1.0)
+    return np.asarray((rank_descending(load) * GOLDEN_RATIO_CONJUGATE + 0.5) % 1.0)
 
 
-def slider_heights(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
+def slider_heights(curve: Curve, reference: ArrayLike, height_offset: ArrayLike) -> Array:
     """Heights (..., n) [m] that separate the sliders of foundations near a reference approach.
 
     They are dense just below the reference approach, where the first springs slip, and near the first
     contact, where the last springs slip.
 
-    curve     : pressure over approach
-    reference : (...) [m] reference approach; another one is used if its load is too small or too large
-    offset    : (...) in (0, 1) [1] moves the heights. Parallel foundations with different offsets slip at
-                different displacements, so the errors of their stepwise slip cancel in the sum.
+    curve         : pressure over approach
+    reference     : (...) [m] reference approach; another one is used if its load is too small or too large
+    height_offset : (...) in (0, 1) [1] moves the heights. Parallel foundations with different offsets slip at
+                    different displacements, so the errors of their stepwise slip cancel in the sum.
     """
-    reference_approach, offset_column = (
-        np.asarray(reference, dtype=np.float64),
-        np.asarray(offset, dtype=np.float64)[..., None],
-    )
+    reference_approach = np.asarray(reference, dtype=np.float64)
+    offset_column = np.asarray(height_offset, dtype=np.float64)[..., None]
     end = curve.end[1]
     load = curve.derivatives(reference_approach, 0)[0]
     touches = load > MIN_REFERENCE_RATIO * end
@@ -106,15 +104,15 @@ def heights_after_liftoff(heights: Array, min_approach: ArrayLike) -> Array:
 
 
 @cache
-def torsion_directions(sliders: int) -> Array:
+def torsion_directions(slider_count: int) -> Array:
     """Tangential unit vectors (2, n) [1] of the sliders on the circle of a patch.
 
     A rotation theta [rad] of a patch with the circle radius r [m] displaces a slider by r theta times this
     vector. The two sliders of a range are on opposite sides of the circle: while both stick, a rotation
-    causes no force, and a translation no torque. The angle between adjacent ranges is GOLDEN times 180
-    degrees.
+    causes no force, and a translation no torque. The angle between adjacent ranges is GOLDEN_RATIO_CONJUGATE
+    times 180 degrees.
     """
-    angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
+    angle = np.pi * (GOLDEN_RATIO_CONJUGATE * np.arange(slider_count // 2) % 1.0)
     unit = round_to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
     unit /= np.sqrt(unit[0] * unit[0] + unit[1] * unit[1])
     directions = np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
@@ -122,7 +120,7 @@ def torsion_directions(sliders: int) -> Array:
     return directions
 
 
-def resultant(slider_forces: Array) -> Array:
+def sum_slider_forces(slider_forces: Array) -> Array:
     """Resultant (..., 3) of slider forces (..., 2, n): along x, along y, around the centre of the patch."""
     around_it = np.sum(torsion_directions(slider_forces.shape[-1]) * slider_forces, axis=(-2, -1))
     return np.concatenate([np.sum(slider_forces, axis=-1), around_it[..., None]], axis=-1)
@@ -136,14 +134,14 @@ FULL_STICK_RATIO = 1e-3
 class SliderProperties:
     """Properties (..., n) of sliders at an approach, per area.
 
-    stiffness : [Pa/m] tangential; 0 without contact
-    limit     : [Pa] friction limit
-    slope     : [Pa/m2] derivative of the stiffness with respect to the approach
+    stiffness       : [Pa/m] tangential; 0 without contact
+    friction_limit  : [Pa] friction limit
+    stiffness_slope : [Pa/m2] derivative of the stiffness with respect to the approach
     """
 
     stiffness: Number
-    limit: Number
-    slope: Number
+    friction_limit: Number
+    stiffness_slope: Number
 
 
 @dataclass(frozen=True)
@@ -169,9 +167,9 @@ class Foundation:
         """Number n of sliders [1]."""
         return 2 * int(self.heights.shape[-1] - 1)
 
-    def virgin_forces(self, *shape: int) -> Array:
+    def virgin_forces(self, *leading_shape: int) -> Array:
         """Slider forces (*shape, 2, n) of the virgin state: zeros."""
-        return np.zeros((*shape, 2, self.slider_count))
+        return np.zeros((*leading_shape, 2, self.slider_count))
 
     def stick_stiffness(self, approach: ArrayLike) -> Array:
         """Tangential stiffness (...) [Pa/m] in full stick at approaches (...) [m]."""
@@ -181,16 +179,21 @@ class Foundation:
         return np.asarray(self.stiffness_ratio * np.maximum(slope_here - slope_at_first, 0.0))
 
     def full_stick_update(
-        self, force: Array, start: ArrayLike, end: ArrayLike, tangential_displacement: ArrayLike
+        self,
+        force: Array,
+        start_approach: ArrayLike,
+        end_approach: ArrayLike,
+        tangential_displacement: ArrayLike,
     ) -> tuple[Array, Array]:
         """Update in full stick: traction (..., 3) [Pa] after an increment, and whether (...) it holds.
 
-        force      : (..., 3) [Pa] traction at the start, see `resultant`
-        start, end : (...) [m] approaches
+        force : (..., 3) [Pa] traction at the start, see `sum_slider_forces`
+        start_approach, end_approach : (...) [m] approaches at the start and at the end
         tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
-        stiffness_start, stiffness_end = self.stick_stiffness(start), self.stick_stiffness(end)
-        is_unloading = np.asarray(end) < np.asarray(start)
+        stiffness_start = self.stick_stiffness(start_approach)
+        stiffness_end = self.stick_stiffness(end_approach)
+        is_unloading = np.asarray(end_approach) < np.asarray(start_approach)
         rule = stick_retention(stiffness_start, stiffness_end, is_unloading)
         retention, secant_stiffness = (np.asarray(factor)[..., None] for factor in rule)
         traction = retention * force + secant_stiffness * np.asarray(tangential_displacement)
@@ -199,7 +202,7 @@ class Foundation:
             * self.friction_coefficient
             / self.stiffness_ratio
             * stiffness_end
-            * (np.asarray(end) - self.heights[..., 0])
+            * (np.asarray(end_approach) - self.heights[..., 0])
         )
         return traction, np.sqrt(np.sum(traction**2, axis=-1)) <= max_traction
 
@@ -230,18 +233,16 @@ class Foundation:
         approach                : delta (...) [m]
         tangential_displacement : u (...) >= 0 [m] from the virgin state
         """
-        upper, displacement = (
-            np.asarray(approach, dtype=np.float64),
-            np.asarray(tangential_displacement, dtype=np.float64),
-        )
+        upper = np.asarray(approach, dtype=np.float64)
+        displacement = np.asarray(tangential_displacement, dtype=np.float64)
         lower = np.asarray(upper - displacement / (self.friction_coefficient / self.stiffness_ratio))
         load, slipped_load = (self.curve.derivatives(x, 0)[0] for x in (upper, lower))
         return load, slipped_load, self.curve.energy(upper) - self.curve.energy(lower)
 
     def cycle_energies(self, approach: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
-        """Loss (...) [J/m2] of a cycle with amplitudes (...) [m], elastic energy (...) [J/m2] at its ends.
+        """Energy loss of cycles with amplitudes (...) [m], and elastic energy at their ends (...) [J/m2].
 
-        At constant approaches (...) [m]. The relative accuracy is full also for amplitudes near zero.
+        The approaches (...) [m] are constant. The relative accuracy is full also for amplitudes near zero.
         """
         upper_approach, a = np.asarray(approach, dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
         law = self.friction_coefficient, self.stiffness_ratio, a
@@ -249,17 +250,15 @@ class Foundation:
             self.curve.derivatives(x, 3)
             for x in (upper_approach, upper_approach - a / (self.friction_coefficient / self.stiffness_ratio))
         )
-        general, small_amplitude = (
-            cycle_energies(*law, *self.slipped_pressure(upper_approach, a)),
-            small_cycle_energies(*law, upper, lower),
-        )
+        general = cycle_energies(*law, *self.slipped_pressure(upper_approach, a))
+        small_amplitude = small_cycle_energies(*law, upper, lower)
         is_small = is_small_amplitude(*law, load, upper[0])
         loss, stored = (np.where(is_small, *each) for each in zip(small_amplitude, general, strict=True))
         return loss, stored
 
     @cached_property
     def _height_loads(self) -> list[Array]:
-        """Pressure [Pa] and stiffness [Pa/m] of the curve at the heights."""
+        """Pressure [Pa] and stiffness [Pa/m] of the curve at the slider heights, cached."""
         return self.curve.derivatives(self.heights, 1)
 
     def slider_properties(self, approach: ArrayLike) -> SliderProperties:
@@ -290,30 +289,42 @@ class Foundation:
         return SliderProperties(np.repeat(slider_stiffness, 2, axis=-1), limit, np.repeat(rate, 2, axis=-1))
 
     def advance(
-        self, force: Array, start: ArrayLike, end: ArrayLike, tangential_displacement: ArrayLike
+        self,
+        force: Array,
+        start_approach: ArrayLike,
+        end_approach: ArrayLike,
+        tangential_displacement: ArrayLike,
     ) -> SliderUpdate:
         """Return-map all sliders for one increment, see `return_map`.
 
         force      : (..., 2, n) [Pa] slider forces at the start
-        start, end : (...) [m] approaches
+        start_approach, end_approach : (...) [m] approaches
         tangential_displacement : (..., 2) [m] of the other side along x and y, or (..., 3): also around the
                      centre of the patch
 
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
         """
-        path, properties_end = (
-            _Increment.from_ends(start, end, self._slider_displacements(tangential_displacement)),
-            self.slider_properties(end),
+        path = _Increment.from_ends(
+            start_approach, end_approach, self._slider_displacements(tangential_displacement)
         )
-        properties_start = self.slider_properties(start) if np.any(path.approach_change) else properties_end
+        properties_end = self.slider_properties(end_approach)
+        properties_start = (
+            self.slider_properties(start_approach) if np.any(path.approach_change) else properties_end
+        )
         update = self._return_map(force, properties_start, properties_end, path)
         stiffness = properties_start.stiffness, properties_end.stiffness
-        loss, is_constant = update.loss, stiffness[0] == stiffness[1]
+        loss, is_constant = update.dissipated_energy, stiffness[0] == stiffness[1]
         if not np.all(is_constant):
             changes = ~self._keeps_contact_state(path)
             middle = self._middle_forces(force, properties_start, path) if np.any(changes) else [0.0, 0.0]
             varying = varying_stiffness_loss(
-                _components(force), update.force, path.components, stiffness, update.slip, changes, middle
+                _components(force),
+                update.force,
+                path.components,
+                stiffness,
+                update.slip_force,
+                changes,
+                middle,
             )
             loss = np.where(is_constant, loss, varying)
         return SliderUpdate(
@@ -341,40 +352,59 @@ class Foundation:
         return np.asarray(np.moveaxis(np.sum(components, axis=-1), 0, -1))
 
     def _return_map(
-        self, force: Array, start: SliderProperties, end: SliderProperties, path: "_Increment"
+        self,
+        force: Array,
+        start_properties: SliderProperties,
+        end_properties: SliderProperties,
+        increment: "_Increment",
     ) -> ReturnMapping:
         """Return mapping of sliders (..., n); its loss is valid for constant stiffness, see `advance`."""
-        change: Number = path.approach_change
+        change: Number = increment.approach_change
         rise: Number = 0.0
         small: Number = True
-        if start is not end:
+        if start_properties is not end_properties:
             steps = np.repeat(np.diff(self.heights), 2, axis=-1)
-            small = (self._keeps_contact_state(path) & (np.abs(change) < SMALL_CHANGE_RATIO * steps)) | (
+            small = (self._keeps_contact_state(increment) & (np.abs(change) < SMALL_CHANGE_RATIO * steps)) | (
                 change == 0.0
             )
-            limits = (end.limit - start.limit).reshape(*end.limit.shape[:-1], -1, 2)
+            limits = (end_properties.friction_limit - start_properties.friction_limit).reshape(
+                *end_properties.friction_limit.shape[:-1], -1, 2
+            )
             rise = (
                 0.5
                 * self.stiffness_ratio
                 / self.friction_coefficient
                 * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
             )
-        ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
+        ends = (
+            (start_properties.stiffness, start_properties.stiffness_slope),
+            (end_properties.stiffness, end_properties.stiffness_slope),
+        )
         keeps, carries = retention_and_stiffness(*ends, change, rise, small)
-        springs = end.stiffness, compliance(end.stiffness)
+        springs = end_properties.stiffness, compliance(end_properties.stiffness)
         return return_map(
-            _components(force), keeps, carries, path.components, start.limit, end.limit, *springs
+            _components(force),
+            keeps,
+            carries,
+            increment.components,
+            start_properties.friction_limit,
+            end_properties.friction_limit,
+            *springs,
         )
 
-    def _middle_forces(self, force: Array, start: SliderProperties, path: "_Increment") -> Vector:
+    def _middle_forces(
+        self, force: Array, start_properties: SliderProperties, increment: "_Increment"
+    ) -> Vector:
         """Slider forces in the middle of an increment."""
-        half = path.scale(0.5)
-        return self._return_map(force, start, self.slider_properties(half.end[..., 0]), half).force
+        half = increment.scale(0.5)
+        return self._return_map(
+            force, start_properties, self.slider_properties(half.end_approach[..., 0]), half
+        ).force
 
-    def _keeps_contact_state(self, path: "_Increment") -> NDArray[np.bool_]:
+    def _keeps_contact_state(self, increment: "_Increment") -> NDArray[np.bool_]:
         """Whether each slider (..., n) has the same contact state (full, partial, open) at both ends."""
         low, high = (np.repeat(h, 2, axis=-1) for h in (self.heights[..., :-1], self.heights[..., 1:]))
-        first, last = path.start, path.end
+        first, last = increment.start_approach, increment.end_approach
         return np.asarray(((first > low) == (last > low)) & ((first >= high) == (last >= high)))
 
 
@@ -382,23 +412,27 @@ class Foundation:
 class _Increment:
     """Increment of the relative displacement.
 
-    start, end              : (..., 1) [m] approaches at its ends
-    tangential_displacement : (..., 2, 1) or (..., 2, n) [m]
+    start_approach, end_approach : (..., 1) [m] approaches at its ends
+    tangential_displacement      : (..., 2, 1) or (..., 2, n) [m]
     """
 
-    start: Array
-    end: Array
+    start_approach: Array
+    end_approach: Array
     tangential_displacement: Array
 
     @classmethod
-    def from_ends(cls, start: ArrayLike, end: ArrayLike, tangential_displacement: Array) -> "_Increment":
-        first_approach, last_approach = (np.asarray(x, dtype=np.float64)[..., None] for x in (start, end))
+    def from_ends(
+        cls, start_approach: ArrayLike, end_approach: ArrayLike, tangential_displacement: Array
+    ) -> "_Increment":
+        first_approach, last_approach = (
+            np.asarray(x, dtype=np.float64)[..., None] for x in (start_approach, end_approach)
+        )
         return cls(first_approach, last_approach, tangential_displacement)
 
     @property
     def approach_change(self) -> Array:
         """Change of the approach (..., 1) [m]."""
-        return np.asarray(self.end - self.start)
+        return np.asarray(self.end_approach - self.start_approach)
 
     @property
     def components(self) -> tuple[Array, Array]:
@@ -406,10 +440,10 @@ class _Increment:
         return _components(self.tangential_displacement)
 
     def scale(self, load_factor: float) -> "_Increment":
-        """First part of the increment; load_factor [1] from 0 to 1."""
+        """Part of the increment from its start up to a load factor [1], from 0 to 1."""
         return _Increment(
-            self.start,
-            self.start + load_factor * self.approach_change,
+            self.start_approach,
+            self.start_approach + load_factor * self.approach_change,
             load_factor * self.tangential_displacement,
         )
 
@@ -420,16 +454,20 @@ def _components(vector: Array) -> tuple[Array, Array]:
 
 
 def _cycle_energies(
-    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, fall: Number, excess: Number
+    friction_coefficient: Number,
+    stiffness_ratio: Number,
+    amplitude: Number,
+    pressure_drop: Number,
+    energy_excess: Number,
 ) -> tuple[Number, Number]:
-    """Loss and elastic energy [J/m2] of a cycle, see `cycle_energies`.
+    """Energy loss and elastic energy [J/m2] of a cycle, see `cycle_energies`.
 
-    fall   : [Pa] difference of the pressures at the approach and at the lowest slipped height
-    excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
+    pressure_drop : [Pa] difference of the pressures at the approach and at the lowest slipped height
+    energy_excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
     """
     return 8.0 * friction_coefficient**2 / stiffness_ratio * np.maximum(
-        excess, 0.0
-    ), 0.5 * friction_coefficient * fall * amplitude
+        energy_excess, 0.0
+    ), 0.5 * friction_coefficient * pressure_drop * amplitude
 
 
 def cycle_energies(
@@ -440,7 +478,7 @@ def cycle_energies(
     slipped_load: Number,
     energy: Number,
 ) -> tuple[Number, Number]:
-    """Loss [J/m2] of a cycle at constant approach, and elastic energy [J/m2] at its ends.
+    """Energy loss [J/m2] of a cycle at constant approach, and elastic energy [J/m2] at its ends.
 
     With the virgin curve B(a), a the amplitude, and its integral I they are 8 (I - B a/2) and B a/2 (Masing).
     Differences cancel for small amplitudes: then use `small_cycle_energies`.
@@ -459,17 +497,22 @@ def cycle_energies(
 
 
 def small_cycle_energies(
-    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, upper: Vector, lower: Vector
+    friction_coefficient: Number,
+    stiffness_ratio: Number,
+    amplitude: Number,
+    upper_derivatives: Vector,
+    lower_derivatives: Vector,
 ) -> tuple[Number, Number]:
-    """Energies of `cycle_energies` for small amplitudes, exact within one segment of the curve.
+    """Energy loss and elastic energy [J/m2] of a cycle of small amplitude, exact in one segment of the curve.
 
-    upper, lower : first three derivatives of the pressure at delta and at delta - kappa a/mu
+    The same energies as `cycle_energies`.
+
+    upper_derivatives, lower_derivatives : first three derivatives of the pressure, at delta and at
+        delta - kappa a/mu
     """
-    reach, (upper_stiffness, upper_d2p, upper_d3p), (lower_stiffness, lower_d2p, lower_d3p) = (
-        amplitude * (stiffness_ratio / friction_coefficient),
-        upper,
-        lower,
-    )
+    reach = amplitude * (stiffness_ratio / friction_coefficient)
+    upper_stiffness, upper_d2p, upper_d3p = upper_derivatives
+    lower_stiffness, lower_d2p, lower_d3p = lower_derivatives
     fall = reach * (0.5 * (upper_stiffness + lower_stiffness) - reach * (upper_d2p - lower_d2p) / 12.0)
     excess = reach**3 * ((upper_d2p + lower_d2p) / 24.0 - reach * (upper_d3p - lower_d3p) / 120.0)
     return _cycle_energies(friction_coefficient, stiffness_ratio, amplitude, fall, excess)
@@ -530,7 +573,7 @@ def stick_retention(
 def retention_and_stiffness(
     start: tuple[Number, Number],
     end: tuple[Number, Number],
-    change: Number,
+    approach_change: Number,
     stiffness_integral: Number,
     is_small: Number,
 ) -> tuple[Number, Number]:
@@ -540,23 +583,23 @@ def retention_and_stiffness(
     springs lift off and lose their force: it decreases in proportion to the stiffness.
 
     start, end : (stiffness [Pa/m], its derivative with respect to the approach [Pa/m2]) at both ends
-    change     : [m] change of the approach
+    approach_change     : [m] change of the approach
     stiffness_integral : [Pa] integral of the stiffness over the approach: ratio/mu times the mean change of
         the friction limits
     is_small   : whether to compute the mean stiffness from `start` and `end` (fourth order), because
         stiffness_integral cancels
     """
     (stiffness_start, slope_start), (stiffness_end, slope_end) = start, end
-    touches, is_unloading = stiffness_start > 0.0, change < 0.0
+    touches, is_unloading = stiffness_start > 0.0, approach_change < 0.0
     retention = select(touches, np.minimum(stiffness_end / select(touches, stiffness_start, 1.0), 1.0), 0.0)
-    ends = 0.5 * (stiffness_start + stiffness_end) + change * (slope_start - slope_end) / 12.0
+    ends = 0.5 * (stiffness_start + stiffness_end) + approach_change * (slope_start - slope_end) / 12.0
     mean = select(
         is_small,
         ends,
         select(
             stiffness_start == stiffness_end,
             stiffness_end,
-            stiffness_integral / select(is_small, 1.0, change),
+            stiffness_integral / select(is_small, 1.0, approach_change),
         ),
     )
     return select(is_unloading, retention, 1.0), select(is_unloading, stiffness_end, mean)
@@ -568,23 +611,23 @@ def varying_stiffness_loss(
     tangential_displacement: Vector,
     stiffness: tuple[Number, Number],
     slip: Number,
-    contact_changes: Number,
-    middle: Vector,
+    has_contact_change: Number,
+    middle_force: Vector,
 ) -> Number:
-    """Loss [J/m2] of a slider whose stiffness changes in the increment: work minus change of elastic energy.
+    """Energy loss [J/m2] of a slider with changing stiffness: work minus increase of elastic energy.
 
     force, new_force : at the start and at the end of the increment
     tangential_displacement : displacement increment
     stiffness        : [Pa/m] at both ends
-    slip             : slip of the return mapping, see `ReturnMapping`
-    contact_changes  : whether the contact state changes. Then the work is computed by Simpson's rule with the
-        force `middle` in the middle of the increment, else by Hermite's rule from both ends.
+    slip             : slip force of the return mapping, see `ReturnMapping`
+    has_contact_change : whether the contact state changes. Then the work is computed by Simpson's rule with
+        the force in the middle of the increment (middle_force), else by Hermite's rule from both ends.
     """
     stiffness_start, stiffness_end = stiffness
     ends = (force[0] + new_force[0]) * tangential_displacement[0] + (
         force[1] + new_force[1]
     ) * tangential_displacement[1]
-    half = middle[0] * tangential_displacement[0] + middle[1] * tangential_displacement[1]
+    half = middle_force[0] * tangential_displacement[0] + middle_force[1] * tangential_displacement[1]
     hermite_term = select(
         slip > 0.0,
         0.0,
@@ -594,7 +637,7 @@ def varying_stiffness_loss(
         )
         * ((stiffness_start - stiffness_end) / 12.0),
     )
-    work = select(contact_changes, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
+    work = select(has_contact_change, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
     return np.maximum(
         work - (_elastic_energy(new_force, stiffness_end) - _elastic_energy(force, stiffness_start)), 0.0
     )

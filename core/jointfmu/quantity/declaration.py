@@ -16,7 +16,7 @@ def quantity_field(
     calibration: bool = False,
     is_integer: bool = False,
     default: float | None = None,
-    **ends: float,
+    **bounds: float,
 ) -> Any:
     """Dataclass field for a number.
 
@@ -25,19 +25,19 @@ def quantity_field(
     calibration : the value was fitted to published points
     is_integer  : the value is a whole number
     default     : value of a parameter set that does not state one; None: the value is required
-    ends        : gt, ge, lt, le, see `Interval.of`
+    bounds      : gt, ge, lt, le, see `Interval.from_bounds`
     """
-    meta = {"unit": unit, "doc": doc, "interval": Interval.from_bounds(**ends)}
+    meta = {"unit": unit, "doc": doc, "interval": Interval.from_bounds(**bounds)}
     meta |= {"calibration": calibration, "whole": is_integer}
     return field(metadata=meta, default=MISSING if default is None else default)
 
 
-def series_field(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any:
+def series_field(unit: str, doc: str, *, optional: bool = False, **bounds: float) -> Any:
     """Dataclass field for a tuple of numbers, all inside the interval; arguments as in `quantity_field`.
 
     optional : the tuple may be empty, which is the default
     """
-    meta = {"unit": unit, "doc": doc, "interval": Interval.from_bounds(**ends)}
+    meta = {"unit": unit, "doc": doc, "interval": Interval.from_bounds(**bounds)}
     default: Any = () if optional else MISSING
     return field(default=default, metadata={**meta, "calibration": False, "whole": False, "series": True})
 
@@ -47,9 +47,9 @@ def describe_range(values: Sequence[float]) -> str:
     return f"{len(values)} numbers from {min(values):.6g} to {max(values):.6g}" if len(values) else "none"
 
 
-def choice_field(*allowed: str | bool, doc: str) -> Any:
+def choice_field(*allowed_values: str | bool, doc: str) -> Any:
     """Dataclass field for one of some allowed names or booleans; the first is the default."""
-    return field(default=allowed[0], metadata={"allowed": allowed, "doc": doc})
+    return field(default=allowed_values[0], metadata={"allowed": allowed_values, "doc": doc})
 
 
 def group_field(doc: str, **alternatives: type[Any]) -> Any:
@@ -66,14 +66,14 @@ def group_field(doc: str, **alternatives: type[Any]) -> Any:
     return field(metadata=metadata, default_factory=first)
 
 
-def file_name(item: Field[Any]) -> str:
+def name_in_file(declared_field: Field[Any]) -> str:
     """Name of a field in parameter files: without the underscore that avoids a Python keyword (`lambda_`)."""
-    return item.name.rstrip("_")
+    return declared_field.name.rstrip("_")
 
 
-def find_problem(name: str, value: object, item: Field[object]) -> str | None:
+def find_problem(name: str, value: object, declared_field: Field[object]) -> str | None:
     """Error message, one line with name, value, unit and allowed values; None if the value is valid."""
-    meta = item.metadata
+    meta = declared_field.metadata
     if is_symbol(value):
         return None
     if "allowed" in meta:
@@ -81,7 +81,7 @@ def find_problem(name: str, value: object, item: Field[object]) -> str | None:
             return None
         return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
     if "series" in meta:
-        return _find_series_problem(name, value, item)
+        return _find_series_problem(name, value, declared_field)
     if type(value) is float and not meta["whole"] and meta["interval"].contains(value):
         return None
     unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
@@ -100,31 +100,35 @@ def find_problem(name: str, value: object, item: Field[object]) -> str | None:
 
 
 def find_problems(
-    values: Mapping[str, object], declared: Mapping[str, Field[Any]], missing: Collection[str] = ()
+    values: Mapping[str, object],
+    declared_fields: Mapping[str, Field[Any]],
+    missing_names: Collection[str] = (),
 ) -> list[str]:
-    """Error messages for {name: value}: unknown names, missing names, and those of `find_problem`."""
-    texts = [f"unknown name {name!r}" for name in values if name not in declared]
+    """Error messages for {name: value}: unknown and missing names, and values outside their intervals."""
+    texts = [f"unknown name {name!r}" for name in values if name not in declared_fields]
     if texts:
-        texts.append(f"allowed are {', '.join(declared)}")
-    if missing:
-        texts.append(f"missing {', '.join(missing)}")
+        texts.append(f"allowed are {', '.join(declared_fields)}")
+    if missing_names:
+        texts.append(f"missing {', '.join(missing_names)}")
     messages = (
-        find_problem(name, value, declared[name]) for name, value in values.items() if name in declared
+        find_problem(name, value, declared_fields[name])
+        for name, value in values.items()
+        if name in declared_fields
     )
     return texts + [text for text in messages if text]
 
 
-def _find_series_problem(name: str, values: object, item: Field[object]) -> str | None:
+def _find_series_problem(name: str, values: object, declared_field: Field[object]) -> str | None:
     """Error message for the first invalid number of a series, see `find_problem`; None if all are valid."""
-    if values == () and item.default == ():
+    if values == () and declared_field.default == ():
         return None
     if not isinstance(values, list | tuple) or not values:
-        return f"{name} = {_shorten_repr(values)} is no list of numbers: {item.metadata['doc']}"
+        return f"{name} = {_shorten_repr(values)} is no list of numbers: {declared_field.metadata['doc']}"
     if all(type(value) is float for value in values) and np.all(
-        item.metadata["interval"].contains(np.array(values))
+        declared_field.metadata["interval"].contains(np.array(values))
     ):
         return None
-    number = field(metadata={key: value for key, value in item.metadata.items() if key != "series"})
+    number = field(metadata={key: value for key, value in declared_field.metadata.items() if key != "series"})
     texts = (find_problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
     return next((text for text in texts if text), None)
 
@@ -134,10 +138,12 @@ def _shorten_repr(value: object) -> str:
     return " ".join(repr(value).split())[:80]
 
 
-def check_fields(obj: Any) -> None:
-    """Raise ValueError that names every field of `obj` outside its interval; NaN and infinity are outside."""
-    declared = {file_name(item): item for item in fields(obj) if "group" not in item.metadata}
-    if texts := find_problems({name: getattr(obj, item.name) for name, item in declared.items()}, declared):
+def check_fields(parameters: Any) -> None:
+    """Raise ValueError that names every field outside its interval; NaN and infinity are outside."""
+    declared = {name_in_file(item): item for item in fields(parameters) if "group" not in item.metadata}
+    if texts := find_problems(
+        {name: getattr(parameters, item.name) for name, item in declared.items()}, declared
+    ):
         raise ValueError("; ".join(texts))
 
 

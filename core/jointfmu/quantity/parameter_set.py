@@ -8,7 +8,7 @@ from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
-from .declaration import file_name, find_problems
+from .declaration import find_problems, name_in_file
 from .interval import Interval, Number
 
 T = TypeVar("T")
@@ -22,7 +22,7 @@ def _type_hints(cls: object) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True)
 class ParameterLimit:
-    """Allowed interval of one parameter that depends on other parameters; `doc` is the reason."""
+    """Allowed interval of one parameter, which depends on other parameters; `doc` is the reason."""
 
     name: str
     interval: Interval
@@ -38,33 +38,35 @@ class ParameterLimit:
         return f"{self.name} = {value:g}{unit} is outside {self.interval}: {self.doc}"
 
 
-def check_limits(obj: object, limits: Iterable[ParameterLimit]) -> None:
-    """Raise ValueError for the first parameter of `obj` that lies outside one of the limits."""
-    units = {name: item.metadata["unit"] for name, item in flat_fields(type(obj)) if "unit" in item.metadata}
-    values = flatten_parameters(obj)
+def check_limits(parameters: object, limits: Iterable[ParameterLimit]) -> None:
+    """Raise ValueError for the first parameter of a set that lies outside one of the limits."""
+    units = {
+        name: item.metadata["unit"] for name, item in flat_fields(type(parameters)) if "unit" in item.metadata
+    }
+    values = flatten_parameters(parameters)
     for limit in limits:
         if text := limit.find_problem(values[limit.name], units[limit.name]):
             raise ValueError(text)
 
 
 def flat_fields(
-    cls: type[Any], prefix: str = "", names: Collection[str] | None = None
+    cls: type[Any], prefix: str = "", parameter_names: Collection[str] | None = None
 ) -> Iterator[tuple[str, Field[Any]]]:
     """Structured names and fields of all numbers and choices of a parameter set class, groups included.
 
-    names : parameter names that select one alternative of each group; None: all alternatives
+    parameter_names : parameter names that select one alternative of each group; None: all alternatives
     """
-    if names is None:
+    if parameter_names is None:
         yield from ((prefix + name, item) for name, item in _all_fields(cls))  # type: ignore[arg-type]
         return
     hints = _type_hints(cls)  # type: ignore[arg-type]
     for item in fields(cls):
         if "group" in item.metadata:
-            sections = _sections(item, hints[item.name])
-            section = _select_section(sections, prefix, names)
-            yield from flat_fields(sections[section], f"{prefix}{section}.", names)
+            sections = _group_sections(item, hints[item.name])
+            section = _select_section(sections, prefix, parameter_names)
+            yield from flat_fields(sections[section], f"{prefix}{section}.", parameter_names)
         elif item.metadata:
-            yield prefix + file_name(item), item
+            yield prefix + name_in_file(item), item
 
 
 @cache
@@ -73,24 +75,24 @@ def _all_fields(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
     hints, found_fields = _type_hints(cls), list[tuple[str, Field[Any]]]()
     for item in fields(cls):
         if "group" in item.metadata:
-            for name, inner in _sections(item, hints[item.name]).items():
+            for name, inner in _group_sections(item, hints[item.name]).items():
                 found_fields += flat_fields(inner, f"{name}.")
         elif item.metadata:
-            found_fields.append((file_name(item), item))
+            found_fields.append((name_in_file(item), item))
     return tuple(found_fields)
 
 
-def flatten_parameters(obj: Any) -> dict[str, Any]:
+def flatten_parameters(parameters: Any) -> dict[str, Any]:
     """Convert a parameter set to {structured name: value}."""
     values: dict[str, Any] = {}
-    for item in fields(obj):
-        value = getattr(obj, item.name)
+    for item in fields(parameters):
+        value = getattr(parameters, item.name)
         if is_dataclass(value) and "group" in item.metadata:
             values |= {
                 f"{_section_name(item, value)}.{name}": v for name, v in flatten_parameters(value).items()
             }
         elif item.metadata:
-            values[file_name(item)] = value
+            values[name_in_file(item)] = value
     return values
 
 
@@ -100,7 +102,7 @@ def build_parameter_set(cls: type[T], values: Mapping[str, object]) -> T:
     Raises ValueError, one line, that names every unknown or missing name and every value that is no number
     or lies outside its interval; also if names belong to two alternatives of a group.
     """
-    declared = dict(flat_fields(cls, names=values))
+    declared = dict(flat_fields(cls, parameter_names=values))
     required = {name for name, item in declared.items() if item.default is MISSING}
     if texts := find_problems(values, declared, sorted(required - values.keys())):
         raise ValueError("; ".join(texts))
@@ -108,60 +110,61 @@ def build_parameter_set(cls: type[T], values: Mapping[str, object]) -> T:
     return assemble_parameter_set(cls, plain, lambda part, arguments: part(**arguments))
 
 
-def replace_values(obj: T, new_values: Mapping[str, object]) -> T:
+def replace_values(parameters: T, new_values: Mapping[str, object]) -> T:
     """Copy of a parameter set with some values replaced, by structured name.
 
-    Raises ValueError as `build_parameter_set` does, and for names of an alternative that `obj` does not have.
+    Raises ValueError as `build_parameter_set` does, and for names of a missing alternative.
     """
-    values = flatten_parameters(obj)
-    all_names = {name for name, _ in flat_fields(type(obj))}
+    values = flatten_parameters(parameters)
+    all_names = {name for name, _ in flat_fields(type(parameters))}
     if foreign := [name for name in new_values if name in all_names and name not in values]:
         texts = [
-            f"{name} is no parameter of a set that has [{_present_alternative(obj, name)}]"
+            f"{name} is no parameter of a set that has [{_present_alternative(parameters, name)}]"
             for name in foreign
         ]
         raise ValueError("; ".join([*texts, f"allowed are {', '.join(values)}"]))
-    return build_parameter_set(type(obj), values | dict(new_values))
+    return build_parameter_set(type(parameters), values | dict(new_values))
 
 
 def assemble_parameter_set(
     cls: type[T],
     values: Mapping[str, object],
-    make: Callable[[type[Any], dict[str, Any]], Any],
+    make_instance: Callable[[type[Any], dict[str, Any]], Any],
     prefix: str = "",
 ) -> T:
     """Build the parameter set `cls` from {structured name: value} without checks.
 
-    make : (class, {field name: value}) -> instance
+    make_instance : (class, {field name: value}) -> instance
     """
     hints = _type_hints(cls)  # type: ignore[arg-type]
     arguments: dict[str, Any] = {}
     for item in fields(cls):  # type: ignore[arg-type]
-        name = prefix + file_name(item)
+        name = prefix + name_in_file(item)
         if "group" in item.metadata:
-            sections = _sections(item, hints[item.name])
+            sections = _group_sections(item, hints[item.name])
             section = _select_section(sections, prefix, values)
             arguments[item.name] = assemble_parameter_set(
-                sections[section], values, make, f"{prefix}{section}."
+                sections[section], values, make_instance, f"{prefix}{section}."
             )
         elif name in values:
             arguments[item.name] = values[name]
-    instance: T = make(cls, arguments)
+    instance: T = make_instance(cls, arguments)
     return instance
 
 
-def _sections(item: Field[object], default_type: object) -> dict[str, type[object]]:
+def _group_sections(group_field: Field[object], default_type: object) -> dict[str, type[object]]:
     """{section name: class} that a group may have; `default_type` is the declared type of the field."""
-    return item.metadata["alternatives"] or {file_name(item): default_type}
+    return group_field.metadata["alternatives"] or {name_in_file(group_field): default_type}
 
 
-def _select_section(sections: Iterable[str], prefix: str, names: Collection[str]) -> str:
+def _select_section(sections: Iterable[str], prefix: str, parameter_names: Collection[str]) -> str:
     """Alternative of a group that the parameter names belong to; the first one if no name belongs to any.
 
     Raises ValueError, which lists the names, if they belong to two alternatives.
     """
     names_by_section = {
-        section: [name for name in names if name.startswith(f"{prefix}{section}.")] for section in sections
+        section: [name for name in parameter_names if name.startswith(f"{prefix}{section}.")]
+        for section in sections
     }
     present = [section for section, section_names in names_by_section.items() if section_names]
     if len(present) > 1:
@@ -172,19 +175,21 @@ def _select_section(sections: Iterable[str], prefix: str, names: Collection[str]
     return (present or list(names_by_section))[0]
 
 
-def _section_name(item: Field[object], value: object) -> str:
+def _section_name(group_field: Field[object], group_value: object) -> str:
     """Section name of a group: that of the alternative whose class the value has."""
-    alternatives = item.metadata["alternatives"].items()
-    return next((name for name, cls in alternatives if isinstance(value, cls)), file_name(item))
+    alternatives = group_field.metadata["alternatives"].items()
+    return next(
+        (name for name, cls in alternatives if isinstance(group_value, cls)), name_in_file(group_field)
+    )
 
 
-def _present_alternative(obj: Any, name: str) -> str:
+def _present_alternative(parameters: Any, foreign_name: str) -> str:
     """Section that a parameter set has instead of the alternative that a name belongs to."""
-    head, _, rest = name.partition(".")
-    groups = [item for item in fields(obj) if "group" in item.metadata]
-    sections = {_section_name(item, getattr(obj, item.name)): item for item in groups}
+    head, _, rest = foreign_name.partition(".")
+    groups = [item for item in fields(parameters) if "group" in item.metadata]
+    sections = {_section_name(item, getattr(parameters, item.name)): item for item in groups}
     if head in sections:
-        return f"{head}.{_present_alternative(getattr(obj, sections[head].name), rest)}"
+        return f"{head}.{_present_alternative(getattr(parameters, sections[head].name), rest)}"
     return next(name for name, item in sections.items() if head in item.metadata["alternatives"])
 
 

@@ -16,9 +16,9 @@ from typing import NamedTuple, TypeAlias
 UnitSizes: TypeAlias = Mapping[str, float]
 """{unit: size in SI units}; the first key is the SI unit."""
 
-_FORCE = {"kg": 1, "m": 1, "s": -2}
-_DEGREE = 1 / Fraction(degrees(1.0))
-_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
+_FORCE_EXPONENTS = {"kg": 1, "m": 1, "s": -2}
+_DEGREE_IN_RAD = 1 / Fraction(degrees(1.0))
+_UNIT_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "1": (1, {}),
     "kg": (1, {"kg": 1}),
     "m": (1, {"m": 1}),
@@ -26,31 +26,31 @@ _SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "K": (1, {"K": 1}),
     "rad": (1, {"rad": 1}),
     "Hz": (1, {"s": -1}),
-    "N": (1, _FORCE),
-    "kgf": (Fraction("9.80665"), _FORCE),
+    "N": (1, _FORCE_EXPONENTS),
+    "kgf": (Fraction("9.80665"), _FORCE_EXPONENTS),
     "Pa": (1, {"kg": 1, "m": -1, "s": -2}),
     "J": (1, {"kg": 1, "m": 2, "s": -2}),
     "t": (1000, {"kg": 1}),
     "min": (60, {"s": 1}),
-    "deg": (_DEGREE, {"rad": 1}),
-    "arcmin": (_DEGREE / 60, {"rad": 1}),
-    "arcsec": (_DEGREE / 3600, {"rad": 1}),
+    "deg": (_DEGREE_IN_RAD, {"rad": 1}),
+    "arcmin": (_DEGREE_IN_RAD / 60, {"rad": 1}),
+    "arcsec": (_DEGREE_IN_RAD / 3600, {"rad": 1}),
     "rev": (Fraction(tau), {"rad": 1}),
 }
 """{symbol: (size in SI units, exponents of the SI base units)}; the radian counts as a base unit."""
-_PREFIXES = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
+_PREFIX_EXPONENTS = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
 """{prefix: power of ten}, for the symbols in _PREFIXED_SYMBOLS; both Unicode signs for micro."""
 _PREFIXED_SYMBOLS = ("m", "s", "rad", "Hz", "N", "Pa", "J")
-_FACTOR = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
-_POWER_OF_TEN = re.compile(
+_FACTOR_PATTERN = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
+_POWER_OF_TEN_PATTERN = re.compile(
     r"[x\u00d7]?\s*(?:1e|10\s?\^\s?|10(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]))([+-]?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)\s*[.*·⋅]?\s*(?=\D)"
 )
 """Pattern of a power of ten before a unit: `1e4`, `x10^4`, `10⁴`."""
-MAX_POWER = 12
+MAX_POWER_OF_TEN = 12
 """Largest absolute exponent of a power of ten before a unit [1]."""
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
-_SPELLINGS = (
+_SPELLING_REPLACEMENTS = (
     (re.compile(r"[·⋅*]"), "."),
     (re.compile(r"\^(?=\d)"), ""),
     (re.compile("²"), "2"),
@@ -66,14 +66,14 @@ _SPELLINGS = (
 class Unit(NamedTuple):
     """An SI unit.
 
-    quantity : name of the quantity, that of the Modelica Standard Library if it has one
-    base     : exponents of the SI base units
-    display  : {display unit: factor}, displayed value = SI value * factor
+    quantity        : name of the quantity, that of the Modelica Standard Library if it has one
+    base_exponents  : exponents of the SI base units
+    display_factors : {display unit: factor}, displayed value = SI value * factor
     """
 
     quantity: str
-    base: Mapping[str, int]
-    display: Mapping[str, float]
+    base_exponents: Mapping[str, int]
+    display_factors: Mapping[str, float]
 
 
 def unit_size(unit: str) -> float:
@@ -94,12 +94,12 @@ def conversion_factor(unit: str, target: str) -> float:
     return float(size / target_size)
 
 
-def unit_sizes(unit: str, *others: str) -> UnitSizes:
+def unit_sizes(unit: str, *other_units: str) -> UnitSizes:
     """{unit: size in the first unit}: units that an input accepts, the SI unit first.
 
     Raises ValueError if the units measure different quantities.
     """
-    return {name: conversion_factor(name, unit) for name in (unit, *others)}
+    return {name: conversion_factor(name, unit) for name in (unit, *other_units)}
 
 
 def unit_size_in(unit: str, sizes: UnitSizes) -> float:
@@ -112,7 +112,7 @@ def unit_size_in(unit: str, sizes: UnitSizes) -> float:
 
 def replace_symbols(unit: str, symbols: Mapping[str, str]) -> str:
     """Replace symbols in a unit: `N/m3` with {"m": "mm"} becomes `N/mm3`."""
-    return _FACTOR.sub(lambda match: symbols.get(match[1], match[1]) + match[2], unit)
+    return _FACTOR_PATTERN.sub(lambda match: symbols.get(match[1], match[1]) + match[2], unit)
 
 
 @cache
@@ -120,16 +120,16 @@ def _parse_unit(unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size in SI units and exponents of the base units. Raises ValueError if the unit is unknown."""
     total, exponents = Fraction(1), dict[str, int]()
     notation_text = unit
-    if ten := _POWER_OF_TEN.match(notation_text):
+    if ten := _POWER_OF_TEN_PATTERN.match(notation_text):
         power = int(ten[1].translate(_SUPERSCRIPTS))
-        if abs(power) <= MAX_POWER:
+        if abs(power) <= MAX_POWER_OF_TEN:
             total, notation_text = total * Fraction(10) ** power, notation_text[ten.end() :]
-    for spelling, notation in _SPELLINGS:
+    for spelling, notation in _SPELLING_REPLACEMENTS:
         notation_text = spelling.sub(notation, notation_text)
     numerator, slash, denominator = notation_text.partition("/")
     for sign, product in ((1, numerator), (-1, denominator if slash else "1")):
         for text in product.split("."):
-            if not (match := _FACTOR.fullmatch(text)):
+            if not (match := _FACTOR_PATTERN.fullmatch(text)):
                 raise ValueError(f"unit {unit!r} is none; expected symbols as in N.m.s/rad")
             power = sign * int(match[2] or 1)
             symbol_size, symbol_exponents = _parse_symbol(match[1], unit)
@@ -141,26 +141,31 @@ def _parse_unit(unit: str) -> tuple[Fraction, dict[str, int]]:
 
 def _parse_symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size and exponents of one symbol, with or without a prefix; `unit` is named in the error."""
-    if symbol in _SYMBOLS:
-        symbol_size, symbol_exponents = _SYMBOLS[symbol]
+    if symbol in _UNIT_SYMBOLS:
+        symbol_size, symbol_exponents = _UNIT_SYMBOLS[symbol]
         return Fraction(symbol_size), symbol_exponents
-    exponent, rest = _PREFIXES.get(symbol[0]), symbol[1:]
+    exponent, rest = _PREFIX_EXPONENTS.get(symbol[0]), symbol[1:]
     if exponent is None or rest not in _PREFIXED_SYMBOLS:
-        raise ValueError(f"unit {unit!r}: symbol {symbol!r} is unknown, allowed are {', '.join(_SYMBOLS)}")
-    return Fraction(10) ** exponent, _SYMBOLS[rest][1]
+        raise ValueError(
+            f"unit {unit!r}: symbol {symbol!r} is unknown, allowed are {', '.join(_UNIT_SYMBOLS)}"
+        )
+    return Fraction(10) ** exponent, _UNIT_SYMBOLS[rest][1]
 
 
-def _make_unit(name: str, quantity: str, *display: str) -> Unit:
+def _make_unit(unit_name: str, quantity: str, *display_units: str) -> Unit:
     return Unit(
         quantity,
-        base_exponents(name),
-        {display_name: conversion_factor(name, display_name) for display_name in display or (name,)},
+        base_exponents(unit_name),
+        {
+            display_name: conversion_factor(unit_name, display_name)
+            for display_name in display_units or (unit_name,)
+        },
     )
 
 
 UNITS: Mapping[str, Unit] = {
-    name: _make_unit(name, *told)
-    for name, told in {
+    name: _make_unit(name, *quantity_and_display)
+    for name, quantity_and_display in {
         "1": ("Ratio",),
         "s": ("Time",),
         "Hz": ("Frequency",),
@@ -198,9 +203,9 @@ LUBRICANT_TEMPERATURES = 193.15, 473.15
 """Temperature range [K] in which lubricants work: -80 to 200 degrees C."""
 
 
-def display_unit(unit: str, typical: float) -> str:
+def display_unit(unit: str, typical_value: float) -> str:
     """Display unit in which a typical value is nearest to 30; the first display unit if the value is zero."""
-    names = UNITS[unit].display
-    if typical == 0.0:
+    names = UNITS[unit].display_factors
+    if typical_value == 0.0:
         return next(iter(names))
-    return min(names, key=lambda name: abs(log10(abs(typical) * names[name] / 30.0)))
+    return min(names, key=lambda name: abs(log10(abs(typical_value) * names[name] / 30.0)))

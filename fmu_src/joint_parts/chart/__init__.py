@@ -12,8 +12,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-Values: TypeAlias = Sequence[float] | NDArray[np.float64]
-_DIGITS = 7
+NumberSequence: TypeAlias = Sequence[float] | NDArray[np.float64]
+_SIGNIFICANT_DIGITS = 7
 """Significant digits of the numbers of a curve: more than a screen resolves."""
 
 
@@ -21,8 +21,8 @@ class Series(NamedTuple):
     """Line or marks of a chart; `marks` is the kind of mark (empty: a line), `titles` names each mark."""
 
     name: str
-    x: Values
-    y: Values
+    x: NumberSequence
+    y: NumberSequence
     marks: str = ""
     dashed: bool = False
     titles: Sequence[str] = ()
@@ -38,30 +38,34 @@ class Panel(NamedTuple):
     log: bool = False
 
 
-def as_json(panels: Sequence[Panel]) -> str:
+def encode_panels(panels: Sequence[Panel]) -> str:
     """Encode panels side by side as JSON that is safe inside an HTML page."""
 
     def numbers(values: Any) -> list[float]:
-        return [float(f"{x:.{_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
+        return [float(f"{x:.{_SIGNIFICANT_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
 
-    def series(s: Series) -> dict[str, Any]:
-        return s._asdict() | {"x": numbers(s.x), "y": numbers(s.y), "titles": list(s.titles) or None}
+    def series(chart_series: Series) -> dict[str, Any]:
+        return chart_series._asdict() | {
+            "x": numbers(chart_series.x),
+            "y": numbers(chart_series.y),
+            "titles": list(chart_series.titles) or None,
+        }
 
     rows = [panel._asdict() | {"series": [series(s) for s in panel.series]} for panel in panels]
     return json.dumps(rows, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
-def element(panels: Sequence[Panel]) -> str:
+def make_figure(panels: Sequence[Panel]) -> str:
     """HTML element of panels, for a page that contains `read_script("figures")`."""
-    return f'<div class="figure"><script type="application/json">{as_json(panels)}</script></div>'
+    return f'<div class="figure"><script type="application/json">{encode_panels(panels)}</script></div>'
 
 
-def script(*names: str) -> str:
+def read_script(*names: str) -> str:
     """JavaScript that draws charts; the name `figures` adds code for all page elements of class `figure`."""
     return '"use strict";\n' + "".join(_read_file(f"{name}.js") for name in ("text", "chart", *names))
 
 
-def style() -> str:
+def read_style() -> str:
     """CSS of colours, charts and tables, the same on all pages."""
     return _read_file("chart.css")
 

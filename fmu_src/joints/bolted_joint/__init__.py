@@ -10,23 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint import spring
-from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
+from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS, Modes
 from jointfmu.joints.bolted_joint.bolts import bolt_positions, moment_lever
-from jointfmu.joints.bolted_joint.contact import (
-    MAX_PATCHES_PER_POINT,
-    TRANSFER_DECIMALS,
-    cycle_sums,
-    force_transfer,
-)
-from jointfmu.joints.bolted_joint.law import Bolted
-from jointfmu.mechanics.footprint.shape import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
+from jointfmu.joints.bolted_joint.contact import MAX_PATCHES_PER_POINT, TRANSFER_DECIMALS, force_transfer
+from jointfmu.joints.bolted_joint.joint import MAX_POINTS, contact_points, friction_patches_of
+from jointfmu.joints.bolted_joint.law import MAX_MODES, Bolted, ElasticBodies
+from jointfmu.joints.bolted_joint.outputs import cycle_sums
+from jointfmu.mechanics.footprint.distribution import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
 from jointfmu.quantity import Array, flatten_parameters
 
-from ...joint_parts import Parts, RampPanel, chart, native_of
-from ...joint_parts.data import DataPart, DataTable
-from ...joint_parts.terminals import axis, rotation
+from ...joint_parts import FmuParts, RampPanel, chart, native_loader
+from ...joint_parts.data import DataConversion, DataTable
+from ...joint_parts.terminals import make_rotation_flange, make_translation_flange
 
 _SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
 BOLTS = 64
@@ -38,7 +34,7 @@ _ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), 
 def _parameter_values(joint: Bolted) -> Mapping[str, object]:
     """The joint with one point, as its C is generated, and the place of its bolts."""
     own = {name: value for name, value in flatten_parameters(joint).items() if not name.startswith(_SECTIONS)}
-    spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_means, strict=True))
+    spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))
     points: dict[str, object] = {
         f"field.{name}": value for name, value in (_ONE_POINT_FIELD | spread).items()
     }
@@ -54,12 +50,12 @@ def _one_mode(bolts: int) -> dict[str, object]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
-    patches = spring.friction_patches_of(joint.pattern)
+    patches = friction_patches_of(joint.pattern)
     return {
-        "nodes": DataTable(_rows(spring.contact_points(joint.pattern)), spring.MAX_POINTS),
+        "points": DataTable(_rows(contact_points(joint.pattern)), MAX_POINTS),
         "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), MAX_PATCHES),
-        "turning": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
-        "offsets": DataTable(height_offsets(patches.preload_shape)[:, None], MAX_PATCHES),
+        "torsion_directions": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
+        "height_offsets": DataTable(height_offsets(patches.preload_shape)[:, None], MAX_PATCHES),
         **_bodies(joint),
     }
 
@@ -69,26 +65,28 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
 
     A joint with rigid sides has room for one row, and for BOLTS bolts.
     """
-    modes, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), (1, 1, 1, 1)
+    modes, most = Modes.for_rigid_bodies(0, 0, 0), (1, 1, 1, 1)
     bolts = bolt_positions(joint)
     pressing, pairs = np.zeros((0, 4)), 1
     if joint.elastic:
-        points, patches = spring.contact_points(joint.pattern), spring.friction_patches_of(joint.pattern)
-        modes = Modes.of(joint.bodies, len(points.share), patches.position)
+        assert isinstance(joint.bodies, ElasticBodies)
+        points, patches = contact_points(joint.pattern), friction_patches_of(joint.pattern)
+        modes = Modes.of(joint.bodies, len(points.area_share), patches.position)
         pressing = _pressure_transfer_table(force_transfer(points, patches))
-        pairs = MAX_PATCHES_PER_POINT * spring.MAX_POINTS + MAX_PATCHES
-        most = MODES, spring.MAX_POINTS, MAX_PATCHES, len(modes.bolts)
-    patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch_displacement, strict=True))
-    moved = {"opening": modes.opening, **patch, "stretch": modes.bolt_elongation}
+        pairs = MAX_PATCHES_PER_POINT * MAX_POINTS + MAX_PATCHES
+        most = MAX_MODES, MAX_POINTS, MAX_PATCHES, len(bolts)
+    axes = (f"patch_displacement_{axis}" for axis in ("x", "y", "around"))
+    patch = dict(zip(axes, modes.patch_displacement, strict=True))
+    moved = {"opening": modes.opening, **patch, "bolt_elongation": modes.bolt_elongation}
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
     return {
-        "modes": DataTable(modes.stiffness[:, None], most[0]),
+        "modal_stiffness": DataTable(modes.stiffness[:, None], most[0]),
         "bolts": DataTable(
             np.column_stack([bolts, moment_lever(bolts)]),
             len(bolts) if joint.elastic else max(len(bolts), BOLTS),
         ),
-        **{name: DataTable(_padded(rows), room[name], digits=True) for name, rows in moved.items()},
-        "pressing": DataTable(pressing, pairs, digits=True),
+        **{name: DataTable(_padded(rows), room[name], is_integer=True) for name, rows in moved.items()},
+        "pressure_transfer": DataTable(pressing, pairs, is_integer=True),
     }
 
 
@@ -100,13 +98,13 @@ def _pressure_transfer_table(transfer: Any) -> Any:
 
 
 def _padded(rows: Any) -> Any:
-    """Of all MODES, in units of the last digit."""
-    return np.pad(np.round(rows * 10.0**DIGITS), ((0, 0), (0, MODES - rows.shape[1])))
+    """Of MAX_MODES modes, in units of the last digit."""
+    return np.pad(np.round(rows * 10.0**MODE_DECIMALS), ((0, 0), (0, MAX_MODES - rows.shape[1])))
 
 
 def _rows(shape: PressureDistribution) -> Any:
     """Share, x, y, equal, tilt (n, 5)."""
-    return np.column_stack([shape.share, shape.position, shape.preload_shape, shape.moment_shape])
+    return np.column_stack([shape.area_share, shape.position, shape.preload_shape, shape.moment_shape])
 
 
 LOOP_PRELOAD_RATIO = 0.3
@@ -121,7 +119,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     left = spring.joint.embedding
     preload = left + LOOP_PRELOAD_RATIO * (end - left)
     approach = spring.preloaded_approach(preload, 0.0)
-    foundation, share = spring.foundation(), spring.shape.share
+    foundation, share = spring.friction.foundation(), spring.points.area_share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
     slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 
@@ -153,11 +151,16 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
 _AXES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
 _TURNS = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 
-PARTS = Parts(
+FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_of(__name__),
-    data=DataPart(_parameter_values, tables=_tables),
+    native=native_loader(__name__),
+    data=DataConversion(_parameter_values, make_tables=_tables),
     drawings={"BoltedJoint": {"loops": _loops}},
     panels={"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))},
-    terminals={"BoltedJoint": (*(axis(*row) for row in _AXES), *(rotation(*row) for row in _TURNS))},
+    terminals={
+        "BoltedJoint": (
+            *(make_translation_flange(*row) for row in _AXES),
+            *(make_rotation_flange(*row) for row in _TURNS),
+        )
+    },
 )

@@ -1,29 +1,37 @@
-/* Repeats `BoltSprings` of the package: each bolt pulls at its place; where it would push, its head lifts off. */
+/* Repeats `BoltSprings` in bolts.py of the package: each bolt pulls at its position; where it would push, its head
+ * lifts off. */
 #ifndef JOINTFMU_BOLTS_H
 #define JOINTFMU_BOLTS_H
 
-#include "bolted_joint.h"
-#include "joint.h"
-#include "variables.h"
+#include <stdbool.h>
 
-enum { BOLT_X, BOLT_Y, BOLT_LEVER }; /* of `data.bolts` */
+#include "data.h"
+#include "kinematics.h"
 
-/* Elongation of bolt b by motions alone: those of the inputs, or of a seed. */
-static inline double seat(int b, const double *v)
+typedef struct {
+    double stiffness; /* of each bolt [N/m] */
+    double count;     /* bolts at each position [1] */
+    double lift_off;  /* largest force [N] of a bolt that stands at lift-off */
+    double preload_force[MAX_BOLTS]; /* of each bolt [N] */
+    bool is_unloaded[MAX_BOLTS];     /* the moment would make the preload force negative */
+    double preload_rate[MAX_BOLTS];  /* rate of the preload force along the last seed */
+    /* In the last trial: gap under the head [m], force [N], and the fraction of the stiffness that acts [1]. */
+    double gap[MAX_BOLTS], force[MAX_BOLTS], active_fraction[MAX_BOLTS];
+} Bolts;
+
+/* Preload forces from preload per bolt [N] and moment [N.m]; c are the constants. */
+void set_preload_force(Bolts *bolts, const double *c, double preload, double moment);
+/* Rates of the preload forces, from rates of preload and moment. */
+void set_preload_rate(Bolts *bolts, const double *c, double preload, double preload_rate, double moment_rate);
+/* Gap, force and active fraction of bolt b at an elongation [m] from the preloaded state. */
+void elongate_bolt(Bolts *bolts, int b, double elongation);
+/* Rate of the gap of bolt b, from the rate of its elongation. */
+double bolt_gap_rate(const Bolts *bolts, int b, double elongation_rate);
+
+/* Elongation [m] of bolt b between rigid bodies, or its rate. */
+static inline double rigid_elongation(int b, const double q[N_DISPLACEMENTS])
 {
-    return v[INPUT_S_REL_X + 2] + v[INPUT_THETA_X] * data.bolts[b][BOLT_Y] - v[INPUT_THETA_X + 1] * data.bolts[b][BOLT_X];
+    return rigid_opening(data.bolts[b][BOLT_X], data.bolts[b][BOLT_Y], q);
 }
-
-/* Forces of the bolts at tightening, from preload and moment. */
-void bolts_tighten(Joint *joint, const double *inputs);
-/* Rates of these forces along a seed of preload and moment. */
-void bolts_tighten_rates(Joint *joint, const double *inputs, const double *seed);
-/* Gap, force and stiffness of bolt b at an elongation from the tightened state. */
-void bolt_elongate(JointModel *model, int b, double elongation);
-/* Rate of the gap of bolt b, whose elongation has this rate. */
-double bolt_gap_rate(const JointModel *model, int b, double rate);
-/* Sums of rigid sides: gaps, and the stiffness of bolts that lifted off; and rates of the gaps. */
-void bolts_sums(Joint *joint, const double *inputs, double *x);
-void bolts_sum_rates(const Joint *joint, const double *seed, double *dx);
 
 #endif

@@ -5,10 +5,10 @@
 
 #include "simd.h"
 
-enum { L = LANES_OF_MODES };
+enum { L = LANES };
 
 /* x less a multiple of a column, in fours from a row on. */
-static inline void take_fours(double by, const double *restrict column, int first, double *restrict x)
+static inline void subtract_column(double by, const double *restrict column, int first, double *restrict x)
 {
     for (int r = first; r < MODES; r += L)
         for (int l = 0; l < L; l++)
@@ -36,12 +36,12 @@ ALWAYS_INLINE void factor(double (*a)[MODES], int *pivots)
         for (int r = 0; r < MODES; r++)
             column[r] = r > c ? a[c][r] : 0.0;
         for (int k = c + 1; k < MODES; k++)
-            take_fours(a[k][c], column, (c + 1) / L * L, a[k]);
+            subtract_column(a[k][c], column, (c + 1) / L * L, a[k]);
     }
 }
 DEFINE_BASELINE_AND_AVX(factor, (double (*a)[MODES], int *pivots), (a, pivots))
 
-void dense_factor(bool use_avx, Factors *factors)
+void dense_factor(bool use_avx, Factorization *factors)
 {
     (use_avx ? factor_avx : factor_baseline)(factors->a, factors->pivots);
 }
@@ -59,7 +59,7 @@ ALWAYS_INLINE void solve(const double (*a)[MODES], const int *pivots, double *x)
             for (int r = c + 1; r < b + L; r++)
                 x[r] -= x[c] * a[c][r];
         for (int c = b; c < b + L; c++)
-            take_fours(x[c], a[c], b + L, x);
+            subtract_column(x[c], a[c], b + L, x);
     }
     for (int b = MODES - L; b >= 0; b -= L) {
         for (int c = b + L - 1; c >= b; c--) {
@@ -75,47 +75,47 @@ ALWAYS_INLINE void solve(const double (*a)[MODES], const int *pivots, double *x)
 }
 DEFINE_BASELINE_AND_AVX(solve, (const double (*a)[MODES], const int *pivots, double *x), (a, pivots, x))
 
-void dense_solve(bool use_avx, const Factors *factors, double *x)
+void dense_solve(bool use_avx, const Factorization *factors, double *x)
 {
     (use_avx ? solve_avx : solve_baseline)((const double(*)[MODES])factors->a, factors->pivots, x);
 }
 
-ALWAYS_INLINE void weigh(int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE])
+ALWAYS_INLINE void weigh(int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < WIDE; k++)
+        for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i] * row[i][k];
 }
-DEFINE_BASELINE_AND_AVX(weigh, (int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE]),
+DEFINE_BASELINE_AND_AVX(weigh, (int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
                (n, by, row, result))
 
-void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[WIDE], double (*result)[WIDE])
+void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double (*result)[N_COLUMNS])
 {
     (use_avx ? weigh_avx : weigh_baseline)(n, by, row, result);
 }
 
-ALWAYS_INLINE void combine(int n, const double (*by)[4], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
-                    const double (*restrict t)[WIDE], const double (*restrict z)[WIDE], double (*restrict result)[WIDE])
+ALWAYS_INLINE void combine(int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
+                    const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < WIDE; k++)
+        for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * t[i][k] + by[i][3] * z[i][k];
 }
 DEFINE_BASELINE_AND_AVX(combine,
-               (int n, const double (*by)[4], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
-                const double (*restrict t)[WIDE], const double (*restrict z)[WIDE], double (*restrict result)[WIDE]),
+               (int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
+                const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
                (n, by, x, y, t, z, result))
 
-void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*const rows[4])[WIDE],
-                   double (*result)[WIDE])
+void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*const rows[4])[N_COLUMNS],
+                   double (*result)[N_COLUMNS])
 {
     (use_avx ? combine_avx : combine_baseline)(n, by, rows[0], rows[1], rows[2], rows[3], result);
 }
 
 /* Sums go in lanes, which a processor adds side by side. */
 
-ALWAYS_INLINE void products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                     bool all, double (*restrict h)[WIDE])
+ALWAYS_INLINE void products(int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
+                     bool all, double (*restrict h)[N_COLUMNS])
 {
     for (int r = 0; r < size; r += L) /* in blocks, whose sums stay in registers */
         for (int c = 0; c <= (all ? size - L : r); c += L) {
@@ -130,17 +130,17 @@ ALWAYS_INLINE void products(int n, const double (*restrict weighted)[WIDE], cons
         }
 }
 DEFINE_BASELINE_AND_AVX(products,
-               (int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                bool all, double (*restrict h)[WIDE]),
+               (int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
+                bool all, double (*restrict h)[N_COLUMNS]),
                (n, weighted, rows, size, all, h))
 
-void dense_products(bool use_avx, int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE],
-                    int size, bool all, double (*restrict h)[WIDE])
+void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS],
+                    int size, bool all, double (*restrict h)[N_COLUMNS])
 {
     (use_avx ? products_avx : products_baseline)(n, weighted, rows, size, all, h);
 }
 
-ALWAYS_INLINE void add_rows(int n, const double *by, const double (*row)[WIDE], double *restrict sum)
+ALWAYS_INLINE void add_rows(int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum)
 {
     int i = 0;
     for (; i + 4 <= n; i += 4)
@@ -151,27 +151,20 @@ ALWAYS_INLINE void add_rows(int n, const double *by, const double (*row)[WIDE], 
         for (int k = 0; k < MODES; k++)
             sum[k] += by[i] * row[i][k];
 }
-DEFINE_BASELINE_AND_AVX(add_rows, (int n, const double *by, const double (*row)[WIDE], double *restrict sum), (n, by, row, sum))
+DEFINE_BASELINE_AND_AVX(add_rows, (int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum), (n, by, row, sum))
 
-void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[WIDE], double *sum)
+void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double *sum)
 {
     (use_avx ? add_rows_avx : add_rows_baseline)(n, by, row, sum);
 }
 
-/* The lanes of a row side by side, not those of two rows. */
-#ifdef __clang__
-#define ROW_BY_ROW _Pragma("clang loop vectorize(disable)")
-#else
-#define ROW_BY_ROW
-#endif
-
-ALWAYS_INLINE void dots(int n, const double (*row)[WIDE], const double *x, int stride, double *result)
+ALWAYS_INLINE void dots(int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
     enum { ROWS = 32 }; /* at a time: first all lanes, then their sums */
     double sum[ROWS][L];
     for (int first = 0; first < n; first += ROWS) {
         const int rows = n - first < ROWS ? n - first : ROWS;
-        ROW_BY_ROW
+        NOT_VECTORIZED /* the lanes of a row side by side, not those of two rows */
         for (int i = 0; i < rows; i++) {
             double lane[L] = {0.0};
             for (int k = 0; k < MODES; k += L)
@@ -183,10 +176,10 @@ ALWAYS_INLINE void dots(int n, const double (*row)[WIDE], const double *x, int s
             result[stride * (first + i)] = (sum[i][0] + sum[i][2]) + (sum[i][1] + sum[i][3]);
     }
 }
-DEFINE_BASELINE_AND_AVX(dots, (int n, const double (*row)[WIDE], const double *x, int stride, double *result),
+DEFINE_BASELINE_AND_AVX(dots, (int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result),
                (n, row, x, stride, result))
 
-void dense_dots(bool use_avx, int n, const double (*row)[WIDE], const double *x, int stride, double *result)
+void dense_dots(bool use_avx, int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
     (use_avx ? dots_avx : dots_baseline)(n, row, x, stride, result);
 }

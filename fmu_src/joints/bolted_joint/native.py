@@ -2,96 +2,106 @@
 
 import casadi as ca
 
-from jointfmu.joints.bolted_joint import bodies, bolts, contact, law, memory, outputs, trials, whole
+from jointfmu.joints.bolted_joint import bodies, bolts, contact, equilibrium, friction, law, outputs
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
-from jointfmu.mechanics.footprint.shape import MAX_PATCHES
+from jointfmu.mechanics.footprint.distribution import MAX_PATCHES
 
-from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
-from ...joint_parts.native import APPROACH, Definitions, NativePart
-from ...joint_parts.sliders import SLIDERS, add_sliders
+from ...joint_parts.graph import Graph, add_closing_function, add_law_functions, make_symbols
+from ...joint_parts.native import APPROACH_FILES, Definitions, NativeDefinition
+from ...joint_parts.sliders import SLIDER_FILES, add_slider_functions
 
 
 def _functions(g: Graph, model: Model) -> None:
     joint = g.joint
-    law_functions(
+    add_law_functions(
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
     )
-    add_closing(g)
-    head = [joint.memory, joint.mu, joint.shear_ratio(), joint.A_0, joint.bolt_stiffness, joint.damping]
+    add_closing_function(g)
+    head = [
+        joint.memory,
+        joint.mu,
+        joint.shear_stiffness_ratio(),
+        joint.A_0,
+        joint.bolt_stiffness,
+        joint.damping,
+    ]
     doc = "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping, number of bolts"
-    g.add("joint_head", doc, [], [*head, joint.n_bolts])
+    g.add_function("joint_constants", doc, [], [*head, joint.n_bolts])
     _tightening(g)
     _shear(g)
-    sums = dict(zip(outputs.SUMS, symbols("sum", len(outputs.SUMS)), strict=True))
-    shift, turn, rates = symbols("s", 3), symbols("t", 3), symbols("v", 6)
+    sums = dict(zip(outputs.SUMS, make_symbols("sum", len(outputs.SUMS)), strict=True))
+    shift, turn, rates = make_symbols("s", 3), make_symbols("t", 3), make_symbols("v", 6)
     p_max = ca.SX.sym("p_max")
     out = outputs.joint_outputs(joint, sums, shift, turn, rates, p_max)
     doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
     y = [out[o.name] for o in model.outputs if o.name in out]  # forces of bolts come from the modes
-    g.add_with_seed("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
+    g.add_with_derivative("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
 
 
 def _tightening(g: Graph) -> None:
-    equal, tilt, mean, shift = symbols("node", 4)
-    preload, moment = symbols("v", 2)
+    equal, tilt, mean, shift = make_symbols("node", 4)
+    preload, moment = make_symbols("v", 2)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
-    g.add_with_seed("bolt_pressures", doc, [preload, moment], law.bolt_pressures(g.joint, preload, moment))
+    g.add_with_derivative(
+        "bolt_pressures", doc, [preload, moment], law.bolt_pressures(g.joint, preload, moment)
+    )
     doc = "preload -> what embedding leaves of it"
-    g.add_with_seed("working_preload", doc, [preload], [law.working_preload(g.joint, preload)])
+    g.add_with_derivative("working_preload", doc, [preload], [law.working_preload(g.joint, preload)])
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
     pressure = law.shaped_pressure(equal, tilt, mean, shift)
-    g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], constant_count=2)
+    g.add_with_derivative("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], constant_count=2)
 
 
 def _shear(g: Graph) -> None:
-    x = symbols("x", 7)
+    x = make_symbols("x", 7)
     doc = "limit, pressure and its derivatives, shift -> traction, tangent xx, xy, yy, lifted, stiffer"
-    y = contact.elastic_shear(x[0], g.joint.shear_ratio(), x[1:5], x[5], x[6])
-    g.add_with_seed("elastic_shear", doc, x, y)
-    add_sliders(g)
+    y = contact.elastic_shear(x[0], g.joint.shear_stiffness_ratio(), x[1:5], x[5], x[6])
+    g.add_with_derivative("elastic_shear", doc, x, y)
+    add_slider_functions(g)
     _loops(g)
     _rest(g)
-    load, stiffness, bend, width, ratio, friction = symbols("x", 6)
+    load, stiffness, bend, width, ratio, friction = make_symbols("x", 6)
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.partial_contact(load, stiffness, bend, width, ratio, friction)
-    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
-    small, first, slope, last, then, change, rise = symbols("x", 7)
+    g.add_with_derivative("partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
+    small, first, slope, last, then, change, rise = make_symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
     kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
-    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, constant_count=1)
-    across, slip = symbols("x", 2)
-    force, moved, shift, ends, middle = (symbols(name, 2) for name in "qfukm")
+    x = [small, first, slope, last, then, change, rise]
+    g.add_with_derivative("retention_and_stiffness", doc, x, kept, constant_count=1)
+    across, slip = make_symbols("x", 2)
+    force, moved, shift, ends, middle = (make_symbols(name, 2) for name in "qfukm")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
     loss = sliders.varying_stiffness_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    g.add_with_seed("changing_loss", doc, x, [loss], constant_count=3)
+    g.add_with_derivative("varying_stiffness_loss", doc, x, [loss], constant_count=3)
 
 
 def _rest(g: Graph) -> None:
     """A foundation at rest."""
-    stiff, now, falls = symbols("x", 3)
+    stiff, now, falls = make_symbols("x", 3)
     doc = "whether the load falls; stiffness before and after -> part kept, gain"
-    g.add_with_seed(
-        "rest_rule", doc, [falls, stiff, now], sliders.stick_retention(stiff, now, falls), constant_count=1
-    )
+    y = sliders.stick_retention(stiff, now, falls)
+    g.add_with_derivative("stick_retention", doc, [falls, stiff, now], y, constant_count=1)
 
 
 def _loops(g: Graph) -> None:
     """Loss and energy of loops at constant load."""
-    x = symbols("x", 6)
+    x = make_symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
-    g.add_with_seed("loop", doc, x, sliders.cycle_energies(*x), constant_count=2)
-    (mu, ratio, size), now, then = symbols("x", 3), symbols("n", 3), symbols("t", 3)
+    g.add_with_derivative("cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2)
+    (mu, ratio, size), now, then = make_symbols("x", 3), make_symbols("n", 3), make_symbols("t", 3)
     doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
     y = sliders.small_cycle_energies(mu, ratio, size, now, then)
-    g.add_with_seed("short_loop", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
+    g.add_with_derivative("small_cycle_energies", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
-    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT", "RADIUS"))}
+    columns = ("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS")
+    counts |= {name: k for k, name in enumerate(columns)}
     names = (
         "SMALL_CHANGE_RATIO",
         "SMALL_CYCLE_RATIO",
@@ -104,28 +114,33 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     numbers = {name: float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
     counts |= {"N_BELOW": sliders.HEIGHTS_BELOW, "N_ABOVE": sliders.HEIGHTS_ABOVE}
-    counts |= {name: getattr(memory, name) for name in ("UNKNOWN", "FULL_STICK", "SLIP_1D", "SLIP_2D")}
+    counts |= {name: getattr(friction, name) for name in ("UNKNOWN", "FULL_STICK", "SLIP_1D", "SLIP_2D")}
     counts |= {
-        "MODES": bodies.MODES,
+        "MODES": law.MAX_MODES,
         "ELASTIC": int(g.joint.elastic),
-        "MAX_ITERATIONS": whole.MAX_ITERATIONS,
-        "MAX_LINE_SEARCH": whole.MAX_LINE_SEARCH,
+        "MAX_NEWTON_ITERATIONS": equilibrium.MAX_NEWTON_ITERATIONS,
+        "MAX_LINE_SEARCH": equilibrium.MAX_LINE_SEARCH,
     }
     counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])
-    numbers["MODE_DIGITS"], numbers["TRANSFER_SCALE"] = 10.0**bodies.DIGITS, 10.0**contact.TRANSFER_DECIMALS
+    numbers["MODE_DIGITS"], numbers["TRANSFER_SCALE"] = (
+        10.0**bodies.MODE_DECIMALS,
+        10.0**contact.TRANSFER_DECIMALS,
+    )
     numbers |= {
-        name: getattr(whole, name)
+        name: getattr(equilibrium, name)
         for name in (
             "RELATIVE_TOLERANCE",
             "CANCELLATION_RATIO",
             "INTERMEDIATE_TOLERANCE_FACTOR",
             "MIN_LOAD_STEP",
             "TANGENT_REUSE_RATIO",
+            "DIFFERENCE_STEP",
         )
     }
-    numbers["DIFFERENCE_STEP"] = trials.DIFFERENCE_STEP
     numbers |= {"BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_RATIO, "BOLT_AT_LIFT_OFF": bolts.AT_LIFT_OFF}
     return Definitions(counts, numbers)
 
 
-PART = NativePart(_functions, (*APPROACH, *SLIDERS), _definitions, memory.history_layout(MAX_PATCHES))
+NATIVE_PART = NativeDefinition(
+    _functions, (*APPROACH_FILES, *SLIDER_FILES), _definitions, friction.history_layout(MAX_PATCHES)
+)

@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
-from ...joint_parts import Parts, RampPanel, native_of
+from ...joint_parts import FmuParts, RampPanel, native_loader
 from ...joint_parts.terminals import TRANSLATIONAL, Terminal
 
-_DOC = "one flank pressed on the other, along the normal"
-_MEMBERS = {"s": ("s_rel", "signal"), "f": ("f", "inflow")}
+_FLANGE_DOC = "one flank pressed on the other, along the normal"
+_FLANGE_MEMBERS = {"s": ("s_rel", "signal"), "f": ("f", "inflow")}
 
-PARTS = Parts(
+FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_of(__name__),
+    native=native_loader(__name__),
     panels={"GearContact": (RampPanel("f", ("s_rel",)), RampPanel("f", ("K_N",)))},
-    terminals={"GearContact": (Terminal("flange", TRANSLATIONAL, "a", _DOC, _MEMBERS),)},
+    terminals={"GearContact": (Terminal("flange", TRANSLATIONAL, "a", _FLANGE_DOC, _FLANGE_MEMBERS),)},
 )

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from ...joint_parts import Parts, RampPanel, native_of
-from ...joint_parts.terminals import shaft
+from ...joint_parts import FmuParts, RampPanel, native_loader
+from ...joint_parts.terminals import make_shaft_flange
 
-PARTS = Parts(
+FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_of(__name__),
+    native=native_loader(__name__),
     panels={"GearMesh": (RampPanel("phi1", ("f",)), RampPanel("s_rel", ("K",)))},
-    terminals={"GearMesh": (shaft(1, "a", "wheel 1"), shaft(2, "b", "wheel 2"))},
+    terminals={"GearMesh": (make_shaft_flange(1, "a", "wheel 1"), make_shaft_flange(2, "b", "wheel 2"))},
 )

@@ -8,37 +8,42 @@ from typing import Any
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.given import MAX_POINTS, MeasuredDrive, SplineNode, TableDrive
+from jointfmu.joints.harmonic_drive.prescribed_midline import (
+    MAX_TABLE_POINTS,
+    MeasuredDrive,
+    SplineNode,
+    TableDrive,
+)
 from jointfmu.quantity import Number, flatten_parameters, quantity_field
 
-from ...joint_parts import Parts, RampPanel, native_of
-from ...joint_parts.data import NO_TABLES, DataPart, DataTable
-from ...joint_parts.terminals import ROTATIONAL, Terminal, shaft
+from ...joint_parts import FmuParts, RampPanel, native_loader
+from ...joint_parts.data import EMPTY_TABLES, DataConversion, DataTable
+from ...joint_parts.terminals import ROTATIONAL, Terminal, make_shaft_flange
 
 
 @dataclass(frozen=True, kw_only=True)
 class MidlineDrive(MeasuredDrive):
     """Harmonic drive with a measured midline (torque against wind-up) whose nodes are data."""
 
-    end: float = quantity_field("N.m", "torque at the last point", gt=0.0)
-    stiffest: float = quantity_field("N.m/rad", "twice the largest stiffness of the midline", gt=0.0)
+    end_torque: float = quantity_field("N.m", "torque at the last point", gt=0.0)
+    max_stiffness: float = quantity_field("N.m/rad", "twice the largest stiffness of the midline", gt=0.0)
 
     @property
     def max_table_torque(self) -> Number:
         """Torque [N.m] at the last node of the midline."""
-        return self.end
+        return self.end_torque
 
     @property
     def K_FTS(self) -> Number:
         """Twice the largest stiffness of the midline [N.m/rad]."""
-        return self.stiffest
+        return self.max_stiffness
 
     def make_nodes(self) -> list[SplineNode]:
         """Empty list: the nodes are read from the data block at run time."""
         return []
 
 
-def _of(drive: Drive) -> type[Drive]:
+def _find_code_class(drive: Drive) -> type[Drive]:
     """Class of the parameter set with which the C code of a drive is generated."""
     return MidlineDrive if isinstance(drive, TableDrive) else type(drive)
 
@@ -48,32 +53,35 @@ def _parameter_values(drive: Drive) -> Mapping[str, Any]:
     values = flatten_parameters(drive)
     if not isinstance(drive, TableDrive):
         return values
-    midline = {"end": drive.max_table_torque, "stiffest": drive.K_FTS}
+    midline = {"end_torque": drive.max_table_torque, "max_stiffness": drive.K_FTS}
     return {name: value for name, value in values.items() if not name.startswith("table.")} | midline
 
 
-def _tables(drive: Drive) -> Mapping[str, DataTable]:
+def _make_tables(drive: Drive) -> Mapping[str, DataTable]:
     """{"midline": nodes of a measured midline}; empty for other drives."""
     if not isinstance(drive, TableDrive):
-        return NO_TABLES
-    return {"midline": DataTable(np.array(drive.make_nodes(), dtype=np.float64), MAX_POINTS + 1)}
+        return EMPTY_TABLES
+    return {"midline": DataTable(np.array(drive.make_nodes(), dtype=np.float64), MAX_TABLE_POINTS + 1)}
 
 
-_STIFFNESS = RampPanel("tau", ("K_WTS", "K_TS"))
-_LOCKED = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
+_STIFFNESS_PANEL = RampPanel("tau", ("K_WTS", "K_TS"))
+_LOCKED_MEMBERS = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
 
-PARTS = Parts(
+FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_of(__name__),
-    data=DataPart(_parameter_values, _of, _tables),
+    native=native_loader(__name__),
+    data=DataConversion(_parameter_values, _find_code_class, _make_tables),
     panels={
-        "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS),
-        "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS),
+        "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS_PANEL),
+        "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS_PANEL),
     },
     terminals={
-        "HarmonicDriveSpring": (shaft(1, "a", "wave generator (motor)"), shaft(2, "b", "output")),
+        "HarmonicDriveSpring": (
+            make_shaft_flange(1, "a", "wave generator (motor)"),
+            make_shaft_flange(2, "b", "output"),
+        ),
         "HarmonicDriveCompliance": (
-            Terminal("flange", ROTATIONAL, "b", "output, wave generator locked", _LOCKED),
+            Terminal("flange", ROTATIONAL, "b", "output, wave generator locked", _LOCKED_MEMBERS),
         ),
     },
 )

@@ -1,79 +1,84 @@
-"""Tables for the elementary functions of `law/elementary.c`, computed with 60 decimal digits."""
+"""C tables for the elementary functions of `law/elementary.c`, computed with 60 decimal digits."""
 
 from collections.abc import Iterator, Sequence
 from decimal import Decimal, localcontext
 from functools import cache
 from math import factorial
 
-from ...joint_parts.c_text import array, number
+from ...joint_parts.c_text import format_array, format_number
 
-PLACES = 32
+TABLE_INTERVALS = 32
 """Number of intervals in the tables of exponential and logarithm [1]."""
-LOG_BEGIN = 0x3FE6AAAA00000000
+LOG_TABLE_START_BITS = 0x3FE6AAAA00000000
 """Bit pattern of the double at which the table of the logarithm begins; 1 lies inside an interval."""
 _BITS_OF_ONE = 0x3FF0000000000000
-LOG_BITS = 47
+LOG_MANTISSA_BITS = 47
 """Mantissa bits below the interval index: 52 - log2(TABLE_INTERVALS)."""
-_DIGITS = 60
+_DECIMAL_DIGITS = 60
 _PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923078164")
-_ERF_PER_PLACE, _ERF_END, _N_ERF = 4, 6, 15
-_N_EXPM1, _N_WAVE = 13, 8
+_ERF_NODES_PER_UNIT, _ERF_MAX_ARGUMENT, _ERF_TERM_COUNT = 4, 6, 15
+_EXPM1_TERM_COUNT, _N_SINE = 13, 8
 
 
 @cache
-def tables() -> str:
+def make_tables_header() -> str:
     """Text of elementary_tables.h; its numbers are exact to the last bit of a double."""
     with localcontext() as context:
-        context.prec = _DIGITS
+        context.prec = _DECIMAL_DIGITS
         log_2, quarter = Decimal(2).ln(), _PI / 2
-        per_place = log_2 / PLACES
+        per_place = log_2 / TABLE_INTERVALS
         macros = {
-            "LOG_2": _first(log_2, 42),
-            "LOG_2_LOW": float(log_2 - Decimal(_first(log_2, 42))),
+            "LOG_2": _round_to_bits(log_2, 42),
+            "LOG_2_LOW": float(log_2 - Decimal(_round_to_bits(log_2, 42))),
             "INTERVALS_PER_LOG_2": float(1 / per_place),
-            "LOG_2_PER_INTERVAL": _first(per_place, 42),
-            "LOG_2_PER_INTERVAL_LOW": float(per_place - Decimal(_first(per_place, 42))),
-            "ERF_NODES_PER_UNIT": float(_ERF_PER_PLACE),
+            "LOG_2_PER_INTERVAL": _round_to_bits(per_place, 42),
+            "LOG_2_PER_INTERVAL_LOW": float(per_place - Decimal(_round_to_bits(per_place, 42))),
+            "ERF_NODES_PER_UNIT": float(_ERF_NODES_PER_UNIT),
             "QUARTERS_PER_RADIAN": float(1 / quarter),
         }
         arrays = {
             "QUARTER_TURN[4]": [[value] for value in _split_number(quarter)],
-            f"EXP_TABLE[{PLACES}][2]": [_pair((k * per_place).exp()) for k in range(PLACES)],
-            f"LOG_TABLE[{PLACES}][3]": list(_logs()),
-            f"EXPM1_SERIES[{_N_EXPM1}]": [[1 / factorial(n + 2)] for n in range(_N_EXPM1)],
-            f"ERF_TABLE[{_ERF_PER_PLACE * _ERF_END + 1}][{_N_ERF}]": list(_erf()),
-            f"SINE_SERIES[{_N_WAVE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_WAVE)],
-            f"COSINE_SERIES[{_N_WAVE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_WAVE)],
+            f"EXP_TABLE[{TABLE_INTERVALS}][2]": [
+                _split_in_two((k * per_place).exp()) for k in range(TABLE_INTERVALS)
+            ],
+            f"LOG_TABLE[{TABLE_INTERVALS}][3]": list(_log_rows()),
+            f"EXPM1_SERIES[{_EXPM1_TERM_COUNT}]": [[1 / factorial(n + 2)] for n in range(_EXPM1_TERM_COUNT)],
+            f"ERF_TABLE[{_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1}][{_ERF_TERM_COUNT}]": list(_erf_rows()),
+            f"SINE_SERIES[{_N_SINE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_SINE)],
+            f"COSINE_SERIES[{_N_SINE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_SINE)],
         }
     counts = {
-        "TABLE_INTERVALS": PLACES,
-        "LOG_BITS": LOG_BITS,
-        "N_EXPM1_TERMS": _N_EXPM1,
-        "N_ERF_TERMS": _N_ERF,
-        "N_SINE_TERMS": _N_WAVE,
+        "TABLE_INTERVALS": TABLE_INTERVALS,
+        "LOG_BITS": LOG_MANTISSA_BITS,
+        "N_EXPM1_TERMS": _EXPM1_TERM_COUNT,
+        "N_ERF_TERMS": _ERF_TERM_COUNT,
+        "N_SINE_TERMS": _N_SINE,
     }
     return "\n".join(
         [
             f"enum {{ {', '.join(f'{name} = {n}' for name, n in counts.items())} }};",
-            f"#define LOG_BEGIN {LOG_BEGIN:#x}",
-            *(f"#define {name} {number(value)}" for name, value in macros.items()),
-            *(array(f"static const double {name}", map(_row, rows)) for name, rows in arrays.items()),
+            f"#define LOG_BEGIN {LOG_TABLE_START_BITS:#x}",
+            *(f"#define {name} {format_number(value)}" for name, value in macros.items()),
+            *(
+                format_array(f"static const double {name}", map(_format_row, rows))
+                for name, rows in arrays.items()
+            ),
         ]
     )
 
 
-def _row(values: Sequence[float]) -> str:
+def _format_row(values: Sequence[float]) -> str:
     """Format one row of a C array."""
-    text = ", ".join(number(value) for value in values)
+    text = ", ".join(format_number(value) for value in values)
     return text if len(values) == 1 else f"{{{text}}}"
 
 
-def _first(value: Decimal, bits: int) -> float:
+def _round_to_bits(value: Decimal, bits: int) -> float:
     """Round a number to a multiple of 2^-bits."""
     return float((value * 2**bits).to_integral_value()) * 2.0**-bits
 
 
-def _pair(value: Decimal) -> list[float]:
+def _split_in_two(value: Decimal) -> list[float]:
     """Split a number into the nearest double and the relative error of that double."""
     high = float(value)
     return [high, float(value / Decimal(high) - 1)]
@@ -82,43 +87,45 @@ def _pair(value: Decimal) -> list[float]:
 def _split_number(value: Decimal) -> Iterator[float]:
     """Split a number into three doubles of 33 bits, whose products with 20 bits are exact, and the rest."""
     for bits in (32, 65, 98):
-        yield (leading := _first(value, bits))
+        yield (leading := _round_to_bits(value, bits))
         value -= Decimal(leading)
     yield float(value)
 
 
-def _logs() -> Iterator[list[float]]:
-    """Rows 1/c, high and low part of log(c) for each interval of the logarithm.
+def _log_rows() -> Iterator[list[float]]:
+    """Rows of the table of the logarithm: 1/c, high and low part of log(c) for each interval.
 
     c is near the middle of the interval, and 1/c has few bits. In the interval of 1, c is exactly 1.
     """
-    for interval in range(PLACES):
-        begin, end = (LOG_BEGIN + (k << LOG_BITS) for k in (interval, interval + 1))
-        middle = 0.5 * (_double(begin) + _double(end))
+    for interval in range(TABLE_INTERVALS):
+        begin, end = (LOG_TABLE_START_BITS + (k << LOG_MANTISSA_BITS) for k in (interval, interval + 1))
+        middle = 0.5 * (_from_bits(begin) + _from_bits(end))
         inverse = 1.0 if begin <= _BITS_OF_ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
-        high = _first(log, 42)
+        high = _round_to_bits(log, 42)
         yield [inverse, high, float(log - Decimal(high))]
 
 
-def _double(bits: int) -> float:
+def _from_bits(bits: int) -> float:
     """Positive double with a given bit pattern."""
     return float.fromhex(f"0x1.{bits & ((1 << 52) - 1):013x}p{(bits >> 52) - 1023}")
 
 
-def _erf() -> Iterator[list[float]]:
-    """Coefficients of the Taylor series of erf about each node: Hermite polynomials times a Gaussian."""
-    for node in range(_ERF_PER_PLACE * _ERF_END + 1):
-        x = Decimal(node) / _ERF_PER_PLACE
+def _erf_rows() -> Iterator[list[float]]:
+    """Taylor coefficients of erf about each node of its table: Hermite polynomials times a Gaussian."""
+    for node in range(_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1):
+        x = Decimal(node) / _ERF_NODES_PER_UNIT
         gaussian = 2 / _PI.sqrt() * (-x * x).exp()
         term = total = x
         n = 0
-        while term > Decimal(10) ** -_DIGITS:  # erf(x) = Gaussian times the sum of 2^n x^(2n+1)/(2n+1)!!
+        while (
+            term > Decimal(10) ** -_DECIMAL_DIGITS
+        ):  # erf(x) = Gaussian times the sum of 2^n x^(2n+1)/(2n+1)!!
             n += 1
             term *= 2 * x * x / (2 * n + 1)
             total += term
         row, previous, hermite = [float(gaussian * total)], Decimal(0), Decimal(1)
-        for n in range(_N_ERF - 1):
+        for n in range(_ERF_TERM_COUNT - 1):
             row.append(float((-1) ** n * hermite * gaussian / factorial(n + 1)))
             previous, hermite = hermite, 2 * x * hermite - 2 * n * previous
         yield row

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import casadi as ca
 
-_BINARY = {
+_BINARY_FORMATS = {
     ca.OP_ADD: "{0} + {1}",
     ca.OP_SUB: "{0} - {1}",
     ca.OP_MUL: "{0} * {1}",
@@ -29,7 +29,7 @@ _BINARY = {
     ca.OP_HYPOT: "scaled_hypot({0}, {1})",
     ca.OP_COPYSIGN: "copysign({0}, {1})",
 }
-_UNARY = {
+_UNARY_FORMATS = {
     ca.OP_ASSIGN: "{0}",
     ca.OP_NEG: "-{0}",
     ca.OP_SQ: "{0} * {0}",
@@ -54,12 +54,12 @@ _UNARY = {
     ca.OP_SIGN: "{0} > 0.0 ? 1.0 : ({0} < 0.0 ? -1.0 : {0})",
 }
 
-_IN_DERIVATIVES = {
+_DERIVATIVE_FORMATS = {
     ca.OP_DIV: "{0} == 0.0 ? 0.0 : {0} / {1}",
     ca.OP_SIGN: "({0} > 0.0 ? 1.0 : 0.0) - ({0} < 0.0 ? 1.0 : 0.0)",
 }
 
-HELPERS = """/* exp(x) - 1; where the difference does not cancel by the faster exponential. */
+C_HELPERS = """/* exp(x) - 1; where the difference does not cancel by the faster exponential. */
 static inline double fast_expm1(double x)
 {
     return x < -0.7 || x > 0.7 ? portable_exp(x) - 1.0 : portable_expm1(x);
@@ -78,7 +78,14 @@ static inline double scaled_hypot(double a, double b)
 """C helper functions that the generated functions call, besides libm and `law/elementary.c`."""
 
 
-def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], derivative: bool = False) -> str:
+def format_function(
+    name: str,
+    doc: str,
+    argument_symbols: ca.SX,
+    constant_symbols: ca.SX,
+    result_expressions: Sequence[ca.SX],
+    is_derivative: bool = False,
+) -> str:
     """C code of `void name(const double *x, const double *c, double *y)`.
 
     Every intermediate value becomes a constant, in the order of evaluation. Repeated divisions by the same
@@ -87,7 +94,11 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
     is_derivative : whether y is a directional derivative. Then 0/0 is 0, so that a zero seed gives zero even
         at an infinite slope; and the derivative of min or max of two equal values is that of the first.
     """
-    graph = ca.Function("f", [x, c], [ca.vertcat(*(ca.SX(value) for value in y))])
+    graph = ca.Function(
+        "f",
+        [argument_symbols, constant_symbols],
+        [ca.vertcat(*(ca.SX(value) for value in result_expressions))],
+    )
     inputs = "xc"
     names_of_values: dict[int, str] = {}
     body: list[str] = []
@@ -98,25 +109,27 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
         if code == ca.OP_OUTPUT:
             body.append(f"y[{out[1]}] = {names_of_values[args[0]]};")
         elif code == ca.OP_CONST:
-            names_of_values[out[0]] = _number(graph.instruction_constant(k))
+            names_of_values[out[0]] = _format_number(graph.instruction_constant(k))
         elif code == ca.OP_INPUT:
             used_inputs.add(inputs[args[0]])
             names_of_values[out[0]] = f"{inputs[args[0]]}[{args[1]}]"
         else:
-            form = _BINARY.get(code) or _UNARY.get(code)
-            if derivative:
-                form = _IN_DERIVATIVES.get(code, form)
+            form = _BINARY_FORMATS.get(code) or _UNARY_FORMATS.get(code)
+            if is_derivative:
+                form = _DERIVATIVE_FORMATS.get(code, form)
             if form is None:
                 raise NotImplementedError(f"{name}: the operation {code} of CasADi has no C here")
             names = [names_of_values[a] for a in args]
-            simpler = _SIMPLER[code](names, operations) if code in _SIMPLER else None
+            simpler = _SIMPLIFICATIONS[code](names, operations) if code in _SIMPLIFICATIONS else None
             body.append(f"const double t{k} = {simpler or form.format(*names)};")
             names_of_values[out[0]] = f"t{k}"
             operations[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
-    unused = [name for name in inputs if name not in used_inputs] + ([] if y else ["y"])
+    unused = [name for name in inputs if name not in used_inputs] + ([] if result_expressions else ["y"])
     body += [f"(void){name};" for name in unused]
     used_lines = _drop_unused_lines(body)
-    lines = "\n".join(f"    {line}" for line in (used_lines if derivative else _shared_divisors(used_lines)))
+    lines = "\n".join(
+        f"    {line}" for line in (used_lines if is_derivative else _share_divisors(used_lines))
+    )
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
 
@@ -124,12 +137,12 @@ _Operations = Mapping[str, tuple[int, list[str]]]
 """{name of a value: (CasADi operation, names of its operands)}."""
 
 
-def _first_of_equal(names: Sequence[str], operations: _Operations) -> str | None:
+def _simplify_quotient(operand_names: Sequence[str], operations: _Operations) -> str | None:
     """C expression for (a <= b)/((a <= b) + (b <= a)), CasADi's derivative of min(a, b) or max(a, b).
 
     CasADi gives 1/2 if a equals b; here the first argument gets all of it. None: another quotient.
     """
-    numerator, denominator = names
+    numerator, denominator = operand_names
     code, terms = operations.get(denominator, (None, [""]))
     if code != ca.OP_ADD or numerator not in terms:
         return None
@@ -140,20 +153,20 @@ def _first_of_equal(names: Sequence[str], operations: _Operations) -> str | None
     return first if numerator == first else f"{first} == 0.0 ? 1.0 : 0.0"
 
 
-def _conditional_product(names: Sequence[str], operations: _Operations) -> str | None:
+def _conditional_product(operand_names: Sequence[str], operations: _Operations) -> str | None:
     """C conditional expression for the product of a value and a condition (1 or 0); None: another product."""
-    for condition, value in (names, names[::-1]):
-        if operations.get(condition, (None, []))[0] in _CONDITIONS:
+    for condition, value in (operand_names, operand_names[::-1]):
+        if operations.get(condition, (None, []))[0] in _CONDITION_OPERATIONS:
             return f"{condition} != 0.0 ? {value} : 0.0"
     return None
 
 
-def _choice(names: Sequence[str], operations: _Operations) -> str | None:
+def _simplify_sum(operand_names: Sequence[str], operations: _Operations) -> str | None:
     """C conditional expression for CasADi's form of `condition ? a : b`: a sum with one term equal to 0.
 
     Returns None for another sum.
     """
-    (code, first), (other, second) = (operations.get(name, (None, [])) for name in names)
+    (code, first), (other, second) = (operations.get(name, (None, [])) for name in operand_names)
     if code != ca.OP_IF_ELSE_ZERO or other != ca.OP_IF_ELSE_ZERO:
         return None
     for (yes, a), (no, b) in ((first, second), (second, first)):
@@ -162,14 +175,14 @@ def _choice(names: Sequence[str], operations: _Operations) -> str | None:
     return None
 
 
-_SIMPLER = {ca.OP_ADD: _choice, ca.OP_DIV: _first_of_equal, ca.OP_MUL: _conditional_product}
-_CONDITIONS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_NOT)
+_SIMPLIFICATIONS = {ca.OP_ADD: _simplify_sum, ca.OP_DIV: _simplify_quotient, ca.OP_MUL: _conditional_product}
+_CONDITION_OPERATIONS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_NOT)
 
 
-def _drop_unused_lines(body: Sequence[str]) -> list[str]:
+def _drop_unused_lines(code_lines: Sequence[str]) -> list[str]:
     """Remove the lines whose value no later line uses."""
     lines, used_values = list[str](), set[str]()
-    for line in reversed(body):
+    for line in reversed(code_lines):
         name, _, value = line.removeprefix("const double ").partition(" = ")
         if line.startswith("const ") and name not in used_values:
             continue
@@ -178,15 +191,15 @@ def _drop_unused_lines(body: Sequence[str]) -> list[str]:
     return lines[::-1]
 
 
-_DIVISION = re.compile(r"const double (t\d+) = (\S+) / (t\d+|x\[\d+\]);")
+_DIVISION_PATTERN = re.compile(r"const double (t\d+) = (\S+) / (t\d+|x\[\d+\]);")
 
 
-def _shared_divisors(body: Sequence[str]) -> list[str]:
+def _share_divisors(code_lines: Sequence[str]) -> list[str]:
     """Replace several divisions by the same number by one reciprocal and products."""
-    divisions = [_DIVISION.fullmatch(line) for line in body]
+    divisions = [_DIVISION_PATTERN.fullmatch(line) for line in code_lines]
     count = Counter(match[3] for match in divisions if match)
     lines, reciprocals = list[str](), dict[str, str]()
-    for line, match in zip(body, divisions, strict=True):
+    for line, match in zip(code_lines, divisions, strict=True):
         if match and count[match[3]] > 1:
             name, numerator, divisor = match.groups()
             if divisor not in reciprocals:
@@ -197,7 +210,7 @@ def _shared_divisors(body: Sequence[str]) -> list[str]:
     return lines
 
 
-def _number(value: float) -> str:
+def _format_number(value: float) -> str:
     """C literal of a number; negative numbers are in parentheses."""
     if value != value or value in (float("inf"), float("-inf")):
         return {"inf": "INFINITY", "-inf": "-INFINITY"}.get(repr(value), "NAN")

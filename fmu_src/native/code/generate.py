@@ -9,91 +9,95 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
 
-from ...folders import own_folder, parts_of
-from ...joint_parts.c_text import array, number, string
-from ...joint_parts.data import Split
-from ...joint_parts.graph import graph
-from ...joint_parts.native import NativePart
+from ...folders import find_fmu_parts, find_source_folder
+from ...joint_parts.c_text import format_array, format_number, format_string
+from ...joint_parts.data import ParameterSplit
+from ...joint_parts.graph import build_graph
+from ...joint_parts.native import NativeDefinition
 from ...partners import PARTNERS
-from ..data import GENERATED, data_of, placeholder, split
-from .elementary import tables
-from .law_c import law_c
+from ..data import GENERATED_COMMENT, make_fmu_data, make_placeholder, split_parameters
+from .elementary import make_tables_header
+from .law_c import format_law
 
-RUNTIME = Path(__file__).parent.with_name("runtime")
-_GENERATED = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
-_laws: dict[tuple[object, ...], tuple[str, str]] = {}
+RUNTIME_FOLDER = Path(__file__).parent.with_name("runtime")
+_GENERATED_FILES = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
+_law_texts: dict[tuple[object, ...], tuple[str, str]] = {}
 
 
-def runtime(law: Sequence[str] = ()) -> list[Path]:
+def list_runtime_files(law_stems: Sequence[str] = ()) -> list[Path]:
     """Paths of the hand-written C files of every FMU, and of files in `runtime/law/` with given stems."""
-    return sorted(p for p in RUNTIME.rglob("*.[ch]") if p.parent.name != "law" or p.stem in law)
+    return sorted(p for p in RUNTIME_FOLDER.rglob("*.[ch]") if p.parent.name != "law" or p.stem in law_stems)
 
 
-def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
+def generate_sources(name: str, parameters: ParameterFile) -> dict[str, str]:
     """{file name: text} of all C sources of an FMU with its data, for both FMI versions.
 
     Raises ValueError if the parameters are of another joint.
     """
     model = (MODELS | PARTNERS)[name].with_parameters(parameters.joint, parameters.values)
-    parameter_split = split(model, parameters)
-    files = code(model, parameters, parameter_split)
-    return files | {"data.c": data_of(model, parameters, parameter_split, files).source()}
+    parameter_split = split_parameters(model, parameters)
+    files = generate_code(model, parameters, parameter_split)
+    return files | {"data.c": make_fmu_data(model, parameters, parameter_split, files).make_source()}
 
 
-def code(model: Model, parameters: ParameterFile, split: Split) -> dict[str, str]:
+def generate_code(model: Model, parameters: ParameterFile, split: ParameterSplit) -> dict[str, str]:
     """{file name: text} of all C sources but data.c, the same for all parameter files of one structure."""
-    native = native_part(model)
-    files = _handwritten(model, native)
-    files["law.h"], files["law.c"] = _law(model, split, native)
+    native = load_native_definition(model)
+    files = _read_handwritten_files(model, native)
+    files["law.h"], files["law.c"] = _generate_law(model, split, native)
     files |= {
-        "variables.c": variables_c(model),
-        "model.h": _model(model, parameters.values, native.memory.size),
+        "variables.c": format_variables_c(model),
+        "model.h": _format_model_header(model, parameters.values, native.history_layout.size),
     }
-    files |= {"elementary_tables.h": tables()}
-    head = GENERATED.format(version=__version__, of="")
-    files |= {n: head + files[n] for n in _GENERATED}
-    return dict(sorted((files | {"data.h": placeholder(model, split).header()}).items()))
+    files |= {"elementary_tables.h": make_tables_header()}
+    head = GENERATED_COMMENT.format(version=__version__, of="")
+    files |= {n: head + files[n] for n in _GENERATED_FILES}
+    return dict(sorted((files | {"data.h": make_placeholder(model, split).make_header()}).items()))
 
 
-def _law(model: Model, split: Split, native: NativePart) -> tuple[str, str]:
+def _generate_law(model: Model, split: ParameterSplit, definition: NativeDefinition) -> tuple[str, str]:
     """Texts of law.h and law.c, generated once for all parameter files of one structure."""
-    key = model.name, model.parameters, split.of, split.structure
-    if key not in _laws:
-        _laws[key] = law_c(graph(model, split, native.functions, native.tabulated), model, native)
-    return _laws[key]
+    key = model.name, model.parameters, split.parameter_class, split.structure_key
+    if key not in _law_texts:
+        _law_texts[key] = format_law(
+            build_graph(model, split, definition.add_functions, definition.is_tabulated), model, definition
+        )
+    return _law_texts[key]
 
 
-def token(files: Mapping[str, str]) -> str:
+def read_token(files: Mapping[str, str]) -> str:
     """GUID or instantiation token in the file data.c of C sources."""
     line = next(line for line in files["data.c"].splitlines() if ".token = " in line)
     return line.split('"')[1]
 
 
-def native_part(model: Model) -> NativePart:
+def load_native_definition(model: Model) -> NativeDefinition:
     """Definition of the C code of a model.
 
     Raises ValueError if the builder data of its joint have none, or if only one of the Python model and the
     C definition has history variables.
     """
-    load = parts_of(model).native
+    load = find_fmu_parts(model).native
     if load is None:
         raise ValueError(f"{model.name}: the joint {model.joint!r} has no part `native`; expected its C")
     native = load()
-    if (model.initial_history is None) != (native.memory.size == 0):
-        raise ValueError(f"{model.name}: one of `rest` and the memory in C is given, expected both or none")
+    if (model.initial_history is None) != (native.history_layout.size == 0):
+        raise ValueError(
+            f"{model.name}: one of `initial_history` and the history in C is given, expected both or none"
+        )
     return native
 
 
-def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
-    """{file name: text} of hand-written C: runtime, shared files of the joint, its own files."""
-    paths = runtime((*native.shared, "elementary"))
-    joint_files = [path for path in own_folder(model).iterdir() if path.suffix in (".c", ".h")]
+def _read_handwritten_files(model: Model, definition: NativeDefinition) -> dict[str, str]:
+    """Read the hand-written C of a joint, {file name: text}: runtime, shared files, files of its own."""
+    paths = list_runtime_files((*definition.shared_files, "elementary"))
+    joint_files = [path for path in find_source_folder(model).iterdir() if path.suffix in (".c", ".h")]
     header = [path.name for path in joint_files if path.suffix == ".h"]
     files = {"joint_model.h": "".join(f'#include "{name}"\n' for name in header)} if header else {}
     return files | {path.name: path.read_text(encoding="utf-8") for path in sorted([*paths, *joint_files])}
 
 
-def _model(model: Model, parameters: object, memory: int) -> str:
+def _format_model_header(model: Model, parameters: object, history_size: int) -> str:
     """Text of model.h: sizes of the model and indices of its inputs."""
     macros = (
         f"#define N_STATES {model.state_count}\n#define IS_TIME_DEPENDENT 1\n"
@@ -107,8 +111,8 @@ def _model(model: Model, parameters: object, memory: int) -> str:
     if model.find_event_times:
         macros += f"#define N_TIME_EVENTS {len(model.find_event_times(parameters))}\n"
     input_names = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
-    if memory:
-        macros += f"#define N_HISTORY {memory}\n"
+    if history_size:
+        macros += f"#define N_HISTORY {history_size}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
 #define JOINTFMU_MODEL_H
 
@@ -125,17 +129,21 @@ enum {{
 """
 
 
-def variables_c(model: Model) -> str:
+def format_variables_c(model: Model) -> str:
     """Text of variables.c: variables with their intervals, and the inputs that each output depends on."""
-    rows = [_row("time", "s", "time", Interval())]
-    rows += [_row(v.name, v.unit, v.doc, v.interval) for v in model.inputs]
-    rows += [_row(v.name, v.unit, v.doc, Interval()) for v in model.outputs]
+    rows = [_format_variable("time", "s", "time", Interval())]
+    rows += [_format_variable(v.name, v.unit, v.doc, v.interval) for v in model.inputs]
+    rows += [_format_variable(v.name, v.unit, v.doc, Interval()) for v in model.outputs]
     for name, item in model.parameter_fields().items():
         meta = item.metadata
         if "allowed" in meta:
-            rows.append(_row(name, "1", meta["doc"], Interval.from_bounds(ge=0.0, le=1.0), boolean=True))
+            rows.append(
+                _format_variable(
+                    name, "1", meta["doc"], Interval.from_bounds(ge=0.0, le=1.0), is_boolean=True
+                )
+            )
         else:
-            rows.append(_row(name, meta["unit"], meta["doc"], meta["interval"], meta["whole"]))
+            rows.append(_format_variable(name, meta["unit"], meta["doc"], meta["interval"], meta["whole"]))
     states = model.outputs[: model.state_count]
     links = [
         "{"
@@ -143,27 +151,31 @@ def variables_c(model: Model) -> str:
         + "}"
         for o in model.outputs
     ]
-    nominals = array("const double state_nominals[N_STATES]", [number(v.nominal) for v in states])
+    nominals = format_array(
+        "const double state_nominals[N_STATES]", [format_number(v.nominal) for v in states]
+    )
     return (
         '#include "variables.h"\n\n#include <math.h>\n\n'
-        + array("const Variable variables[N_VALUES]", rows)
+        + format_array("const Variable variables[N_VALUES]", rows)
         + "\n"
-        + array("const unsigned char output_dependencies[N_OUTPUTS][N_INPUTS + N_STATES]", links)
+        + format_array("const unsigned char output_dependencies[N_OUTPUTS][N_INPUTS + N_STATES]", links)
         + (nominals if states else "")
     )
 
 
-def _row(
+def _format_variable(
     name: str,
     unit: str,
     doc: str,
     interval: Interval,
-    whole: bool = False,
-    boolean: bool = False,
+    is_integer: bool = False,
+    is_boolean: bool = False,
 ) -> str:
     """C initializer of one variable."""
-    flags = ", ".join(str(int(flag)) for flag in (interval.low_open, interval.high_open, whole, boolean))
-    numbers = ", ".join(number(x) for x in (interval.low, interval.high))
-    allowed = "" if boolean else str(interval)
-    texts = ", ".join(string(x) for x in (name, "" if unit == "1" else unit, doc, allowed))
+    flags = ", ".join(
+        str(int(flag)) for flag in (interval.low_open, interval.high_open, is_integer, is_boolean)
+    )
+    numbers = ", ".join(format_number(x) for x in (interval.low, interval.high))
+    allowed = "" if is_boolean else str(interval)
+    texts = ", ".join(format_string(x) for x in (name, "" if unit == "1" else unit, doc, allowed))
     return f"{{{texts}, {numbers}, {flags}}}"

@@ -8,17 +8,17 @@ import struct
 from hashlib import sha256
 from uuid import UUID
 
-from ..data import PLACEHOLDER, Data
+from ..data import PLACEHOLDER, DataBlock
 
-_MACHO = struct.pack("<I", 0xFEEDFACF)
-_UUID, _CODE_SIGNATURE = 0x1B, 0x1D
+_MACHO_MAGIC = struct.pack("<I", 0xFEEDFACF)
+_UUID_COMMAND, _SIGNATURE_COMMAND = 0x1B, 0x1D
 """Load commands of Mach-O (LC_UUID, LC_CODE_SIGNATURE)."""
-_CODE_DIRECTORY = 0xFADE0C02
-_DIGEST = 32
+_CODE_DIRECTORY_MAGIC = 0xFADE0C02
+_DIGEST_SIZE = 32
 """Size of a SHA-256 digest [bytes]."""
 
 
-def fill_library(library: bytes, placeholder: Data, data: Data, name: str) -> bytes:
+def fill_library(library: bytes, placeholder: DataBlock, data: DataBlock, name: str) -> bytes:
     """Insert data and name of an FMU into a compiled library.
 
     library          : compiled with the placeholder data and the placeholder name
@@ -31,8 +31,8 @@ def fill_library(library: bytes, placeholder: Data, data: Data, name: str) -> by
         raise ValueError(f"{name}: the compiled part is not that of these data; remove it")
     image = bytearray(library.replace(placeholder.content, data.content))
     _rename(image, name.encode())
-    if image.startswith(_MACHO):
-        _identify(image, UUID(data.token))
+    if image.startswith(_MACHO_MAGIC):
+        _set_uuid(image, UUID(data.token))
         _sign(image)
     return bytes(image)
 
@@ -46,7 +46,7 @@ def _rename(image: bytearray, name: bytes) -> None:
         start = image.find(PLACEHOLDER.encode(), end)
 
 
-def _commands(image: bytes | bytearray) -> dict[int, int]:
+def _find_load_commands(image: bytes | bytearray) -> dict[int, int]:
     """{load command: byte offset} of a Mach-O library."""
     (count,) = struct.unpack_from("<I", image, 16)
     offsets, offset = {}, 32
@@ -57,15 +57,15 @@ def _commands(image: bytes | bytearray) -> dict[int, int]:
     return offsets
 
 
-def _identify(image: bytearray, uuid: UUID) -> None:
+def _set_uuid(image: bytearray, uuid: UUID) -> None:
     """Set the UUID of a Mach-O library."""
-    offset = _commands(image)[_UUID] + 8
+    offset = _find_load_commands(image)[_UUID_COMMAND] + 8
     image[offset : offset + 16] = uuid.bytes
 
 
 def _sign(image: bytearray) -> None:
     """Recompute the digests of the ad-hoc signature of a Mach-O library, if it has one."""
-    command = _commands(image).get(_CODE_SIGNATURE)
+    command = _find_load_commands(image).get(_SIGNATURE_COMMAND)
     if command is None:
         return
     (signature,) = struct.unpack_from("<I", image, command + 8)
@@ -73,7 +73,7 @@ def _sign(image: bytearray) -> None:
     for i in range(blobs):
         (offset,) = struct.unpack_from(">I", image, signature + 16 + 8 * i)
         directory = signature + offset
-        if struct.unpack_from(">I", image, directory) == (_CODE_DIRECTORY,):
+        if struct.unpack_from(">I", image, directory) == (_CODE_DIRECTORY_MAGIC,):
             _digest_pages(image, directory)
 
 
@@ -83,5 +83,5 @@ def _digest_pages(image: bytearray, directory: int) -> None:
     page = 1 << image[directory + 39]
     for i in range(pages):
         digest = sha256(image[i * page : min((i + 1) * page, limit)]).digest()
-        start = directory + digests + _DIGEST * i
-        image[start : start + _DIGEST] = digest
+        start = directory + digests + _DIGEST_SIZE * i
+        image[start : start + _DIGEST_SIZE] = digest

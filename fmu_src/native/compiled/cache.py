@@ -10,15 +10,15 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-CACHE = "JOINTFMU_CACHE"
+CACHE_VARIABLE = "JOINTFMU_CACHE"
 """Environment variable with the path of the cache folder."""
-COMPILER = "ZIG_GLOBAL_CACHE_DIR"
+COMPILER_CACHE_VARIABLE = "ZIG_GLOBAL_CACHE_DIR"
 """Environment variable with the compiler's cache; not set: a subfolder of the cache folder."""
 
 
 def cache_folder() -> Path:
     """Path of the cache folder: JOINTFMU_CACHE, or `jointfmu` in the user's cache folder."""
-    if path := os.environ.get(CACHE):
+    if path := os.environ.get(CACHE_VARIABLE):
         return Path(path).absolute()
     home = {
         "win32": os.environ.get("LOCALAPPDATA") or "~/AppData/Local",
@@ -27,14 +27,14 @@ def cache_folder() -> Path:
     return Path(home).expanduser() / "jointfmu"
 
 
-def parts_folder() -> Path:
+def compiled_model_folder() -> Path:
     """Folder of the compiled models."""
     return cache_folder() / "parts"
 
 
 def compiler_cache() -> Path:
     """Cache folder of the compiler: ZIG_GLOBAL_CACHE_DIR, or `zig` in the cache folder."""
-    path = os.environ.get(COMPILER)
+    path = os.environ.get(COMPILER_CACHE_VARIABLE)
     return Path(path).absolute() if path else cache_folder() / "zig"
 
 
@@ -56,7 +56,7 @@ def check_access(path: Path) -> None:
             status = ancestor.stat()
         except FileNotFoundError:
             continue
-        advice = f"expected a cache of your own (remove it, or set {CACHE} to another folder)"
+        advice = f"expected a cache of your own (remove it, or set {CACHE_VARIABLE} to another folder)"
         if status.st_uid not in (os.geteuid(), 0):
             raise ValueError(f"{ancestor}: belongs to another user; {advice}")
         if status.st_mode & stat.S_IWOTH:
@@ -79,7 +79,7 @@ def count_files() -> tuple[int, int]:
     return len(sizes), sum(sizes)
 
 
-def clear() -> None:
+def clear_cache() -> None:
     """Delete all files of the cache; later builds compile again.
 
     Raises ValueError if it cannot be removed.
@@ -95,4 +95,4 @@ def clear() -> None:
 
 def _own_folders() -> tuple[Path, Path]:
     """Folders that jointfmu fills: compiled models, and the compiler's default cache."""
-    return parts_folder(), cache_folder() / "zig"
+    return compiled_model_folder(), cache_folder() / "zig"

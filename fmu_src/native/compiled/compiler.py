@@ -11,7 +11,7 @@ from importlib import import_module
 from os import cpu_count
 from pathlib import Path
 
-from .cache import COMPILER, check_access, compiler_cache, make_folder
+from .cache import COMPILER_CACHE_VARIABLE, check_access, compiler_cache, make_folder
 
 TARGETS = {
     "x86_64-windows": "x86_64-windows-gnu",
@@ -22,34 +22,34 @@ TARGETS = {
 }
 """{platform name of FMI: target of zig}, with the oldest supported glibc or macOS."""
 
-_COMPILED = (
+_COMMON_OPTIONS = (
     "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined",
     "-fvisibility=hidden", "-DNDEBUG", "-s", "-ffunction-sections", "-fdata-sections",
 )  # fmt: skip
-_OPTIONS = (*_COMPILED, "-shared", "-mllvm", "-inline-threshold=100")
+_LIBRARY_OPTIONS = (*_COMMON_OPTIONS, "-shared", "-mllvm", "-inline-threshold=100")
 """Options for shared libraries. The inline threshold of 100 (default 225) saves 2 % of size."""
-_WEB = (
-    "-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED,
+_WEBASSEMBLY_OPTIONS = (
+    "-target", "wasm32-wasi", "-mexec-model=reactor", *_COMMON_OPTIONS,
     "-Wl,--export-dynamic", "-Wl,-z,stack-size=131072",
 )  # fmt: skip
 """Options for WebAssembly: a reactor module that needs only the imports declared in the sources. Visible
 functions are exported; the host calls `_initialize` first. Stack of 128 kB, by default zig reserves 16 MB."""
-_UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
+_UCRT_LIBRARIES = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
 """Libraries of the Universal C Runtime, which is part of Windows 10 and newer."""
 
 
-def libraries(
+def compile_libraries(
     name: str,
     sources: Mapping[str, str],
-    units: Sequence[str],
+    source_names: Sequence[str],
     platforms: Sequence[str] = tuple(TARGETS),
     stem: str = "",
-    linked: Sequence[str] = (),
+    linker_options: Sequence[str] = (),
 ) -> dict[str, bytes]:
     """Compile C sources to {platform: shared library}; the libraries export the FMI functions.
 
     sources        : {file name: text} of all C files and headers; the FMI headers come from fmpy
-    units          : names of the .c files to compile
+    source_names   : names of the .c files to compile
     stem           : file name of the libraries without extension; empty: `name`
     linker_options : compiler options for a further library
 
@@ -60,48 +60,59 @@ def libraries(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    options = {platform: _options(platform, stem or name) for platform in platforms}
+    options = {platform: _compiler_options(platform, stem or name) for platform in platforms}
     windows = Path(__file__).with_name("windows.c")
-    folder = _folder({**_headers(), windows.name: windows.read_text(encoding="utf-8"), **sources})
+    folder = _write_source_folder(
+        {**_read_fmi_headers(), windows.name: windows.read_text(encoding="utf-8"), **sources}
+    )
 
-    def library(platform: str) -> bytes:
+    def compile_library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
-            file = Path(out) / file_name(stem or name, platform)
+            file = Path(out) / library_file_name(stem or name, platform)
             _run_zig(
-                f"{name} for {platform}", folder, "cc", *options[platform], *units, *linked, "-o", str(file)
+                f"{name} for {platform}",
+                folder,
+                "cc",
+                *options[platform],
+                *source_names,
+                *linker_options,
+                "-o",
+                str(file),
             )
             return file.read_bytes()
 
     with ThreadPoolExecutor(cpu_count()) as pool:
-        return dict(zip(platforms, pool.map(library, platforms), strict=True))
+        return dict(zip(platforms, pool.map(compile_library, platforms), strict=True))
 
 
-def exported(files: Iterable[str], version: str) -> list[str]:
+def select_units(source_names: Iterable[str], version: str) -> list[str]:
     """C files to compile for one FMI version."""
     excluded = {"2": "fmi3.c", "3": "fmi2.c"}[version]
-    return [name for name in files if name.endswith(".c") and name != excluded]
+    return [name for name in source_names if name.endswith(".c") and name != excluded]
 
 
-def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
-    """Compile the .c files `units` to a WebAssembly reactor module; errors as `compile_libraries`."""
+def compile_webassembly(name: str, sources: Mapping[str, str], source_names: Sequence[str]) -> bytes:
+    """Compile C files to a WebAssembly reactor module; errors as `compile_libraries`."""
     import_module("ziglang")
-    folder = _folder({**_headers(), **sources})
+    folder = _write_source_folder({**_read_fmi_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
         file = Path(out) / f"{name}.wasm"
-        _run_zig(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
+        _run_zig(
+            f"{name} for WebAssembly", folder, "cc", *_WEBASSEMBLY_OPTIONS, *source_names, "-o", str(file)
+        )
         return file.read_bytes()
 
 
-def file_name(name: str, platform: str) -> str:
+def library_file_name(library_name: str, platform: str) -> str:
     """File name of a library on a platform."""
-    return name + {"windows": ".dll", "linux": ".so", "darwin": ".dylib"}[platform.split("-")[1]]
+    return library_name + {"windows": ".dll", "linux": ".so", "darwin": ".dylib"}[platform.split("-")[1]]
 
 
-def universal(slices: Sequence[bytes]) -> bytes:
+def join_universal(libraries: Sequence[bytes]) -> bytes:
     """Join macOS libraries for several processors into one universal file; their signatures stay valid."""
     page = 1 << 14
-    header, body = struct.pack(">II", 0xCAFEBABE, len(slices)), b""
-    for library in slices:
+    header, body = struct.pack(">II", 0xCAFEBABE, len(libraries)), b""
+    for library in libraries:
         body += bytes(-len(body) % page)
         kind, subtype = struct.unpack_from("<II", library, 4)
         header += struct.pack(">IIIII", kind, subtype, page + len(body), len(library), 14)
@@ -109,20 +120,25 @@ def universal(slices: Sequence[bytes]) -> bytes:
     return header.ljust(page, b"\0") + body
 
 
-def _options(platform: str, name: str) -> tuple[str, ...]:
-    """Compiler options for a platform; `name` is the file name of the library without extension."""
+def _compiler_options(platform: str, library_name: str) -> tuple[str, ...]:
+    """Compiler options for a platform and the file name of a library without extension."""
     import ziglang
 
     # Instruction scheduling for processors with AVX2; the code still runs on every x86_64.
     tuned = ("-mtune=haswell",) if platform.startswith("x86_64") else ()
-    common = ("-target", TARGETS[platform], *_OPTIONS, *tuned)
+    common = ("-target", TARGETS[platform], *_LIBRARY_OPTIONS, *tuned)
     # Only libraries of the system: otherwise zig first compiles its own runtime, of which nothing is linked.
     # No unwind tables: no C++ exception passes through this C; only the Windows ABI requires them.
     unix = ("-nostdlib", "-lc", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
     if platform.endswith("-linux"):
         return (*common, *unix, "-Wl,--gc-sections", "-Wl,--hash-style=gnu", "-lm")
     if platform.endswith("-darwin"):
-        return (*common, *unix, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
+        return (
+            *common,
+            *unix,
+            f"-Wl,-install_name,@rpath/{library_file_name(library_name, platform)}",
+            "-Wl,-dead_strip",
+        )
     # Only the C runtime of Windows is linked: compiling mingw's would take most of a minute, and the library
     # needs neither its start-up code nor stack probes, as no function uses a page of stack.
     # With built-in sin and cos the compiler would call sincos, which only mingw has.
@@ -130,11 +146,11 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
     return (
         *common, "windows.c", "-nostdlib", "-Wl,--no-entry", "-fno-builtin-sin", "-fno-builtin-cos",
         "-D_UCRT", "-isystem", str(headers),
-        *(f"-lapi-ms-win-crt-{library}-l1-1-0" for library in _UCRT),
+        *(f"-lapi-ms-win-crt-{library}-l1-1-0" for library in _UCRT_LIBRARIES),
     )  # fmt: skip
 
 
-def _headers() -> dict[str, str]:
+def _read_fmi_headers() -> dict[str, str]:
     """{file name: text} of the FMI headers, from fmpy."""
     import fmpy
 
@@ -142,9 +158,9 @@ def _headers() -> dict[str, str]:
     return {p.name: p.read_text(encoding="utf-8") for p in sorted(folder.glob("fmi[23]*.h"))}
 
 
-def _folder(files: Mapping[str, str]) -> Path:
+def _write_source_folder(files: Mapping[str, str]) -> Path:
     """Write files into a cache folder named by their digest; zig reuses results of the same path."""
-    advice = f"set {COMPILER} to a writable folder"
+    advice = f"set {COMPILER_CACHE_VARIABLE} to a writable folder"
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(files.items())).encode()).hexdigest()[:32]
     folder = compiler_cache() / "jointfmu" / digest
     try:
@@ -165,7 +181,7 @@ def _run_zig(target: str, folder: Path, *arguments: str) -> str:
     process = subprocess.run(
         [sys.executable, "-m", "ziglang", *arguments],
         cwd=folder,
-        env={**os.environ, COMPILER: str(compiler_cache())},
+        env={**os.environ, COMPILER_CACHE_VARIABLE: str(compiler_cache())},
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,

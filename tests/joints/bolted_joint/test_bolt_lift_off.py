@@ -10,15 +10,14 @@ from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.export import tabulate_normal_force
 from jointfmu_tools.joints.bolted_joint.fit.preload import joint_stiffness
-from jointfmu_tools.joints.bolted_joint.pull import bolt_forces
+from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
 from natives import jacobian
 
 from jointfmu.joints.bolted_joint import bolts as bolt_law
 from jointfmu.joints.bolted_joint.bolts import BoltSprings
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
+from jointfmu.mechanics.footprint.distribution import NodalField, position_means
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, position_means
 from jointfmu.parameters import load_default, load_parameter_file
 
 PRELOAD, EMBEDDING = 15e3, 800.0
@@ -39,7 +38,7 @@ def plate(x=(-0.08, 0.08, -0.08), y=(-0.03, -0.03, 0.03)):
 def rigid_file(**changes):
     """Three bolts on a plate, between rigid sides: nothing about them is symmetric."""
     file, pattern = load_default("bolted_joint"), plate()
-    row_bolts, row_distance = pattern.equivalent_rows
+    row_bolts, row_distance = pattern.equivalent_bolt_rows
     numbers = {
         "pattern": pattern, "n_bolts": 3.0, "A_0": pattern.area, "row_bolts": row_bolts,
         "row_distance": row_distance, "bolt_stiffness": STIFFNESS, "embedding": EMBEDDING,
@@ -71,7 +70,7 @@ def spring_of_sides(file):
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
     start = spring.initial_history() if memory is None else memory
-    return spring.advance(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
+    return spring.advance(JointInputs(preload, moment, np.array(six)), start)
 
 
 def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):

@@ -17,13 +17,12 @@ from clients import needs
 from conftest import Fmu
 from jointfmu_tools.cli import main
 from jointfmu_tools.fem.geometry import Plate
-from jointfmu_tools.systems.master import peak
+from jointfmu_tools.systems.master import peak_frequency
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.parameters import load_default
 from jointfmu.quantity import flatten_parameters
 
@@ -42,13 +41,17 @@ MASS = np.diag([100.0, 100.0, 100.0, 4.0, 3.0, 5.0])
 def all_nodes(preload: float, moment: float) -> Array:
     """Stiffness (6, 6) of all nodes in full stick, each with the law's own stiffness."""
     nodes = BoltedJointSpring.of_nodes(JOINT)
-    shape = nodes.shape
-    k = JOINT.A_0 * shape.share * nodes.curve.derivatives(nodes.preloaded_approach(preload, moment), 1)[1]
+    shape = nodes.points
+    k = (
+        JOINT.A_0
+        * shape.area_share
+        * nodes.curve.derivatives(nodes.preloaded_approach(preload, moment), 1)[1]
+    )
     x, y = shape.position.T
     none, one = np.zeros_like(x), np.ones_like(x)
     normal = np.array([none, none, one, y, -x, none])
     along = [np.array([one, none, none, none, none, -y]), np.array([none, one, none, none, none, x])]
-    ratio = JOINT.shear_ratio()
+    ratio = JOINT.shear_stiffness_ratio()
     return np.asarray((normal * k) @ normal.T + ratio * sum((row * k) @ row.T for row in along))
 
 
@@ -59,7 +62,7 @@ def force_of(fmu: Fmu) -> Force:
 
     def force(place: Array, done: bool) -> Array:
         fmu.write(inputs, place.tolist())
-        if done and fmu.exchange:
+        if done and fmu.is_model_exchange:
             fmu.fmu.completedIntegratorStep()
         elif done:
             fmu.step(1.0)
@@ -96,7 +99,7 @@ def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
         omega = float(np.sqrt(square))
         step, size = 2.0 * np.pi / omega / 40.0, 1e-9 / float(np.max(np.abs(shape)))
         places = leapfrog(force_of(fmu), MASS, 0.0 * shape, omega * size * shape, step, 1600)
-        found = peak(places @ MASS @ shape, step)
+        found = peak_frequency(places @ MASS @ shape, step)
         assert 2.0 / step * np.sin(0.5 * found * step) == pytest.approx(omega, rel=2e-3)
         fmu.free_instance()
 
@@ -107,11 +110,11 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turned = np.array([[c, -s], [s, c]])
     spring = BoltedJointSpring.of(JOINT)
-    rates, rest = (0.0,) * 6, spring.initial_history()
+    rest = spring.initial_history()
 
     def shear(u: Array) -> Array:
-        place = RelativeDisplacement(np.array([*u[:2], -1e-7, 0.0, 0.0, 0.0]))
-        found, _ = spring.advance(PRELOAD, 0.0, place, rates, rest)
+        q = np.array([*u[:2], -1e-7, 0.0, 0.0, 0.0])
+        found, _ = spring.advance(JointInputs(PRELOAD, 0.0, q), rest)
         return np.array([found["f_x"], found["f_y"]], dtype=float)
 
     push = np.array([1e-6, 0.0])
@@ -251,8 +254,8 @@ def swings(first: float, least: float) -> Array:
     force there is q - 2 B(s).
     """
     nodes = BoltedJointSpring.of_nodes(JOINT)
-    approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.foundation()
-    share, limit = nodes.shape.share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
+    approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction.foundation()
+    share, limit = nodes.points.area_share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
 
     def force(u: float) -> float:
         return float(share @ law.virgin_traction(approach, u))

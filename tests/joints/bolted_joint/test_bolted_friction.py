@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.contact import force_transfer
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import load_default
 
 JOINT = load_default("bolted_joint").values
@@ -80,23 +80,25 @@ def stiffness(spring, place, step, **inputs):
 def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     """To the decimals that are kept; each patch has its own force within 2 % of the mean one, as points and
     patches that do not touch have their parts, too."""
-    points, patches = spring.shape, spring.patches
+    points, patches = spring.points, spring.patches
     part = force_transfer(points, patches)
     np.testing.assert_allclose(part.sum(axis=0), 1.0, rtol=1e-3)
     assert np.all(part.max(axis=1) > 0.0)
-    force = part @ (points.share * points.preload_shape)
-    np.testing.assert_allclose(force, patches.share * patches.preload_shape, atol=0.02 / patches.share.size)
+    force = part @ (points.area_share * points.preload_shape)
+    np.testing.assert_allclose(
+        force, patches.area_share * patches.preload_shape, atol=0.02 / patches.area_share.size
+    )
     distance = np.hypot(*(patches.position[:, None] - points.position).transpose(2, 0, 1))
-    reach = np.sqrt(points.share @ np.min(distance, axis=0) ** 2)
+    reach = np.sqrt(points.area_share @ np.min(distance, axis=0) ** 2)
     assert np.max(distance[part > 0.1] - np.min(distance, axis=0)[np.nonzero(part > 0.1)[1]]) < 3.0 * reach
     one = replace(
         patches,
         **{
             name: getattr(patches, name)[:1]
-            for name in ("share", "position", "preload_shape", "moment_shape")
+            for name in ("area_share", "position", "preload_shape", "moment_shape")
         },
     )
-    np.testing.assert_array_equal(force_transfer(points, one), np.ones((1, points.share.size)))
+    np.testing.assert_array_equal(force_transfer(points, one), np.ones((1, points.area_share.size)))
 
 
 def test_shear_does_not_lift(spring):
@@ -130,7 +132,7 @@ def test_first_shear_follows_the_normal_curve(spring, preload, moment, s_z):
     loads = {"preload": preload, "moment": moment}
     tight = rest(spring, np.zeros(6), **loads)
     kappa = tight["K_xx"] / tight["K_zz"]
-    assert kappa == pytest.approx(float(JOINT.shear_ratio()), rel=2e-3)  # patches beside all points
+    assert kappa == pytest.approx(float(JOINT.shear_stiffness_ratio()), rel=2e-3)  # patches beside all points
 
     def normal(z):
         return rest(spring, np.array([0, 0, z, 0, 0, 0]), **loads)["f_z"] + JOINT.n_bolts * preload
@@ -170,8 +172,8 @@ def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
     Of second order is some half of the amplitude over that of gross slip, 1e-6 m.
     """
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 9e3, 0.0))
-    _, k, bend = (spring.patches.share @ each for each in spring.curve.derivatives(approach, 2))
-    slope = 2.0 / (3.0 * np.pi) * JOINT.shear_ratio() * bend / (JOINT.mu * k)
+    _, k, bend = (spring.patches.area_share @ each for each in spring.curve.derivatives(approach, 2))
+    slope = 2.0 / (3.0 * np.pi) * JOINT.shear_stiffness_ratio() * bend / (JOINT.mu * k)
     for u in (1e-9, 1e-10, 1e-12, 1e-14, 1e-16, 1e-18, -1e-16):
         out = rest(spring, u * np.eye(6)[0])
         assert out["eta_loop"] == pytest.approx(slope * abs(u), rel=2e-3)
@@ -188,15 +190,15 @@ def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
         place = 1e-12 * (preload > 1e3) * rng.normal(size=6) * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
         _, memory = MODEL.advance(spring, at(place, preload=preload), memory)
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 3e4, 0.0))
-    law = spring.foundation()
-    compression = float(spring.patches.share @ (approach - spring.curve.displacement[0]))
+    law = spring.friction.foundation()
+    compression = float(spring.patches.area_share @ (approach - spring.curve.displacement[0]))
     gross = law.friction_coefficient / law.stiffness_ratio * compression
     amplitude, losses = part * gross, []
     for u in amplitude * np.concatenate([np.linspace(0, 1, 5), np.linspace(1, -1, 9), np.linspace(-1, 1, 9)]):
         out, memory = MODEL.advance(spring, at([u, 0, 0, 0, 0, 0], preload=3e4), memory)
         losses.append(float(out["E_loss"]))
     theory = JOINT.A_0 * float(
-        spring.patches.share @ law.cycle_energies(approach, np.full(approach.size, amplitude))[0]
+        spring.patches.area_share @ law.cycle_energies(approach, np.full(approach.size, amplitude))[0]
     )
     assert losses[-1] - losses[4] == pytest.approx(theory, rel=0.05)
 
@@ -232,10 +234,10 @@ def test_no_closed_path_creates_energy(spring):
 def stored(spring, memory):
     """Elastic energy of the sliders [J]."""
     it = spring.history_layout.split(memory)
-    sliders = spring.foundation(it["reference"], it["lowest"])
-    stiff = sliders.carried(it["approach"]).stiffness[:, None, :]
+    sliders = spring.friction.foundation(it["onset_approach"], it["min_approach"])
+    stiff = sliders.slider_properties(it["approach"]).stiffness[:, None, :]
     each = np.divide(it["force"] ** 2, 2.0 * stiff, out=np.zeros_like(it["force"]), where=stiff > 0.0)
-    return JOINT.A_0 * float(spring.patches.share @ np.sum(each, axis=(1, 2)))
+    return JOINT.A_0 * float(spring.patches.area_share @ np.sum(each, axis=(1, 2)))
 
 
 def missing(spring, steps, taken):
@@ -397,7 +399,7 @@ def test_a_turned_frame_gives_turned_forces(degrees, memory):
     def turn(shape):
         return replace(shape, position=shape.position @ R[:2, :2].T)
 
-    turned = replace(spring, shape=turn(spring.shape), patches=turn(spring.patches))
+    turned = replace(spring, points=turn(spring.points), patches=turn(spring.patches))
     path = polygon(np.random.default_rng(43), corners=3, steps=3)
     loads = {"preload": 9e3, "moment": 1000.0}
     for one, other in zip(walk(spring, path, **loads), walk(turned, path @ both.T, **loads), strict=True):

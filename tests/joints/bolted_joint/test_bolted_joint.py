@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws import mindlin
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import BoltedJoint, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.mechanics.footprint.bolts import PressureDistribution
 from jointfmu.parameters import load_default
@@ -71,7 +71,7 @@ def test_no_force_when_tightened(spring, preload, moment):
     out = spring.evaluate(preload, moment, STILL, STILL)
     assert (out["f_x"], out["f_y"]) == (0.0, 0.0)
     assert out["f_z"] == pytest.approx(0.0, abs=1e2 * EPS * total(preload))  # round-off of a thousand nodes
-    p = preload_pressure(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.points, preload, moment)
     # the inverse of the table is exact to round-off; where p is small the approach's own counts
     assert out["p_mean"] == pytest.approx(total(preload) / JOINT.A_0, rel=1e-12)
     assert out["p_max"] == pytest.approx(np.max(p), rel=1e-12)
@@ -85,7 +85,7 @@ def test_outputs_are_named_as_promised(spring):
 def test_uniform_pressure_is_the_law(even):
     """Sum over nodes = the law of the whole area at the mean pressure (MAX_ERROR of the table)."""
     out = even.evaluate(9e3, 0.0, STILL, STILL)
-    law = {name: float(value) for name, value in at_pressure(JOINT, total(9e3) / JOINT.A_0).items()}
+    law = {name: float(value) for name, value in evaluate_at_pressure(JOINT, total(9e3) / JOINT.A_0).items()}
     assert out["K_zz"] == pytest.approx(law["K_N"], rel=MAX_ERROR)
     assert out["K_xx"] == out["K_yy"] == pytest.approx(law["K_T"], rel=MAX_ERROR)
     assert out["eta_n"] == pytest.approx(law["eta_n"], rel=MAX_ERROR)
@@ -98,14 +98,14 @@ def test_uniform_pressure_is_the_law(even):
 @each_load
 def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
     """The law at every node's pressure for the whole area A_0, scaled by the node's share."""
-    p = preload_pressure(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.points, preload, moment)
     assert (
         np.min(p) > spring.curve.load[np.searchsorted(spring.curve.displacement, 0.0)]
     )  # outside the closing
-    law = at_pressure(JOINT, p)
+    law = evaluate_at_pressure(JOINT, p)
     out = spring.evaluate(preload, moment, STILL, STILL)
-    assert out["K_zz"] == pytest.approx(spring.shape.share @ law["K_N"], rel=MAX_ERROR)
-    assert out["K_xx"] == pytest.approx(spring.shape.share @ law["K_T"], rel=MAX_ERROR)
+    assert out["K_zz"] == pytest.approx(spring.points.area_share @ law["K_N"], rel=MAX_ERROR)
+    assert out["K_xx"] == pytest.approx(spring.points.area_share @ law["K_T"], rel=MAX_ERROR)
 
 
 def test_uneven_pressure_is_softer_than_even(spring, even):
@@ -117,9 +117,9 @@ def test_uneven_pressure_is_softer_than_even(spring, even):
 def test_shear_ratio_is_that_of_the_law():
     for joint in (JOINT, changed(traction_ratio=0.6, spot_stiffness="hertz")):
         for p in (1e5, 1e8):
-            law = at_pressure(joint, p)
+            law = evaluate_at_pressure(joint, p)
             found = float(law["K_T"] / law["K_N"])
-            assert joint.shear_ratio() == pytest.approx(found, rel=1e-13)  # round-off
+            assert joint.shear_stiffness_ratio() == pytest.approx(found, rel=1e-13)  # round-off
 
 
 # Forces and stiffnesses away from the tightened state
@@ -135,7 +135,7 @@ def forces(spring, load, s):
 
 def potential(spring, load, s):
     """U(s) of the class: V is the exact integral of the table, piece by piece."""
-    curve, area, rho = spring.curve, JOINT.A_0 * spring.shape.share, JOINT.shear_ratio()
+    curve, area, rho = spring.curve, JOINT.A_0 * spring.points.area_share, JOINT.shear_stiffness_ratio()
     start = spring.preloaded_approach(*load)
     a, h = curve._coefficients, np.diff(curve.displacement)
     whole = np.concatenate([[0.0], np.cumsum(h * (a / np.arange(1.0, 7.0)[:, None]).sum(axis=0))])
@@ -267,8 +267,8 @@ def test_loss_factors_and_damping(plastic, preload, moment):
     """eta_n: plastic over elastic work of all nodes; eta_t: of the traction ratio; C = eta sqrt(M K)."""
     spring = plastic
     out = spring.evaluate(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
-    plastic, elastic = (spring.shape.share @ law[name] for name in ("W_NP", "W_NE"))
+    law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
+    plastic, elastic = (spring.points.area_share @ law[name] for name in ("W_NP", "W_NE"))
     assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_ERROR)
     ratio = 12.0 * mindlin.dissipation_function(0.1) / (5.0 * np.pi * mindlin.storage_function(0.1))
     assert out["eta_t"] == pytest.approx(ratio / (1.0 - ratio), rel=1e-13)  # round-off
@@ -306,7 +306,7 @@ def test_loss_factor_while_closing(even):
     edge = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     at_edge, below = (even.evaluate(part * edge * JOINT.A_0 / 8, 0.0, STILL, STILL) for part in (1.0, 0.1))
     assert below["eta_n"] == pytest.approx(at_edge["eta_n"], rel=1e-12)  # round-off
-    law = at_pressure(JOINT, edge)
+    law = evaluate_at_pressure(JOINT, edge)
     assert at_edge["eta_n"] == pytest.approx(float(law["eta_n"]), rel=1e-10)  # 1e-12 of the load, steep
 
 
@@ -317,9 +317,9 @@ def test_loss_factor_while_closing(even):
 def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
     """sum A k y^2, sum A k x^2, and rho sum A k (x^2 + y^2), written out."""
     out = spring.evaluate(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
-    x, y = spring.shape.position.T
-    share = spring.shape.share
+    law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
+    x, y = spring.points.position.T
+    share = spring.points.area_share
     assert share @ x == pytest.approx(0.0, abs=1e-15)  # m, the origin is the centroid
     assert share @ y == pytest.approx(0.0, abs=1e-15)
     assert out["K_rx"] == pytest.approx(share @ (law["K_N"] * y**2), rel=MAX_ERROR)
@@ -369,10 +369,10 @@ def test_an_open_row(spring, moment):
     """A moment that asks for more than the preload: no pull in any node, and no force when tightened."""
     preload = 9e3
     assert abs(moment) / (JOINT.row_distance * JOINT.row_bolts) > preload
-    p = preload_pressure(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.points, preload, moment)
     assert np.min(p) == 0.0
-    assert np.max(p) > np.max(preload_pressure(JOINT, spring.shape, preload, 0.0))
-    open_side = np.sign(spring.shape.position[p == 0.0, 1])
+    assert np.max(p) > np.max(preload_pressure(JOINT, spring.points, preload, 0.0))
+    open_side = np.sign(spring.points.position[p == 0.0, 1])
     assert np.all(open_side == -np.sign(moment))
     out = spring.evaluate(preload, moment, STILL, STILL)
     assert all(np.isfinite(value) for value in out.values())

@@ -27,10 +27,10 @@ from webassembly import Instance
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points
+from jointfmu.mechanics.footprint.distribution import NodalField, nodal_field_entries
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, field_entries
 from jointfmu.parameters import load_default, load_parameter_file
 
 MOVED = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
@@ -41,12 +41,14 @@ def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None
     spring = BoltedJointSpring.of(joint)
     for preload, moment in ((5e3, 0.0), (9e3, 600.0), (2e4, -1500.0)):
         found = instance.at({"preload": preload, "moment": moment})
-        node = preload_pressure(joint, spring.shape, preload, moment)
+        node = preload_pressure(joint, spring.points, preload, moment)
         k = stiffness_curve(joint, node)[0]
-        K_zz = joint.A_0 * float(spring.shape.share @ k)
+        K_zz = joint.A_0 * float(spring.points.area_share @ k)
         expected = {"K_zz": K_zz, "p_max": float(node.max())}
         assert {n: found[n] for n in expected} == pytest.approx(expected, rel=TABLE)
-        assert found["K_xx"] == pytest.approx(joint.shear_ratio() * K_zz, rel=5e-3)  # by the patches
+        assert found["K_xx"] == pytest.approx(
+            joint.shear_stiffness_ratio() * K_zz, rel=5e-3
+        )  # by the patches
         assert [found["f_x"], found["f_y"], found["f_z"]] == [0.0, 0.0, 0.0]
         # the shape has a mean of 1 and a tilt of 0: what the bolts press is what the contact carries
         mean = preload * joint.n_bolts / joint.A_0
@@ -309,7 +311,7 @@ def test_the_map_is_the_pressure_at_the_points(law):
         assert instance.start(given)
         found = instance.map()
         assert found[:, :2] == pytest.approx(shape.position, rel=1e-12, abs=1e-15)
-        assert found[:, 2] == pytest.approx(shape.share, rel=1e-15)
+        assert found[:, 2] == pytest.approx(shape.area_share, rel=1e-15)
         x, y = shape.position.T
         approach = spring.preloaded_approach(12e3, moment) - (apart + turn * y + turn * x)
         expected = spring.curve.derivatives(approach, 0)[0]
@@ -332,7 +334,7 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
     file = load_default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
     model = MODELS["BoltedJoint"]
     course = LoadHistory(model, file)
-    small, *_, large = course.compute_loops().rows()
+    small, *_, large = course.compute_loops().compute_rows()
     point = {**course.loop_inputs, "s_rel_x": 0.0}
     stiff = model.evaluate(course.spring, point)["K_xx"]
     assert small["secant_stiffness"] > 0.25 * stiff
@@ -340,7 +342,7 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
         1.0 + 1e-9
     )
     if mu < 0.1:
-        assert large["motion"] < 0.5 * model.loop.amplitude
+        assert large["motion"] < 0.5 * model.load_cycle.amplitude
         # slides freely over more than a third of the way back
         assert large["loss_factor"] > 0.7
 
@@ -352,7 +354,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     cells = [rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") not in ("#fff", "none", None)]
     sides = [[float(rect.get(side)) - CELL_OVERLAP for side in ("width", "height")] for rect in cells]
-    area = np.sum(np.prod(sides[: len(shape.share)], axis=1))
+    area = np.sum(np.prod(sides[: len(shape.area_share)], axis=1))
     outer = next(rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") == "none")
     scale = float(outer.get("width")) / (joint.pattern.column_spacing + joint.pattern.flange_width)
     assert area / scale**2 == pytest.approx(joint.A_0, rel=0.03)  # drawn to tenths of 5 px
@@ -367,7 +369,9 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     strip = BoltedPlate(
         length=0.15, width=0.04, x=(0.0,), y=(0.0,), hole_diameter=0.009, cone_diameter=0.02
     )  # its cells are no squares: they are as wide as its columns
-    sides = _cell_sizes(SimpleNamespace(A_0=strip.area, pattern=strip), strip.pressure_distribution().share)
+    sides = _cell_sizes(
+        SimpleNamespace(A_0=strip.area, pattern=strip), strip.pressure_distribution().area_share
+    )
     np.testing.assert_allclose(
         sides.max(axis=0), np.array([0.15, 0.04]) / strip.coarse_cell_counts, rtol=1e-4
     )
@@ -380,10 +384,14 @@ def test_the_picture_of_points_without_an_outline() -> None:
     shape = file.values.pattern.pressure_distribution()
     half = np.flatnonzero(shape.position[:, 1] > 0.0)
     some = shape.select_nodes(half)
-    share = some.share / some.share.sum()
-    moved = replace(some, share=share, position=some.position - share @ some.position)
-    moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)
-    joint = replace(file.values, pattern=NodalField(**field_entries(moved)))
+    share = some.area_share / some.area_share.sum()
+    moved = replace(some, area_share=share, position=some.position - share @ some.position)
+    moved = replace(
+        moved,
+        preload_shape=some.preload_shape / (share @ some.preload_shape),
+        moment_shape=some.moment_shape - share @ some.moment_shape,
+    )
+    joint = replace(file.values, pattern=NodalField(**nodal_field_entries(moved)))
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     discs = list(drawn.iter(f"{SVG}circle"))
     assert len(discs) == len(share)

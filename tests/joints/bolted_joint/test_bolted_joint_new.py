@@ -13,13 +13,13 @@ from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import read_property_classes, read_threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
-from jointfmu_tools.joints.bolted_joint.new import computed, layout
+from jointfmu_tools.joints.bolted_joint.new import layout, plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.report import friction_results
 from jointfmu_tools.shown import list_entries
 from jointfmu_tools.uncertainty.problem import state_problem
 
-from jointfmu.contact.roughness import GAMMA, RQ_OVER_RA
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_parameter_file
 
 PLATE = ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "40"]
@@ -32,7 +32,11 @@ STILL = (0.0, 0.0, 0.0)
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
     """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
-    monkeypatch.setattr(computed, "compute_facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
+    monkeypatch.setattr(
+        plate_finite_elements,
+        "compute_facts",
+        lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
+    )
 
 
 def made(capsys, *words, path=None):
@@ -173,7 +177,7 @@ def test_any_layout_makes_a_file_that_loads(capsys, tmp_path, layouts):
     assert found["written"] == [str(path)]
     assert (file.law, file.values.n_bolts) == ("roughness", len(file.values.pattern.x))
     left = file.start_value("preload") - file.values.embedding
-    K = left * file.values.n_bolts / (GAMMA * file.values.h)
+    K = left * file.values.n_bolts / (PERSSON_GAMMA * file.values.h)
     assert found["facts"]["interface_K_zz"]["value"] == pytest.approx(
         K, rel=0.05
     )  # p/(gamma h), and few spots
@@ -427,9 +431,9 @@ def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, m
     for values in files.values():
         bolts = np.array([[-0.03, -0.02], [0.025, -0.01], [0.003, 0.018]])
         shape = values.pattern.pressure_distribution()
-        centre = bolts.mean(axis=0) - (shape.share * shape.equal) @ shape.position
+        centre = bolts.mean(axis=0) - (shape.area_share * shape.preload_shape) @ shape.position
         near = np.min(np.hypot(*np.moveaxis(shape.position[:, None] + centre - bolts, -1, 0)), axis=1)
-        sums.append(np.sqrt((shape.share * shape.equal) @ near**2))
+        sums.append(np.sqrt((shape.area_share * shape.preload_shape) @ near**2))
     assert sums[1] == pytest.approx(sums[0], rel=0.12)
 
 
@@ -458,10 +462,10 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     (mu,) = (each for each in list_entries(file) if each.name == "mu")
     assert mu.source.startswith(f"{low:g} to {high:g}; ")
     study = state_problem(file, {}, 30e3, 3)
-    assert [(each.name, each.support) for each in study.uncertain] == [("mu", (low, high))]
-    assert state_problem(file, {"mu": "interval"}, 30e3, 3).uncertain[0].support == (low, high)
+    assert [(each.name, each.support) for each in study.uncertain_parameters] == [("mu", (low, high))]
+    assert state_problem(file, {"mu": "interval"}, 30e3, 3).uncertain_parameters[0].support == (low, high)
     assert "mu" not in {
-        each.name for each in state_problem(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain
+        each.name for each in state_problem(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain_parameters
     }
     assert not file.with_values({"mu": 0.2}, "user", "set").ranges
 

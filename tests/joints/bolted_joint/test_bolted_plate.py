@@ -10,20 +10,20 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import refused_line
-from jointfmu_fmu_src.native.page import documentation
+from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_tools import cli
 from jointfmu_tools.commands.assembly import with_assembly
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
-from jointfmu_tools.joints.bolted_joint.new import computed
+from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
-from jointfmu.contact.surface import Elastic
+from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points
-from jointfmu.mechanics.footprint.plate import BoltedPlate, equivalent_rows, plate_cells, pressure_decay
+from jointfmu.mechanics.footprint.plate import BoltedPlate, equivalent_bolt_rows, plate_cells, pressure_decay
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 STILL = (0.0, 0.0, 0.0)
@@ -49,8 +49,8 @@ def plate(x, y, **changes):
 
 
 def joint(pattern, **changes):
-    row_bolts, row_distance = pattern.equivalent_rows
-    steel = Elastic(E=210e9, nu=0.3)
+    row_bolts, row_distance = pattern.equivalent_bolt_rows
+    steel = ElasticConstants(E=210e9, nu=0.3)
     values = {
         "h": 1e-6, "gamma": 0.45, "longest_wave": 0.8e-3, "hurst": 0.8, "slope": 0.1, "side1": steel,
         "side2": steel, "H": 2e9, "mu": 0.15, "traction_ratio": 0.1, "A_0": pattern.area, "mass": 10.0,
@@ -65,18 +65,18 @@ def test_every_layout_balances_its_bolts(name):
     pattern = plate(*LAYOUTS[name])
     shape, areas = pattern.pressure_distribution(), plate_cells(pattern)[0]
     assert areas.sum() == pytest.approx(pattern.area, rel=5e-4)  # the edge of a hole in eighths of a cell
-    assert shape.share.sum() == pytest.approx(1.0, rel=SUM)
-    assert shape.share @ shape.position == pytest.approx([0.0, 0.0], abs=SUM)
-    assert shape.share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
+    assert shape.area_share.sum() == pytest.approx(1.0, rel=SUM)
+    assert shape.area_share @ shape.position == pytest.approx([0.0, 0.0], abs=SUM)
+    assert shape.area_share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
     # the centre of pressure is that of the bolts, from the centroid of plate without holes
     _, places = plate_cells(pattern)
     centroid = areas @ places / areas.sum()
-    centre = shape.share @ (shape.preload_shape[:, None] * shape.position)
+    centre = shape.area_share @ (shape.preload_shape[:, None] * shape.position)
     assert centre == pytest.approx(pattern.bolts.mean(axis=0) - centroid, abs=1e-12)
     # a moment about x changes no force and is balanced by the pressure
-    assert shape.share @ shape.moment_shape == pytest.approx(0.0, abs=1e-11)
-    assert shape.share @ (shape.moment_shape * shape.position[:, 1]) == pytest.approx(
-        pattern.equivalent_rows[1], rel=1e-11
+    assert shape.area_share @ shape.moment_shape == pytest.approx(0.0, abs=1e-11)
+    assert shape.area_share @ (shape.moment_shape * shape.position[:, 1]) == pytest.approx(
+        pattern.equivalent_bolt_rows[1], rel=1e-11
     )
     assert np.all(shape.preload_shape >= 0.0)
 
@@ -88,9 +88,9 @@ def test_pressures_carry_preload_and_moment(name):
     moment = 0.2 * 1e4 * one.row_distance * one.row_bolts
     shape = pattern.pressure_distribution()
     p = preload_pressure(one, shape, 1e4, moment)
-    force = one.A_0 * shape.share * p
+    force = one.A_0 * shape.area_share * p
     assert force.sum() == pytest.approx(1e4 * len(pattern.x), rel=1e-9)
-    even = one.A_0 * shape.share * preload_pressure(one, shape, 1e4, 0.0)
+    even = one.A_0 * shape.area_share * preload_pressure(one, shape, 1e4, 0.0)
     assert (force - even) @ shape.position[:, 1] == pytest.approx(moment, rel=1e-9)
 
 
@@ -107,16 +107,16 @@ def test_one_pressure_falls_as_the_polynomial_and_has_the_moment_of_its_cone():
     square = np.trapezoid(p * r**3, r) / np.trapezoid(p * r, r)
     assert square == pytest.approx(0.5 * (a**2 + (0.5 * pattern.cone_diameter) ** 2), rel=1e-6)
     shape = pattern.pressure_distribution()  # and the cells have it too
-    found = shape.share @ (shape.preload_shape * np.sum(shape.position**2, axis=1))
+    found = shape.area_share @ (shape.preload_shape * np.sum(shape.position**2, axis=1))
     assert found == pytest.approx(square, rel=0.01)
 
 
 def test_two_rows_have_their_own_distance_and_more_rows_help():
-    assert equivalent_rows(np.array([-0.03, -0.03, 0.03, 0.03])) == pytest.approx((2.0, 0.06))
-    assert equivalent_rows(np.array([-0.03, 0.0, 0.03])) == pytest.approx((1.0, 0.06))
+    assert equivalent_bolt_rows(np.array([-0.03, -0.03, 0.03, 0.03])) == pytest.approx((2.0, 0.06))
+    assert equivalent_bolt_rows(np.array([-0.03, 0.0, 0.03])) == pytest.approx((1.0, 0.06))
     # M y_i/sum(y^2) at the outer bolts is M/(N_b L_a)
     y = np.array([-0.036, -0.012, 0.012, 0.036])
-    count, distance = equivalent_rows(y)
+    count, distance = equivalent_bolt_rows(y)
     assert 1.0 / (count * distance) == pytest.approx(0.036 / (y @ y))
 
 
@@ -132,7 +132,7 @@ def test_the_moment_of_two_rows_is_that_of_a_frame():
     upper = shape.position[:, 1] > 0.0
     one = joint(pattern)
     p = preload_pressure(one, shape, 2e4, 600.0)
-    force = one.A_0 * shape.share * p
+    force = one.A_0 * shape.area_share * p
     shift = 600.0 / (0.06 * 2)
     # a bolt's disc does not reach across the middle here
     assert force[upper].sum() == pytest.approx(2 * (2e4 + shift), rel=1e-9)
@@ -379,18 +379,20 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
     )  # as the bodies' here
     path = tmp_path / "plate.toml"
     words = ["--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20", *M16[6:]]
-    seen, real = [], computed.compute_joint
-    monkeypatch.setattr(computed, "compute_joint", lambda *asked: seen.append(real(*asked)) or seen[-1])
+    seen, real = [], plate_finite_elements.compute_joint
+    monkeypatch.setattr(
+        plate_finite_elements, "compute_joint", lambda *asked: seen.append(real(*asked)) or seen[-1]
+    )
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
     values = load_parameter_file(path).values
-    found = Compliances.of(BoltedJointSpring.of(values), 15e3)
+    found = BoltedJointSpring.of(values).compliances(15e3)
     np.testing.assert_allclose(found.total, seen[0].compliances.total, rtol=2e-3)
     for name, compliance in zip(DIRECTIONS, found.total, strict=True):
         whole = facts[f"joint_K_{name if name.startswith('r') else 2 * name}"]
         assert 1.0 / compliance == pytest.approx(whole, rel=1e-9), name
     drawn = PlaneLayout.from_joint(values)
-    np.testing.assert_allclose(drawn.extent, [[-0.03, -0.015], [0.03, 0.015]], atol=1e-6)
-    assert (len(drawn.outline), drawn.hole_diameter) == (1, pytest.approx(0.009))
+    np.testing.assert_allclose(drawn.bounding_box, [[-0.03, -0.015], [0.03, 0.015]], atol=1e-6)
+    assert (len(drawn.contact_outline), drawn.hole_diameter) == (1, pytest.approx(0.009))
 
 
 def test_without_finite_elements_it_is_said(capsys, monkeypatch):
@@ -434,7 +436,7 @@ def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path,
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
-            assert b"Loops at preload" in documentation(model, file)["index.html"]
+            assert b"Loops at preload" in make_documentation(model, file)["index.html"]
             assert cli.main(["report", str(path), "--out", str(page)]) == 0
         capsys.readouterr()
 
@@ -450,7 +452,7 @@ def test_embedding_that_takes_all_of_the_preload_is_refused(tmp_path, capsys):
             in line
         )
     # none is stated: the ramp and the loops begin with a bolt that embedding does not slacken
-    page = documentation(MODELS["BoltedJoint"], replace(file, inputs={}))["index.html"]
+    page = make_documentation(MODELS["BoltedJoint"], replace(file, inputs={}))["index.html"]
     assert b"Loops at preload = 17.4 kN" in page
     model = MODELS["BoltedJoint"].with_parameters("bolted_joint", file.values)
-    assert model.loop.settings["preload"] == 24e3
+    assert model.load_cycle.settings["preload"] == 24e3

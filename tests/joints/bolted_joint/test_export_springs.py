@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from jointfmu_tools.export import ansys, keywords, tables
 from jointfmu_tools.export.mesh import NodePairs, read_pairs
-from jointfmu_tools.export.placing import AXIS_ORDER, SI, UNITS, Placement
+from jointfmu_tools.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
 from jointfmu_tools.joints.bolted_joint.export import (
     TOTAL_OUTPUTS,
     springs_of_joint,
@@ -20,11 +20,11 @@ from jointfmu_tools.joints.bolted_joint.export import (
     springs_under_pressure,
 )
 
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import load_default
 
-MM = UNITS["mm-N-MPa-t"]
+MM = UNIT_SETS["mm-N-MPa-t"]
 REST = (0.0, 0.0, 0.0)
 DIGITS = 1e-8  # the formats carry nine digits
 
@@ -68,14 +68,14 @@ def test_pairs_add_up_to_the_joint(joint, preload, moment):
     about = (springs.K_n @ y**2, springs.K_n @ x**2, springs.K_t @ (x**2 + y**2))
     assert about == pytest.approx([state[n] for n in ("K_rx", "K_ry", "K_rz")], rel=1e-12)
     assert springs.area @ springs.pressure == pytest.approx(8.0 * preload, rel=1e-12)
-    assert springs.correction == 1.0
+    assert springs.stiffness_correction == 1.0
 
 
 def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
-    from jointfmu.contact.interface import at_pressure
+    from jointfmu.contact.interface import evaluate_at_pressure
 
     law = joint.joint
-    state = at_pressure(law, found.pressure)  # of the whole A_0; the curve is within 1e-8 of it
+    state = evaluate_at_pressure(law, found.pressure)  # of the whole A_0; the curve is within 1e-8 of it
     np.testing.assert_allclose(found.K_n, found.area / law.A_0 * state["K_N"], rtol=1e-7)
     np.testing.assert_allclose(found.K_t, found.area / law.A_0 * state["K_T"], rtol=1e-7)
 
@@ -83,7 +83,7 @@ def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
 def test_open_pairs_are_left_out(joint):
     moment = 0.9 * 15e3 * 3 * joint.joint.row_distance * 1.5  # one row gives way
     springs = springs_of_joint(joint, 15e3, moment)
-    p = preload_pressure(joint.joint, joint.shape, 15e3, moment)
+    p = preload_pressure(joint.joint, joint.points, 15e3, moment)
     assert springs.open_pairs == np.sum(p == 0.0) > 0
     assert len(springs.nodes) == np.sum(p > 0.0)
     assert springs.K_n.sum() == pytest.approx(joint.evaluate(15e3, moment, REST, REST)["K_zz"], rel=1e-12)
@@ -99,11 +99,11 @@ def test_state_outside_the_law_is_refused(joint, state):
 
 
 def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
-    area = joint.shape.share * joint.joint.A_0
-    mesh = NodePairs("own.csv", found.nodes, joint.shape.position, area, None)
+    area = joint.points.area_share * joint.joint.A_0
+    mesh = NodePairs("own.csv", found.nodes, joint.points.position, area, None)
     same = springs_on_mesh(joint, mesh, 15e3, 4500.0)
     np.testing.assert_allclose(same.K_n, found.K_n, rtol=1e-9)  # the triangulation's round-off
-    assert same.correction == pytest.approx(1.0, rel=1e-9)
+    assert same.stiffness_correction == pytest.approx(1.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("nodes", [(25, 35), (49, 69), (97, 137)])
@@ -118,7 +118,7 @@ def test_a_mesh_has_the_joints_sums(joint, nodes):
     x, y = springs.position.T
     assert springs.K_n @ y**2 == pytest.approx(state["K_rx"], rel=0.05)
     assert springs.K_n @ x**2 == pytest.approx(state["K_ry"], rel=0.05)
-    assert springs.correction == pytest.approx(1.0, abs=0.05)
+    assert springs.stiffness_correction == pytest.approx(1.0, abs=0.05)
 
 
 def test_stated_pressures_give_the_law_at_them(joint):
@@ -147,8 +147,8 @@ def test_meshes_that_do_not_fit_are_refused(joint):
         springs_on_mesh(joint, NodePairs("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
     with pytest.raises(ValueError, match=r"m.csv: node \d+ is .* m off the joint"):
         springs_on_mesh(joint, NodePairs("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
-    peaks = np.argsort(joint.shape.preload_shape)[-3:]  # beside bolts only
-    coarse = NodePairs("m.csv", labels[:3], joint.shape.position[peaks], np.full(3, 0.0382 / 3), None)
+    peaks = np.argsort(joint.points.preload_shape)[-3:]  # beside bolts only
+    coarse = NodePairs("m.csv", labels[:3], joint.points.position[peaks], np.full(3, 0.0382 / 3), None)
     with pytest.raises(
         ValueError, match=r"m.csv: the pressures at its nodes carry .* times the joint's force"
     ):
@@ -208,7 +208,7 @@ def test_units():
     assert MM.convert(5.0, "N.m") == pytest.approx(5e3)
     assert MM.convert(1e9, "N/m3") == pytest.approx(1.0)
     assert [MM.symbol(u) for u in ("Pa", "N", "N.s/m")] == ["MPa", "N", "N.s/mm"]
-    assert SI.convert(7.0, "Pa") == 7.0
+    assert SI_UNIT_SET.convert(7.0, "Pa") == 7.0
 
 
 @pytest.mark.parametrize("normal", list(AXIS_ORDER))
@@ -273,7 +273,7 @@ def test_the_order_of_the_constants_is_the_references():
 def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
     deck = tmp_path / "springs.inp"
     step = "*STEP\n*STATIC\n*END STEP\n"
-    text = keywords.format_springs(found, Placement(MM, "z", first_number=1), ["about"], dashpots=True)
+    text = keywords.format_springs(found, Placement(MM, "z", first_number=1), ["about"], has_dashpots=True)
     deck.write_text(text + step)
     done = subprocess.run(
         [sys.executable, "-m", "abq2ccx", deck, "-o", tmp_path / "out.inp", "--strict"],
@@ -298,7 +298,9 @@ def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
     import meshio
 
     deck = tmp_path / "springs.inp"
-    text = keywords.format_springs(found, Placement(MM, "z", first_number=1), ["about"], dashpots=dashpots)
+    text = keywords.format_springs(
+        found, Placement(MM, "z", first_number=1), ["about"], has_dashpots=dashpots
+    )
     names = set(re.findall(r"^\*ELEMENT, TYPE=(\w+)", text, re.MULTILINE))
     assert names == ({"SPRING2", "DASHPOT2"} if dashpots else {"SPRING2"})
     page = (Path(__file__).parents[3] / "docs" / "export_reference.md").read_text()
@@ -342,7 +344,7 @@ def deck_cards(text):
 
 def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
     text = keywords.format_springs(
-        found, Placement(MM, "x", first_number=5000, has_own_nodes=False), [], dashpots=False
+        found, Placement(MM, "x", first_number=5000, has_own_nodes=False), [], has_dashpots=False
     )
     elements, values = deck_cards(text)
     assert "*NODE" not in text

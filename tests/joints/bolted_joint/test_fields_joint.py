@@ -9,21 +9,21 @@ from conftest import here_alone
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import PARTS, cli, plots
 from jointfmu_tools.fields import nodal_result, reduction
-from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
+from jointfmu_tools.fields.joint_parameters import insert_field, pressure_shape
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
-from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RANGE, LoadCase, SumFunctions
+from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RATIO_RANGE, LoadCase, SumFunctions
 from jointfmu_tools.joints.bolted_joint.published import pressure_between_bolts
 from jointfmu_tools.modelica import library
 from jointfmu_tools.ramps import ramp
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint import bolts
+from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.reproducible import round_distribution
-from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity import flatten_parameters
 
@@ -40,9 +40,9 @@ def field(closed=0.0, moment=0.0):
     shape = bolt_pattern(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     p = np.maximum(shape.preload_shape - closed, 0.0)
-    p *= mean / (shape.share @ p)
+    p *= mean / (shape.area_share @ p)
     p += moment / (JOINT.row_distance * JOINT.A_0) * shape.moment_shape
-    return ContactField(shape.share * JOINT.A_0, shape.position + OFFSET, p)
+    return ContactField(shape.area_share * JOINT.A_0, shape.position + OFFSET, p)
 
 
 FIELD = field()
@@ -61,10 +61,10 @@ def direct(joint, shape, load):
     curve = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve
     spring = replace(BoltedJointSpring.of_nodes(elastic, shape), curve=curve)
     force = load.preload_ratio * PRELOAD
-    moment = load.moment * force * joint.row_distance * joint.row_bolts
+    moment = load.moment_ratio * force * joint.row_distance * joint.row_bolts
     start = spring.preloaded_approach(force, moment)
     found = []
-    for s_z in (load.apart, 0.0):
+    for s_z in (load.opening_ratio, 0.0):
         state = spring.evaluate(force, moment, (0.0, 0.0, s_z), (0.0, 0.0, 0.0))
         state["force"] = state["p_mean"] * joint.A_0
         found.append(np.array([state[n] for n in ("force", "K_zz", "K_xx", "K_rx", "K_ry")]))
@@ -75,18 +75,20 @@ def direct(joint, shape, load):
 def test_points_keep_the_sums(reduced):
     """At loads that the reduction never saw, within what it promises; the peak pressure exactly."""
     joint, shape, found = reduced
-    assert found.point_count < 0.35 * found.nodes
-    assert found.deviation <= RELATIVE_TOLERANCE
+    assert found.point_count < 0.35 * found.node_count
+    assert found.largest_deviation <= RELATIVE_TOLERANCE
     rng = np.random.default_rng(11)
     lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve.displacement[0]
     for _ in range(15):  # many in benchmarks/field_reduction.py
         load = LoadCase(
-            float(np.exp(rng.uniform(*np.log(PRELOAD_RANGE)))), found.moment * rng.uniform(-1, 1), 0.0
+            float(np.exp(rng.uniform(*np.log(PRELOAD_RATIO_RANGE)))),
+            found.max_tested_moment_ratio * rng.uniform(-1, 1),
+            0.0,
         )
         start, _, peak = direct(joint, shape, load)
         apart = rng.choice([0.0, rng.uniform(-MAX_COMPRESSION_RATIO, 1.0)]) * (start.max() - lowest)
-        _, full, _ = direct(joint, shape, load._replace(apart=apart))
-        _, few, same = direct(joint, found.shape, load._replace(apart=apart))
+        _, full, _ = direct(joint, shape, load._replace(opening_ratio=apart))
+        _, few, same = direct(joint, found.reduced_shape, load._replace(opening_ratio=apart))
         np.testing.assert_array_less(
             np.abs(few[0] - full[0]), RELATIVE_TOLERANCE * np.maximum(full[0], full[1])
         )
@@ -95,21 +97,24 @@ def test_points_keep_the_sums(reduced):
 
 def test_points_balance(reduced):
     _, shape, found = reduced
-    points = found.shape
-    assert np.all(points.share > 0.0)
+    points = found.reduced_shape
+    assert np.all(points.area_share > 0.0)
     for one in (shape, points):
-        assert one.share.sum() == pytest.approx(1.0, rel=1e-12)
-        assert one.share @ one.preload_shape == pytest.approx(1.0, rel=1e-12)
-        assert one.share @ one.tilt == pytest.approx(0.0, abs=1e-12)
-        np.testing.assert_allclose(one.share @ one.position, 0.0, atol=1e-14)
+        assert one.area_share.sum() == pytest.approx(1.0, rel=1e-12)
+        assert one.area_share @ one.preload_shape == pytest.approx(1.0, rel=1e-12)
+        assert one.area_share @ one.moment_shape == pytest.approx(0.0, abs=1e-12)
+        np.testing.assert_allclose(one.area_share @ one.position, 0.0, atol=1e-14)
         # a moment M shifts M/L_a from row to row: the pressures balance it if this is L_a
-        assert one.share @ (one.tilt * one.position[:, 1]) == pytest.approx(JOINT.row_distance, rel=1e-6)
+        assert one.area_share @ (one.moment_shape * one.position[:, 1]) == pytest.approx(
+            JOINT.row_distance, rel=1e-6
+        )
 
 
 def test_a_field_that_is_a_bit_off_is_the_same():
     """Reduced are the same bits: 40 times with every number of the file off by 1e-15 of itself."""
     rng, shape = np.random.default_rng(8), pressure_shape(JOINT, FIELD, PRELOAD)
-    before, numbers = round_distribution(shape, ROUNDING_BITS), ("share", "position", "equal", "tilt")
+    before = round_distribution(shape, ROUNDING_BITS)
+    numbers = ("area_share", "position", "preload_shape", "moment_shape")
     for _ in range(40):
         area, position, pressure = (
             values * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], values.shape))
@@ -120,7 +125,7 @@ def test_a_field_that_is_a_bit_off_is_the_same():
             assert np.array_equal(
                 getattr(round_distribution(other, ROUNDING_BITS), name), getattr(before, name)
             ), name
-    one, two = (reduce_field(JOINT, each, PRELOAD, preload_pressure).shape for each in (shape, other))
+    one, two = (reduce_field(JOINT, each, PRELOAD, preload_pressure).reduced_shape for each in (shape, other))
     for name in numbers:
         was = getattr(one, name)
         np.testing.assert_allclose(getattr(two, name), was, rtol=1e-9, atol=1e-9 * np.max(np.abs(was)))
@@ -131,17 +136,17 @@ def test_patches_come_from_the_nodes(tmp_path):
     friction; the file keeps the patches, and those that do not balance are refused."""
     ring = patch_reduction.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    contact = ContactField(ring.share * JOINT.A_0, ring.position, mean * ring.preload_shape)
+    contact = ContactField(ring.area_share * JOINT.A_0, ring.position, mean * ring.preload_shape)
     (tmp_path / "ring.toml").write_text(
-        format_parameter_file(with_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
+        format_parameter_file(insert_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
     )
     joint = load_parameter_file(tmp_path / "ring.toml").values
     spring = BoltedJointSpring.of(joint)
-    assert spring.patches.share.tolist() == list(joint.pattern.patch_share)
+    assert spring.patches.area_share.tolist() == list(joint.pattern.patch_share)
     slides = spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0,) * 3, (0.0, 0.0, 1e-2))
     friction = joint.mu * PRELOAD * joint.n_bolts
     assert np.hypot(slides["f_x"], slides["f_y"]) < 4e-3 * friction
-    arm = (ring.share * ring.preload_shape) @ np.hypot(*ring.position.T)
+    arm = (ring.area_share * ring.preload_shape) @ np.hypot(*ring.position.T)
     assert -slides["m_z"] == pytest.approx(friction * arm, rel=2e-3)
     share = (2.0 * joint.pattern.patch_share[0], *joint.pattern.patch_share[1:])
     with pytest.raises(ValueError, match=r"^the sum of patch_share is 1\.\d+, expected 1 within 1e-06$"):
@@ -150,7 +155,7 @@ def test_patches_come_from_the_nodes(tmp_path):
 
 def test_few_nodes_stay_as_they_are():
     shape = pressure_shape(JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50))
-    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).shape is shape
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).reduced_shape is shape
 
 
 def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
@@ -160,7 +165,7 @@ def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
         None,
     ]
     monkeypatch.setattr(reduction, "_search_points", lambda *given: found[0])
-    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).point_count == shape.share.size
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).point_count == shape.area_share.size
     monkeypatch.setattr(reduction, "MAX_KEPT_NODES", 1000)
     assert reduce_field(JOINT, shape, PRELOAD, preload_pressure) is found.pop(0)
     with pytest.raises(RuntimeError, match="no points that keep its sums within 1e-05; of up to 1000 all"):
@@ -199,13 +204,13 @@ def test_a_force_more_than_one_per_cent_off_is_refused(factor):
     with pytest.raises(
         ValueError, match=r"the force of the field is .* N, expected 72000 N within 1 %: 8 bolts"
     ):
-        with_field(FILE, wrong, PRELOAD, "test")
+        insert_field(FILE, wrong, PRELOAD, "test")
     assert pressure_shape(JOINT, replace(FIELD, pressure=1.009 * FIELD.pressure), PRELOAD)
 
 
 def test_other_joints_have_no_field():
     with pytest.raises(ValueError, match=r"joint = 'gear_contact' has no field"):
-        with_field(load_default("gear_contact"), FIELD, PRELOAD, "test")
+        insert_field(load_default("gear_contact"), FIELD, PRELOAD, "test")
 
 
 def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
@@ -214,7 +219,7 @@ def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
     monkeypatch.setitem(KINDS, "toy", toy)
     monkeypatch.setitem(PARTS, "toy", PARTS[KIND.name])
     few = ContactField(*(a[:50] for a in _parts(FIELD)))
-    file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
+    file, found = insert_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
     assert (file.joint, found.node_count) == ("toy", 50)
     assert isinstance(file.values, toy.parameters)
     assert len(file.values.pattern.share) == 50
@@ -222,7 +227,7 @@ def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
 
 @pytest.fixture(scope="module")
 def imported():
-    return with_field(FILE, FIELD, PRELOAD, "a test's field")
+    return insert_field(FILE, FIELD, PRELOAD, "a test's field")
 
 
 def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
@@ -236,7 +241,7 @@ def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
     assert float(FIELD.area.sum()) == again.values.A_0
     assert "pattern." not in " ".join(flatten_parameters(again.values))
     assert again.origins["field.tilt"] == "derived"
-    assert again.sources["field.share"].endswith(f"{found.point_count} points for {found.nodes} nodes")
+    assert again.sources["field.share"].endswith(f"{found.point_count} points for {found.node_count} nodes")
     assert again.sources["A_0"] == "a test's field, sum of the nodal areas"
 
 
@@ -282,10 +287,10 @@ def test_what_asks_for_bolts_refuses_a_field(imported):
 
 def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes."""
-    monkeypatch.setattr(bolts, "CELLS_ACROSS", 10)
+    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 10)
     shape = bolt_pattern(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    many = ContactField(shape.share * JOINT.A_0, shape.position, mean * shape.preload_shape)
+    many = ContactField(shape.area_share * JOINT.A_0, shape.position, mean * shape.preload_shape)
     (tmp_path / "field.csv").write_text(nodal_result.csv_text(many))
     out = tmp_path / "joint.toml"
     line = [
@@ -349,7 +354,7 @@ def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(imported, tmp_path, 
 
 def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(plots, "RESOLUTION", 40)
-    monkeypatch.setattr(bolts, "CELLS_ACROSS", 4)
+    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 4)
     path = tmp_path / "field.csv"
     path.write_text(nodal_result.csv_text(field(0.45)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]

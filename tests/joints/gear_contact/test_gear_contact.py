@@ -13,9 +13,9 @@ from jointfmu_tools import cli
 from natives import Host, close, jacobian
 from scipy.integrate import quad
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
-from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR
+from jointfmu.mechanics.curve import CLOSING_AREA_RATIO, MAX_ERROR
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
@@ -56,17 +56,21 @@ def test_approach_is_the_integral_of_df_over_K(spring):
 
     def per_log(t):
         f = np.exp(t)
-        return f / float(at_pressure(spring.joint, f / A_0)["K_N"])
+        return f / float(evaluate_at_pressure(spring.joint, f / A_0)["K_N"])
 
     spots = spring.joint.spots()
-    breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
+    breaks = [
+        float(spots.total("load", u))
+        for u in spots.sorted_regime_end_log_areas
+        if u > spots.stiffness_onset_log_area
+    ]
     for low, high in pairwise(np.geomspace(first, 0.99 * spring.max_force, 5)):
         ends = np.log([low, *(b for b in breaks if low < b < high), high])
         s += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-10)[0] for a, b in pairwise(ends))
         out = spring.evaluate(high)
         assert float(out["s_rel"]) == pytest.approx(s, rel=MAX_ERROR)
         assert float(out["K_N"]) == pytest.approx(
-            float(at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_ERROR
+            float(evaluate_at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_ERROR
         )
 
 
@@ -119,31 +123,31 @@ def test_real_area_and_its_elastic_part(spring):
     """The law's own sums, and in closed form: A_r = lambda m/(1 - m) a_L, elastic above a_nec."""
     f = np.geomspace(1e-3, 0.9, 12) * spring.max_force
     out = spring.evaluate(f)
-    law = at_pressure(spring.joint, f / spring.joint.A_0)
+    law = evaluate_at_pressure(spring.joint, f / spring.joint.A_0)
     np.testing.assert_allclose(out["A_r"], law["A_r"], rtol=4 * EPS)
-    m, spots = spring.joint.spots().m, spring.joint.spots()
+    m, spots = spring.joint.spots().size_exponent, spring.joint.spots()
     largest = law["largest_spot"]
     # exp and log of areas over tens of decades lose 1e-14
     np.testing.assert_allclose(out["A_r"], spring.joint.lambda_ * m / (1 - m) * largest, rtol=1e-12)
-    part = np.maximum(1.0 - (spots.reference / largest) ** (1.0 - m), 0.0)
+    part = np.maximum(1.0 - (spots.reference_area / largest) ** (1.0 - m), 0.0)
     np.testing.assert_allclose(out["elastic_fraction"], part, rtol=1e-11, atol=1e-14)
     assert np.ptp(part) > 0.01  # the range includes a change of it
 
 
 def test_zeta_is_the_exponent():
     """m = sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022, and the table's end."""
-    assert CONTACT.spots().m == pytest.approx(np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4, rel=1e-15)
+    assert CONTACT.spots().size_exponent == pytest.approx(np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4, rel=1e-15)
     assert SPRINGS["default"].max_force == pytest.approx(2.8 * 235e6 * 1e-4, rel=1e-12)  # H A_0
 
 
 @each
 def test_the_closing_is_short(spring):
-    """It ends where the largest spot is CLOSING_RATIO times the largest plastic one."""
+    """It ends where the largest spot is CLOSING_AREA_RATIO times the largest plastic one."""
     force, _ = closing_end(spring)
     spots = spring.joint.spots()
-    largest = float(at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
-    plastic = spots.reference * np.exp(spots.stiffness_onset)
-    assert largest == pytest.approx(CLOSING_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
+    largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
+    plastic = spots.reference_area * np.exp(spots.stiffness_onset_log_area)
+    assert largest == pytest.approx(CLOSING_AREA_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
     assert force < spring.max_force
 
 
@@ -204,7 +208,7 @@ def test_rigid_flat_takes_the_second_body_out(fmu: Host) -> None:
 def test_gear_contact_follows_the_law_without_a_table(fmu: Host) -> None:
     contact, instance = parameters("GearContact"), fmu("GearContact").start()
     for f in (300.0, 2e3, 2e4, 6e4):
-        found, expected = instance.at({"f": f}), at_pressure(contact, f / contact.A_0)
+        found, expected = instance.at({"f": f}), evaluate_at_pressure(contact, f / contact.A_0)
         assert found["K_N"] == pytest.approx(float(expected["K_N"]), rel=TABLE)
         for output in ("A_r", "elastic_fraction"):
             assert found[output] == pytest.approx(float(expected[output]), rel=SAME)

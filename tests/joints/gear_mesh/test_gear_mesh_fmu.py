@@ -10,7 +10,7 @@ from conftest import Fmu
 from natives import VERSIONS, close, jacobian
 
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, base_pitch
-from jointfmu.mechanics.steps import MAX_STEP
+from jointfmu.mechanics.stable_steps import MAX_STABLE_STEP
 from jointfmu.parameters import load_default
 from jointfmu.quantity import replace_values
 
@@ -96,7 +96,7 @@ def test_derivatives_are_those_of_the_package(host: Host) -> None:
     Measured: 5e-8 of a thousandth of the output, the step's size."""
     of, two, three = spring("default"), *(host("GearMesh", v).start() for v in VERSIONS)
     rng, curve = np.random.default_rng(3), of.curve
-    kinks = curve.displacement[1:-1][curve.slope_end[:-1] != curve.slope_start[1:]]
+    kinks = curve.displacement[1:-1][curve.stiffness_slope_end[:-1] != curve.stiffness_slope_start[1:]]
     for _ in range(40):
         s = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-7.0, -4.0))
         if np.any(np.abs(kinks - abs(s)) < 3e-3 * abs(s)):
@@ -126,7 +126,7 @@ def test_nothing_acts_inside_the_backlash(host: Host, version: str) -> None:
             state = angles(of, 0.0, phase) | {"w1": 2.0, "w2": -1.0}
             state["phi1"] += along * MESH.backlash / MESH.r_b1
             values, J = instance.at(state), jacobian(instance)
-            assert values["step_at_once"] == MAX_STEP  # nothing limits it
+            assert values["step_at_once"] == MAX_STABLE_STEP  # nothing limits it
             assert {values[o] for o in instance.outputs if o not in ("pairs", "step_at_once")} == {0.0}
             assert 1.0 <= values["pairs"] <= 2.0
             assert {value for (o, _), value in J.items() if o != "pairs"} == {0.0}

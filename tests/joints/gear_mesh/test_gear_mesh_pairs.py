@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from test_gear_mesh_spring import MESH, each, motion
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs_in_contact
 from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
@@ -150,17 +150,23 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
     first, force, delta = mesh.A_0 * flanks.closing_end_load, 0.0, -float(flanks.displacement[0])
 
     def per_log(t):
-        return np.exp(t) / float(at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
+        return np.exp(t) / float(evaluate_at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
 
     spots = mesh.spots()
-    breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
+    breaks = [
+        float(spots.total("load", u))
+        for u in spots.sorted_regime_end_log_areas
+        if u > spots.stiffness_onset_log_area
+    ]
     last = first
     for force in np.geomspace(3.0 * first, 0.9 * mesh.A_0 * mesh.hardness, 5):
         ends = np.log([last, *(b for b in breaks if last < b < force), force])
         delta += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-11)[0] for a, b in pairwise(ends))
         last = force
         s = delta + force / mesh.K_tooth
-        stiffness = 1.0 / (1.0 / float(at_pressure(mesh, force / mesh.A_0)["K_N"]) + 1.0 / mesh.K_tooth)
+        stiffness = 1.0 / (
+            1.0 / float(evaluate_at_pressure(mesh, force / mesh.A_0)["K_N"]) + 1.0 / mesh.K_tooth
+        )
 
         def miss(f, s=s, mesh=mesh, flanks=flanks):
             approach = float(flanks.inverse(f / mesh.A_0) - flanks.displacement[0])
@@ -202,7 +208,7 @@ def test_the_closing_is_in_series_too(spring):
 def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
     assert (spring.curve.displacement[0], spring.curve.load[0], spring.curve.stiffness[0]) == (0.0, 0.0, 0.0)
     assert spring.curve.end[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
-    assert spring.curve.error <= MAX_ERROR
+    assert spring.curve.interpolation_error <= MAX_ERROR
     assert np.all(np.diff(spring.curve.load) > 0.0)
 
 
@@ -216,7 +222,7 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
         assert "plastic" in str(error)  # noqa: PT017
         return
     closed = int(np.searchsorted(flanks.displacement, 0.0))
-    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.slope_end[closed - 1]
+    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.stiffness_slope_end[closed - 1]
     assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
     own = {"K_tooth": float(teeth * law.A_0 * k)}
     try:
@@ -227,7 +233,7 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
         assert "nodes" in str(error)  # noqa: PT017
         assert teeth < 0.1
         return
-    assert spring.curve.error <= MAX_ERROR
+    assert spring.curve.interpolation_error <= MAX_ERROR
     x = spring.curve.displacement
     places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
     load, stiffness = spring.curve.derivatives(places, 1)

@@ -47,7 +47,9 @@ def test_stiffness_is_the_slope_of_the_force(spring):
     """Along the line of action at a fixed phase, from first touch to beyond the table."""
     s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end[0]
     h = 1e-3 * s
-    kinks = spring.curve.displacement[1:-1][spring.curve.slope_end[:-1] != spring.curve.slope_start[1:]]
+    kinks = spring.curve.displacement[1:-1][
+        spring.curve.stiffness_slope_end[:-1] != spring.curve.stiffness_slope_start[1:]
+    ]
     smooth = np.all(np.abs(kinks[:, None] - s) > 2.0 * h, axis=0)  # no regime of the law ends inside
     for roll in (0.0, 0.3 * base_pitch(spring.joint), 0.345 * base_pitch(spring.joint)):
         force = motion(spring, s + h * FIVE[:, None], roll)["f"]

@@ -278,7 +278,7 @@ def test_reduced_evaluation_against_the_spring(name, s_rel):
     outcome = propagate.evaluate_samples(task, points, task.loads, "")
     assert np.count_nonzero(outcome.accepted) > 12
     for i in np.flatnonzero(outcome.accepted):
-        values, factor, _ = propagate.one_sample(task, points, i)
+        values, factor, _ = propagate.select_sample(task, points, i)
         exact = task.curves.exact(build_parameter_set(GearMesh, values), factor * task.loads)
         for output, value in exact.items():
             found = outcome.outputs[output][:, i]

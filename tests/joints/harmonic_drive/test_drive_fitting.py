@@ -12,8 +12,8 @@ import pytest
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
+from jointfmu_tools.fitting.backbone import Backbone
 from jointfmu_tools.fitting.hysteresis import Oscillator
-from jointfmu_tools.fitting.loop import Backbone
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 from jointfmu_tools.ramps import ramp
@@ -188,14 +188,14 @@ def test_law_is_the_exported_one():
     for u in (1e-6, 1e-4, 2e-3):
         moved = float(spring.hysteresis.advance(HISTORY_LAYOUT.virgin_history(), u).traction)
         assert law.friction(np.array([u]))[0] == pytest.approx(moved, rel=1e-12)
-        assert law.elastic.force(np.array([-u]))[0] == -spring.curve.derivatives(u, 0)[0]
+        assert law.elastic_spring.force(np.array([-u]))[0] == -spring.curve.derivatives(u, 0)[0]
 
 
 def test_energies_are_the_integrals_of_the_torques():
     law, u = measurements.drive_law(), np.linspace(0.0, 2e-3, 20001)
     for torque, energy in (
         (law.friction(u), law.friction_work(u)),
-        (law.elastic.force(u), law.elastic.energy(u)),
+        (law.elastic_spring.force(u), law.elastic_spring.energy(u)),
     ):
         whole = np.concatenate([[0.0], np.cumsum(0.5 * (torque[1:] + torque[:-1])) * u[1]])
         np.testing.assert_allclose(energy[1000:], whole[1000:], rtol=1e-6)  # trapezoids
@@ -206,7 +206,7 @@ def test_branches_are_as_far_apart_as_stated():
     drive = measurements.file("harmonic_drive", measurements.DRIVE).values
     law = hysteresis.make_law(drive)
     u = np.linspace(0.0, 3e-3, 30001)
-    top = np.interp(drive.rated_torque, law.friction(u) + law.elastic.force(u), u)
+    top = np.interp(drive.rated_torque, law.friction(u) + law.elastic_spring.force(u), u)
     down = np.linspace(top, -top, 40001)
     torque = drive.rated_torque + law.force_change(down, np.full(down.size, top))
     assert 2.0 * np.interp(0.0, torque[::-1], down[::-1]) == pytest.approx(drive.hysteresis_loss, rel=1e-4)
@@ -219,8 +219,8 @@ def test_free_vibration_agrees_with_integration_in_time():
     frequency, damping = Oscillator(measurements.drive_law(), measurements.INERTIA).free_vibration(
         found.amplitude
     )
-    assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_spread + 2e-4)
-    assert np.all(np.abs(found.damping / damping - 1.0) < found.damping_spread / damping + 1e-2)
+    assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_deviation + 2e-4)
+    assert np.all(np.abs(found.damping_ratio / damping - 1.0) < found.damping_deviation / damping + 1e-2)
 
 
 @pytest.mark.slow
@@ -228,7 +228,7 @@ def test_free_vibration_agrees_with_integration_in_time():
 def test_round_trip(case, tmp_path):
     """The benchmark's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
     found, true = measurements.CASES[case](np.random.default_rng(3), tmp_path / "measured.csv")
-    for name, deviation in found.solution.deviations.items():
+    for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
 
 
@@ -257,7 +257,7 @@ def test_mid_line_and_hysteresis_at_once(tmp_path):
     run, angle, torque = measurements.loops(law, measurements.TURNS, np.random.default_rng(1))
     path = save(tmp_path / "loops.csv", "run [1], angle [rad], torque [N.m]", (run, angle, torque))
     found = hysteresis.fit(path, fitted_names=[*hysteresis.FITTED_PARAMETERS, "drive_scale"]).solution
-    for name, deviation in found.deviations.items():
+    for name, deviation in found.relative_deviations.items():
         assert abs(np.log(found.values[name] / true[name])) < 3.0 * deviation, name
 
 
@@ -352,7 +352,7 @@ def test_the_modelica_record_is_the_midline(law):
     from jointfmu_tools.modelica.records import to_curve
 
     file = load_default("harmonic_drive", law)
-    (record,) = COMPONENT.records(file, [()])
+    (record,) = COMPONENT.make_records(file, [()])
     exact, made = torque_curve(file.values), to_curve(record.table)
     x = np.linspace(0.0, 1.2 * exact.end[0], 500)
     for a, b in zip(made.derivatives(x, 1), exact.derivatives(x, 1), strict=True):

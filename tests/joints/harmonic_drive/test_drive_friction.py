@@ -108,20 +108,20 @@ def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
             at = before[-4] + part * (phi - before[-4]), before[-3:-1] + part * (most - before[-3:-1])
             few = brake.advance(memory, at[0], 0.0, at[1])
             work += 0.5 * (np.sum(memory[:-4]) + float(few.traction)) * (at[0] - memory[-4])
-            loss += float(few.loss)
+            loss += float(few.dissipated_energy)
             memory = brake.pack_history(few, *at)
         stored = [float(np.sum(m[:-4] ** 2 / (2.0 * brake.stiffness))) for m in (before, memory)]
         assert once.force == pytest.approx(memory[:-4], abs=ROUND_OFF)
-        assert float(once.loss) == pytest.approx(loss, rel=1e-9, abs=ROUND_OFF)
+        assert float(once.dissipated_energy) == pytest.approx(loss, rel=1e-9, abs=ROUND_OFF)
         # a corner of a slider's force lies within one of the steps
-        assert work == pytest.approx(stored[1] - stored[0] + float(once.loss), abs=8 * 0.1 * 0.08 / steps)
+        assert work == pytest.approx(
+            stored[1] - stored[0] + float(once.dissipated_energy), abs=8 * 0.1 * 0.08 / steps
+        )
 
 
 def test_no_path_gives_energy_back_from_heat():
-    law, rng = (
-        spring(**DRY, load_loss_back=0.4, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4),
-        np.random.default_rng(5),
-    )
+    law = spring(**DRY, load_loss_back=0.4, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4)
+    rng = np.random.default_rng(5)
     memory, previous = started(law, 0.0, 0.0, 0.0, 0.0), 0.0
     for _ in range(500):
         phi1 = rng.normal(0.0, 0.05)

@@ -63,7 +63,7 @@ def parameters(law: HarmonicDriveSpring, names: Mapping[str, float]) -> dict[str
     """Those of the component for parameters of the package's drive."""
     given = {name: getattr(law.joint, name) for name in names if not name.startswith("hysteresis")}
     found = law.hysteresis
-    sums = {"friction": float(np.sum(found.limit)), "stiffness": float(np.sum(found.stiffness))}
+    sums = {"friction": float(np.sum(found.friction_limit)), "stiffness": float(np.sum(found.stiffness))}
     return given | {f"hysteresis_{name}": value for name, value in sums.items()}
 
 
@@ -196,8 +196,8 @@ def swung(
     with Slave(fmu, given, ("phi1", "w1", "phi2", "w2"), ("tau1", "tau2", "tau_friction")) as joint:
 
         def rates(t: float, x: Array, w: Array) -> tuple[Array, float]:
-            joint.set(x[0], w[0], x[1], w[1])
-            tau1, tau2, friction = joint.get()
+            joint.set_inputs(x[0], w[0], x[1], w[1])
+            tau1, tau2, friction = joint.get_outputs()
             return np.array([drive(t) + tau1, tau2 - weight * math.sin(x[1])]) / J, friction
 
         a, friction = rates(0.0, x, w)
@@ -207,7 +207,7 @@ def swung(
             faster = w + 0.5 * step * (a + trial)
             x, w = x + 0.5 * step * (w + faster), faster
             a, friction = rates(k * step, x, w)
-            joint.step((k - 1) * step, step)
+            joint.do_step((k - 1) * step, step)
             rows.append((k * step, x[0], w[0], x[1], friction))
     return np.array(rows).T
 

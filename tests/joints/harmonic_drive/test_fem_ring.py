@@ -20,7 +20,7 @@ from scipy import sparse
 from scipy.integrate import quad
 from scipy.sparse.linalg import splu
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.parameters import load_default
 
@@ -279,7 +279,7 @@ def test_stiffness_of_an_even_pressure():
     nodes = field(DRIVE, COARSE, tooth_traction(DRIVE, COARSE, 0.0))[0]
     even = replace(nodes, pressure=np.full_like(nodes.pressure, 1e6))
     assert np.sum(nodes.share) == pytest.approx(1.0, rel=1e-12)  # round-off
-    expected = float(at_pressure(DRIVE.law, 1e6)["K_T"]) * DRIVE.radius**2
+    expected = float(evaluate_at_pressure(DRIVE.law, 1e6)["K_T"]) * DRIVE.radius**2
     w = DRIVE.radial_deformation / DRIVE.radius
     assert torsional_stiffness(DRIVE, even) == pytest.approx(expected, rel=5.0 * w**2)
 

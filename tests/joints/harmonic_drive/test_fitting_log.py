@@ -46,12 +46,12 @@ def check_friction(found, undetermined=frozenset()):
     assert found.rejection_reason() is None
     assert not any("--motor-inertia" in note for note in found.notes)
     assert found.facts["held_out"][0] < 0.1 * found.facts["held_out_constant"][0]
-    for label, deviation in found.solution.deviations.items():
+    for label, deviation in found.solution.relative_deviations.items():
         assert abs(math.log(found.parameters.values_by_name[label] / TRUE[label])) < 4.0 * deviation
         if label in undetermined:
-            assert label not in found.intervals
+            assert label not in found.confidence_intervals
             continue
-        low, high = found.intervals[label]
+        low, high = found.confidence_intervals[label]
         assert low < found.parameters.values_by_name[label] < high
         assert f"95 % interval {low:.4g} to {high:.4g}" in found.parameters.sources[label]
 
@@ -74,7 +74,7 @@ def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
     assert found.facts["inertia"][0] == pytest.approx(whole, rel=0.02)
     assert found.facts["gravity_cos"][0] == pytest.approx(log_round_trips.GRAVITY, rel=0.02)
     assert abs(found.facts["gravity_sin"][0]) < 0.02 * log_round_trips.GRAVITY
-    assert [picture.labels[0].split(" [")[0] for picture in found.pictures] == [
+    assert [picture.axis_labels[0].split(" [")[0] for picture in found.pictures] == [
         "speed of the joint",
         "time",
         "temperature",
@@ -224,10 +224,8 @@ LEVEL = ("N.m", 0.0 * TIME)
 def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
     """Its load is above the least one; what is fitted without being determined is no calibration."""
     noise = 0.1 * np.random.default_rng(0).standard_normal(4001)
-    path, out = (
-        written(tmp_path / "log.csv", tau=("N.m", LIGHT + noise), gravity=LEVEL),
-        tmp_path / "out.toml",
-    )
+    path = written(tmp_path / "log.csv", tau=("N.m", LIGHT + noise), gravity=LEVEL)
+    out = tmp_path / "out.toml"
     asked = ["fit", "log", str(path), "--params", str(drive), "--motor-inertia", "1e-6", "--out", str(out)]
     assert cli.main(asked) == 0
     shown, start, found = capsys.readouterr().err, load_parameter_file(drive), load_parameter_file(out)

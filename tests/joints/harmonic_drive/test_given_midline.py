@@ -15,8 +15,8 @@ from jointfmu_tools.uncertainty.problem import state_problem
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.harmonic_drive.given import CatalogueDrive, MeasuredMidline, TableDrive
 from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT, stiffness_exponent
+from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, MeasuredMidline, TableDrive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity import replace_values
@@ -68,7 +68,7 @@ def test_every_row_keeps_its_angles(row):
         )
     T = np.linspace(0.0, 1.5 * d.max_torque, 3001)[1:]
     phi = lines(T, **K)
-    away = np.all([np.abs(phi / corner - 1.0) > d.corner for corner in d.corners], axis=0)
+    away = np.all([np.abs(phi / corner - 1.0) > d.corner for corner in d.corner_angles], axis=0)
     state = spring.evaluate_torque(T)
     np.testing.assert_allclose(state["phi_rel"], phi, rtol=STATED)
     np.testing.assert_allclose(state["phi_rel"][away], phi[away], rtol=SAME)
@@ -82,8 +82,8 @@ def test_stiffness_is_the_derivative_and_has_no_kink():
     x, h = np.linspace(1e-6, curve.end[0], 4001), 1e-8
     slope = (curve.derivatives(x + h, 0)[0] - curve.derivatives(x - h, 0)[0]) / (2.0 * h)
     np.testing.assert_allclose(slope, curve.derivatives(x, 1)[1], rtol=1e-6)  # round-off of 1e-13 N m over h
-    assert np.all(curve.slope_start[1:] == curve.slope_end[:-1])
-    assert curve.slope_start[0] == 0.0  # the odd continuation has none either
+    assert np.all(curve.stiffness_slope_start[1:] == curve.stiffness_slope_end[:-1])
+    assert curve.stiffness_slope_start[0] == 0.0  # the odd continuation has none either
     K = curve.derivatives(x, 1)[1]
     assert np.all(np.diff(K) >= -1e-6)
     assert (K[0], K[-1]) == pytest.approx((1e4, 1.6e4), rel=1e-12)
@@ -139,7 +139,7 @@ def test_hysteresis_of_a_drive_without_a_pair():
     assert stiffness_exponent(drive()) == 1.0
     spring = HarmonicDriveSpring.tabulate(drive(hysteresis_loss=loss))
     hysteresis = spring.hysteresis
-    limit, stiffness = np.sum(hysteresis.limit), np.sum(hysteresis.stiffness)
+    limit, stiffness = np.sum(hysteresis.friction_limit), np.sum(hysteresis.stiffness)
     phi = np.linspace(0.0, 3.0 * limit / stiffness, 50)
     rest = np.broadcast_to(HISTORY_LAYOUT.virgin_history(), (50, HISTORY_LAYOUT.virgin_history().size))
     dahl = limit * (1.0 - np.exp(-stiffness * phi / limit))

@@ -14,14 +14,14 @@ from fmpy import read_model_description
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, law, random_inputs
-from jointfmu_fmu_src.archive import pack
+from jointfmu_fmu_src.archive import write_archive
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.native.compiled import kept
+from jointfmu_fmu_src.native.compiled import compiled_models
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from natives import Host, close
 
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE
-from jointfmu.joints.harmonic_drive.given import MAX_POINTS
+from jointfmu.joints.harmonic_drive.prescribed_midline import MAX_TABLE_POINTS
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import replace_values
 
@@ -136,10 +136,8 @@ def test_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, one:
 def test_lines_that_cannot_be_are_refused(
     host: Host, fmu: Callable[..., Fmu], built: Path, values: dict[str, Any], message: str
 ) -> None:
-    native, python = (
-        host(SPRING, "fmi3", built / "catalogue"),
-        fmu(SPRING, folder=built / "catalogue" / "python"),
-    )
+    native = host(SPRING, "fmi3", built / "catalogue")
+    python = fmu(SPRING, folder=built / "catalogue" / "python")
     for instance in (native, python):
         assert message in instance.refused(instance.start, values)
 
@@ -152,7 +150,7 @@ def table_of(points: int) -> ParameterFile:
     return file.with_values({"table.torque": torque, "table.angle": angle}, "user", "test")
 
 
-@pytest.mark.parametrize("points", [2, 37, MAX_POINTS])
+@pytest.mark.parametrize("points", [2, 37, MAX_TABLE_POINTS])
 @pytest.mark.parametrize("name", NAMES)
 def test_another_table_needs_no_compiler(
     host: Host, built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, points: int
@@ -162,7 +160,7 @@ def test_another_table_needs_no_compiler(
     def refused(*_: object) -> None:
         raise AssertionError("compiled")
 
-    monkeypatch.setattr(kept, "compile_model", refused)
+    monkeypatch.setattr(compiled_models, "compile_model", refused)
     file = table_of(points)
     with here_alone("3"):
         build([name], ["fmi3"], file, tmp_path)
@@ -289,7 +287,9 @@ def arm(drives: Path, tmp_path: Path) -> Path:
     """An SSP of both."""
     members = {f"resources/{a}.fmu": (drives / "fmi2" / f"{a}.fmu").read_bytes() for a in FILES}
     components = "".join(map(COMPONENT.format, FILES))
-    pack(members | {"SystemStructure.ssd": SSD.format(components=components).encode()}, tmp_path / "arm.ssp")
+    write_archive(
+        members | {"SystemStructure.ssd": SSD.format(components=components).encode()}, tmp_path / "arm.ssp"
+    )
     return tmp_path / "arm.ssp"
 
 

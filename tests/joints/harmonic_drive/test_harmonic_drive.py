@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws.hu2023 import critical_area
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
@@ -72,8 +72,8 @@ def test_peak_pressure(it):
     np.testing.assert_array_equal(peak_pressure(it, -T)[1], -slope)
     assert peak_pressure(it, 0.0)[1] == 0.0
     loss = it.zero_torque_pressure - peak_pressure(it, 0.0)[0]
-    assert loss == pytest.approx(it.pressure_loss, rel=1e-13, abs=1e-6)  # difference of 1e8 Pa
-    rated = peak_pressure(it, it.rated_torque)[0] + it.pressure_loss
+    assert loss == pytest.approx(it.peak_pressure_reduction, rel=1e-13, abs=1e-6)  # difference of 1e8 Pa
+    rated = peak_pressure(it, it.rated_torque)[0] + it.peak_pressure_reduction
     assert rated == pytest.approx(it.rated_pressure, rel=1e-13)  # round-off
 
 
@@ -115,7 +115,7 @@ def test_printed_equations():
     psi = 5.454 * np.exp((1.0 - s.D) / 0.628) + 1.499
     K_N = (s.D - 1) / (0.5 * s.D - 1) * E / np.sqrt(np.pi) * psi ** (1.5 - 0.5 * s.D) * root
     K_T = 4.0 * shear / E * (1.0 - DRIVE.traction_ratio) ** (1.0 / 3.0) * K_N
-    state = at_pressure(DRIVE.pair_law, P)
+    state = evaluate_at_pressure(DRIVE.pair_law, P)
     np.testing.assert_allclose(state["K_N"], K_N, rtol=1e-12)  # round-off
     np.testing.assert_allclose(state["K_T"], K_T, rtol=1e-12)
     np.testing.assert_allclose(state["F"], P * DRIVE.node_area, rtol=1e-12)
@@ -127,7 +127,7 @@ def test_roughness_has_no_scale():
     """Energy of a unit twist by the law at the mean pressure."""
     it, T = SETS["rough"], np.array([0.0, 1.0, 5.0, 25.0])
     p = it.mean_over_peak * peak_pressure(it, T)[0]
-    expected = at_pressure(it.law, p)["K_T"] * it.radius**2
+    expected = evaluate_at_pressure(it.law, p)["K_T"] * it.radius**2
     np.testing.assert_allclose(pair_stiffness(it, T)[0], expected, rtol=1e-12)  # round-off
     assert HarmonicDriveSpring.tabulate(it).evaluate_torque(5.0)["K_TS_pair"] == pytest.approx(
         expected[2], rel=1e-6
@@ -146,7 +146,9 @@ def test_beyond_rated_torque_the_stiffness_settles():
         * (2.0 * rated - DRIVE.torque_smoothing)
         / (rated * 17.0**-0.25 * 2.0 - DRIVE.torque_smoothing)
     )
-    assert peak_pressure(DRIVE, 1e3)[0] + DRIVE.pressure_loss == pytest.approx(most, rel=1e-3)  # T_s^2
+    assert peak_pressure(DRIVE, 1e3)[0] + DRIVE.peak_pressure_reduction == pytest.approx(
+        most, rel=1e-3
+    )  # T_s^2
 
 
 def test_published_stiffness():
@@ -201,7 +203,7 @@ def test_windup_is_the_integral_of_dT_over_K(it, springs):
 @each_drive
 def test_table_follows_the_law_between_its_nodes(it, springs):
     curve = next(spring.curve for spring in springs.values() if spring.joint is it)
-    assert curve.error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_ERROR
     x = curve.displacement
     T, K = curve.derivatives((x[:-1] + np.linspace(0.0, 1.0, 8)[:, None] * np.diff(x)).ravel(), 1)
     np.testing.assert_allclose(K, drive_stiffness(it, T)[0], rtol=MAX_ERROR)
@@ -218,7 +220,7 @@ def test_spots_that_would_yield_are_refused(side):
         torque_curve(it)
     least = float(str(error.value).split("(")[1].split(",")[0])
     edge = drive(**{f"{side}__sigma_y": least})
-    ends = at_pressure(edge.pair_law, peak_pressure(edge, edge.max_torque)[0])["largest_spot"]
+    ends = evaluate_at_pressure(edge.pair_law, peak_pressure(edge, edge.max_torque)[0])["largest_spot"]
     assert ends == pytest.approx(critical_area(edge.pair_law), rel=1e-5)  # six digits of the message
 
 
@@ -242,10 +244,10 @@ def test_tables_of_other_drives(D, r_m, traction, eccentricity, K_FTS0, smoothin
         torque_smoothing=smoothing,
     )
     curve = torque_curve(it)
-    assert curve.error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_ERROR
     assert np.all(np.diff(curve.load) > 0.0)
     assert np.all(np.diff(curve.stiffness) > 0.0)
-    assert curve.slope_start[0] == 0.0
+    assert curve.stiffness_slope_start[0] == 0.0
 
 
 # The spring

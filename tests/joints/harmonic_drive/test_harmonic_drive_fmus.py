@@ -138,7 +138,7 @@ def path(native: Path) -> Path:
 def wound_up(path: Path, torque: float) -> float:
     """Wind-up [rad] under a torque [N.m]."""
     with Slave(path.with_name("HarmonicDriveCompliance.fmu"), {"tau": torque}, (), ("phi_rel",)) as drive:
-        return drive.get()[0]
+        return drive.get_outputs()[0]
 
 
 @pytest.mark.parametrize(("dither", "kelvin"), [(0.0, 253.15), (0.1, 253.15), (0.2, 353.15)])
@@ -154,11 +154,11 @@ def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
     start = DRY | {"friction_viscous": wet, "temperature": kelvin, "phi2": wound}
     with Slave(path, start, MOTION, ("tau1",)) as drive:
         for k in range(steps):
-            (torque,) = drive.get()
+            (torque,) = drive.get_outputs()
             w += step / MOTOR * (torque + dither * most * np.sin(2.0 * np.pi * k / period))
             phi += step * w
-            drive.set(phi, w, wound + phi / 100.0, w / 100.0)
-            drive.step(k * step, step)
+            drive.set_inputs(phi, w, wound + phi / 100.0, w / 100.0)
+            drive.do_step(k * step, step)
             places[k] = phi
     assert 0.002 < places[-1] < 0.2  # it has given way to where its friction bears the load
     late = places[steps // 2 :]
@@ -175,12 +175,12 @@ def swing(path: Path, given: dict[str, float], step: float = 1e-4, steps: int = 
     start = dict(zip(MOTION, x, strict=True))
     with Slave(path, given | start, MOTION, ("tau1", "tau2")) as drive:
         for k in range(steps):
-            tau1, tau2 = drive.get()
+            tau1, tau2 = drive.get_outputs()
             x[1] += step * tau1 / MOTOR
             x[3] += step * (tau2 - weight * np.sin(x[2])) / link
             x[0], x[2] = x[0] + step * x[1], x[2] + step * x[3]
-            drive.set(*x)
-            drive.step(k * step, step)
+            drive.set_inputs(*x)
+            drive.do_step(k * step, step)
             found[k] = x[2:]
     return found
 
@@ -198,17 +198,17 @@ def test_a_swinging_link_stops_where_friction_holds_it(path: Path) -> None:
 def test_the_output_ripples_most_at_half_its_natural_frequency(path: Path) -> None:
     inertia, step = 0.05, 2e-4
     with Slave(path, {}, (), ("K_WTS",)) as drive:
-        natural = np.sqrt(drive.get()[0] / inertia)
+        natural = np.sqrt(drive.get_outputs()[0] / inertia)
     ripple = []
     for part in (0.35, 0.5, 0.65):
         speed = part * natural
         phi2, w2, speeds = 0.0, speed / 100.0, np.empty(20_000)
         with Slave(path, {"error_2": 2e-5, "d": 1.0, "w1": speed, "w2": w2}, MOTION, ("tau2",)) as drive:
             for k in range(speeds.size):
-                w2 += step * drive.get()[0] / inertia
+                w2 += step * drive.get_outputs()[0] / inertia
                 phi2 += step * w2
-                drive.set(speed * step * (k + 1), speed, phi2, w2)
-                drive.step(k * step, step)
+                drive.set_inputs(speed * step * (k + 1), speed, phi2, w2)
+                drive.do_step(k * step, step)
                 speeds[k] = w2
         ripple.append(np.ptp(speeds[-5_000:]))
     assert ripple[1] > 3.0 * max(ripple[0], ripple[2])

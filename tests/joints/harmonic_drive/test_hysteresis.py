@@ -155,7 +155,7 @@ def test_a_loop_with_lost_motion_opens_as_stated_and_closes_in_energy():
         if before:
             work -= sum(0.5 * (now[i + 2] + before[i + 2]) * (now[i] - before[i]) for i in (0, 1))
         before = now
-    springs = memory[: law.hysteresis.limit.size] ** 2 / (2.0 * law.hysteresis.stiffness)
+    springs = memory[: law.hysteresis.friction_limit.size] ** 2 / (2.0 * law.hysteresis.stiffness)
     stored = float(law.curve.energy(abs(float(out["phi_rel"])))) + float(np.sum(springs))
     assert work == pytest.approx(stored + float(out["E_loss"]), rel=1e-5)  # trapezia of 4000 steps
 
@@ -266,8 +266,10 @@ def test_fully_slipped_friction_carries_the_midline_at_half_of_the_loss():
     """With an extra stiffness so large that all sliders have turned round before the torque is zero."""
     found = spring(hysteresis_stiffness=1e5)
     midline = float(found.curve.derivatives(0.5 * ARCMIN)[0])
-    assert np.sum(found.hysteresis.limit) == pytest.approx(midline, rel=1e-12)
-    assert np.sum(spring().hysteresis.limit) == pytest.approx(0.31, abs=0.005)  # as docs/models.md prints it
+    assert np.sum(found.hysteresis.friction_limit) == pytest.approx(midline, rel=1e-12)
+    assert np.sum(spring().hysteresis.friction_limit) == pytest.approx(
+        0.31, abs=0.005
+    )  # as docs/models.md prints it
 
 
 def test_without_a_stated_stiffness_it_is_that_of_the_midline_or_as_needed():
@@ -350,7 +352,7 @@ def test_work_is_stored_or_lost_along_random_paths():
     memory, work, previous = law.initial_history(), 0.0, 0.0
     for end in np.cumsum(rng.normal(0.0, 4e-4, 400)):
         start = memory[HYSTERESIS_SLIDERS]
-        k, limit, way = law.hysteresis.stiffness, law.hysteresis.limit, end - start
+        k, limit, way = law.hysteresis.stiffness, law.hysteresis.friction_limit, end - start
         slips = start + (np.copysign(limit, way) - memory[:HYSTERESIS_SLIDERS]) / k
         inside = slips[(slips - start) * (slips - end) < 0.0]
         corners = np.sort(np.array([start, *inside, end]))[:: 1 if way > 0.0 else -1]

@@ -67,7 +67,7 @@ def path(name: str, given: Mapping[str, float] = LOOP) -> list[dict[str, float]]
 
 def accept(instance: Fmu) -> None:
     """A step of either interface."""
-    if instance.exchange:
+    if instance.is_model_exchange:
         instance.fmu.completedIntegratorStep()
     else:
         instance.step()
@@ -76,7 +76,7 @@ def accept(instance: Fmu) -> None:
 def begin(instance: Fmu, values: Mapping[str, float]) -> Fmu:
     """Up to where steps are made."""
     instance.start(values)
-    if instance.exchange:
+    if instance.is_model_exchange:
         instance.fmu.enterContinuousTimeMode()
     return instance
 

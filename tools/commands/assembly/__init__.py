@@ -10,8 +10,8 @@ from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...command_line.common import declare_argument
 from ...drawing.vdi2230 import proof_load
-from ...fields.clamped import field_adapters
-from ...judgement import Plausibility, assess_law, find_height
+from ...fields.bolted_interface import field_adapters
+from ...judgement import Plausibility, assess_law, find_rms_height
 from ...pressure import warn_overload
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def judge_assembly(
     peak_pressure : greatest contact pressure [Pa]
     """
     judgement = assess_law(
-        KINDS[file.joint].extract_law(file.values), [mean_pressure], find_height(file), peak_pressure
+        KINDS[file.joint].extract_law(file.values), [mean_pressure], find_rms_height(file), peak_pressure
     )
     return judgement.with_warnings(
         warn_overload("preload", preload, proof_load(assembly.bolts.hole_diameter))

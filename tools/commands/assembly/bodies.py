@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 from ...command_line.common import declare_argument
 from ...drawing.reading import parse_number, parse_numbers
 from ...drawing.tables import read_threads
-from ...fields.clamped import field_adapter
+from ...fields.bolted_interface import field_adapter
 from ...fields.nodal_result import ContactField
 from . import check_bolt_stiffness
 
@@ -69,10 +69,8 @@ def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: Co
 
     Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """
-    low, high = (
-        np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE,
-        np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE,
-    )
+    low = np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE
+    high = np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE
     if not args.bolts:
         positions = field_adapter(file.joint).bolt_layout(file.values).bolt_positions + field.centroid
         inside = np.all((positions > low) & (positions < high))

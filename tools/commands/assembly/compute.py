@@ -8,11 +8,11 @@ from jointfmu.files.outputs import PARAMETER_FILE, PICTURE, write_parameter_text
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
-from ...columns import FIELD
+from ...columns import FIELD_FILE_KIND
 from ...command_line.common import CommandResult, SubParsers, declare_argument, declare_command
 from ...command_line.outputs import declare_output
 from ...fem import require_fem_packages
-from ...fields.clamped import field_adapter
+from ...fields.bolted_interface import field_adapter
 from ...shown import fact_document, format_facts
 from . import check_bolt_stiffness, declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
 
@@ -42,7 +42,7 @@ def add(commands: SubParsers) -> None:
         help="write the whole joint (sides = elastic) between these surfaces of the bodies: outer faces, "
         "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
     )
-    declare_output(sub, "--field", FIELD, "write the pressure field (.csv, .vtu)")
+    declare_output(sub, "--field", FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
     declare_output(sub, "--plot", PICTURE, "draw the pressure (.png, .svg)")
     declare_argument(
         sub, "--refine", int, f"number of meshes of a convergence study, 1 to {MAX_MESHES}", default=1
@@ -67,12 +67,16 @@ def run(args: argparse.Namespace) -> CommandResult:
     if args.field:
         results.check_field_path(args.field)
     file = with_assembly(file, assembly, include_bolts=args.out is not None)
-    levels = convergence.refinements(args.refine, args.refinement)
+    levels = convergence.refinement_series(args.refine, args.refinement)
     with require_fem_packages("the finite-element analysis"):
         curve = tabulate_approach(file.values)
         rows, solution = convergence.run_mesh_study(assembly, curve, args.preload, moment, levels)
     result = _with_field(args, file, solution) if args.out else file
-    whole = field_adapter(file.joint).facts(result, tightening_force(args, result)) if args.attached else {}
+    whole = (
+        field_adapter(file.joint).describe_joint(result, tightening_force(args, result))
+        if args.attached
+        else {}
+    )
     written = _write_outputs(args, result, solution)
     facts = _collect_results(solution, moment, args.preload)
     judgement = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak_pressure)
@@ -113,13 +117,13 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
 
     The field is of the preload after embedding; it contains the change of pressure under a moment.
     """
-    from ...fem.bolted_contact import with_contact_field
+    from ...fem.bolted_contact import insert_contact_field
 
-    interface, shape = with_contact_field(file, solution, args.preload, args.moment or 0.0)
+    interface, shape = insert_contact_field(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
         return interface
     preload = tightening_force(args, interface)
-    return field_adapter(interface.joint).with_elastic_bodies(
+    return field_adapter(interface.joint).insert_elastic_bodies(
         interface, solution.joint.assembly, preload, args.attached, shape
     )
 
@@ -148,34 +152,47 @@ def _collect_results(solution: "JointSolution", moment: float, preload: float) -
     }
 
 
-def _format_results(facts: dict[str, Any]) -> Iterator[str]:
+def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
     """Format the results as lines of text."""
-    yield f"{facts['assembly']}: {facts['preload']:g} N per bolt, moment {facts['moment']:g} N.m"
-    yield f"contact   {facts['area'] * 1e4:.2f} cm2, {100 * facts['open_share']:.3g} % open"
-    yield f"force     {facts['force']:.6g} N"
-    yield f"pressure  mean {facts['p_mean'] / 1e6:.3g} MPa, peak {facts['p_max'] / 1e6:.4g} MPa"
-    for middle in facts["between"]:
+    yield (
+        f"{result_values['assembly']}: {result_values['preload']:g} N per bolt, moment "
+        f"{result_values['moment']:g} N.m"
+    )
+    yield f"contact   {result_values['area'] * 1e4:.2f} cm2, {100 * result_values['open_share']:.3g} % open"
+    yield f"force     {result_values['force']:.6g} N"
+    yield (
+        f"pressure  mean {result_values['p_mean'] / 1e6:.3g} MPa, peak {result_values['p_max'] / 1e6:.4g} MPa"
+    )
+    for middle in result_values["between"]:
         yield f"          between bolts at ({middle['x']:g}, {middle['y']:g}) m: {middle['p'] / 1e6:.3g} MPa"
-    yield f"interface K_N {facts['K_N']:.5g} N/m, K_rx {facts['K_rx']:.5g}, K_ry {facts['K_ry']:.5g} N.m/rad"
+    yield (
+        f"interface K_N {result_values['K_N']:.5g} N/m, K_rx {result_values['K_rx']:.5g}, K_ry "
+        f"{result_values['K_ry']:.5g} N.m/rad"
+    )
 
 
-def _mesh_document(row: "MeshResult") -> dict[str, object]:
-    return {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
+def _mesh_document(mesh_result: "MeshResult") -> dict[str, object]:
+    return {
+        "refinement": mesh_result.refinement,
+        "elements": mesh_result.element_count,
+        "unknowns": mesh_result.unknown_count,
+        **mesh_result.result_values,
+    }
 
 
-def _format_convergence(rows: list["MeshResult"]) -> Iterator[str]:
+def _format_convergence(mesh_results: list["MeshResult"]) -> Iterator[str]:
     """Format the convergence study: results of each mesh, relative changes, observed order."""
-    if len(rows) < 2:
+    if len(mesh_results) < 2:
         return
     from ...fem.convergence import RESULT_UNITS, observed_orders, relative_changes
 
     heads = [f"{name} [{unit}]" for name, unit in RESULT_UNITS.items()]
     yield f"{'mesh':>6} {'unknowns':>9} " + " ".join(f"{head:>16}" for head in heads)
-    for row in rows:
-        values = " ".join(f"{row.values[name]:16.6g}" for name in RESULT_UNITS)
-        yield f"{row.refinement:6.2f} {row.unknowns:9d} {values}"
-    for change, row in zip(relative_changes(rows), rows[1:], strict=True):
+    for row in mesh_results:
+        values = " ".join(f"{row.result_values[name]:16.6g}" for name in RESULT_UNITS)
+        yield f"{row.refinement:6.2f} {row.unknown_count:9d} {values}"
+    for change, row in zip(relative_changes(mesh_results), mesh_results[1:], strict=True):
         percent = " ".join(f"{100.0 * change[name]:14.3f} %" for name in RESULT_UNITS)
         yield f"change to {row.refinement:6.2f} {percent}"
-    if observed := observed_orders(rows):
+    if observed := observed_orders(mesh_results):
         yield "observed order   " + " ".join(f"{observed[name]:16.1f}" for name in RESULT_UNITS)

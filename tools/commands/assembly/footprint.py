@@ -18,8 +18,8 @@ from ...command_line.common import (
     format_sentence,
 )
 from ...command_line.outputs import declare_output
-from ...fields.clamped import field_adapter
-from ...judgement import assess_law, find_height
+from ...fields.bolted_interface import field_adapter
+from ...judgement import assess_law, find_rms_height
 from ...pressure import warn_missing_members
 from ...shown import fact_document, format_facts
 from . import bodies, compute, load_joint_file
@@ -42,9 +42,9 @@ OPTION_NAMES = {"length": "length_unit", "pressure": "pressure_unit", "beside": 
 """{name of an argument in the library: name of its option}, where the names differ."""
 
 
-def _declare_import(steps: SubParsers) -> None:
+def _declare_import(subcommands: SubParsers) -> None:
     text = "import a nodal contact result into the parameter file of a joint"
-    step = declare_command(steps, "import", _run_import, text)
+    step = declare_command(subcommands, "import", _run_import, text)
     declare_argument(
         step, "file", Path, "contact result: CSV, CalculiX .frd, ANSYS or Abaqus listing, or a mesh"
     )
@@ -89,7 +89,7 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
     from ...fields import joint_parameters
-    from ...fields.joint_parameters import FORCE_TOLERANCE, with_field
+    from ...fields.joint_parameters import FORCE_TOLERANCE, insert_field
 
     start = load_joint_file(args.params)
     bodies.check_body_arguments(args, start)
@@ -99,31 +99,31 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
         source += f" and {args.moment_file.name}"
     at = bodies.find_bolt_positions(args, start, field)
     plates, notes = bodies.build_assembly(args, start, field, at) if args.thickness else (None, [])
-    file, reduction = with_field(
+    file, reduction = insert_field(
         start,
         field,
         args.preload,
         source,
         moment_field=tilted,
         moment=args.moment,
-        bolts=at,
-        tolerance=FORCE_TOLERANCE if args.force_tolerance is None else args.force_tolerance,
+        bolt_positions=at,
+        force_tolerance=FORCE_TOLERANCE if args.force_tolerance is None else args.force_tolerance,
     )
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     whole = {}
     if plates:
         preload, joint = compute.tightening_force(args, file), field_adapter(file.joint)
-        file = joint.with_elastic_bodies(
+        file = joint.insert_elastic_bodies(
             file, plates, preload, args.attached or "faces", reduction.full_shape
         )
-        whole = joint.facts(file, preload)
+        whole = joint.describe_joint(file, preload)
     if args.plot:
         joint_parameters.draw_field(field, reduction, args.plot)
     if args.out:
         write_parameter_text(args.out, format_parameter_file(file))
     facts = _collect_results(args, file, field, reduction)
     judgement = assess_law(
-        KINDS[file.joint].extract_law(file.values), [facts["p_mean"]], find_height(file), facts["p_max"]
+        KINDS[file.joint].extract_law(file.values), [facts["p_mean"]], find_rms_height(file), facts["p_max"]
     )
     facts |= {"outline": notes[0]} if notes else {}
     judgement = judgement.with_warnings([*notes[1:], *([] if plates else warn_missing_members(start))])
@@ -143,10 +143,10 @@ def _create_reader(args: argparse.Namespace) -> Any:
     """Build the reader of the contact result. Raises ValueError for a choice that does not exist."""
     from ...fields.contact_surface import AXES, BODY_SIDES, OPEN_NODE_OPTIONS, ContactPlane
     from ...fields.nodal_result import LENGTH_UNITS, PRESSURE_UNITS
-    from ...fields.reading import FORMATS, FieldReader
+    from ...fields.reading import FIELD_FORMATS, FieldReader
 
     for name, value, allowed in (
-        ("--format", args.format, FORMATS),
+        ("--format", args.format, FIELD_FORMATS),
         ("--length-unit", args.length_unit, tuple(LENGTH_UNITS)),
         ("--pressure-unit", args.pressure_unit, tuple(PRESSURE_UNITS)),
         ("--normal", args.normal, tuple(AXES)),
@@ -160,9 +160,9 @@ def _create_reader(args: argparse.Namespace) -> Any:
         format=args.format,
         length_unit=args.length_unit,
         pressure_unit=args.pressure_unit,
-        data=args.data,
+        point_data_name=args.data,
         companion_files=args.beside,
-        plane=ContactPlane(args.normal, args.rows, args.side),
+        contact_plane=ContactPlane(args.normal, args.rows, args.side),
         open_nodes=args.open,
     )
 
@@ -181,38 +181,44 @@ def _collect_results(
         "p_mean": field.force / joint.A_0,
         "open_nodes": int((field.pressure == 0.0).sum()),
         "points": reduction.point_count,
-        "deviation": reduction.deviation,
-        "loads": reduction.test_count,
-        "largest_moment": reduction.moment_ratio * args.preload * joint.row_distance * joint.row_bolts,
-        "deviation_beyond": reduction.deviation_beyond,
+        "deviation": reduction.largest_deviation,
+        "loads": reduction.test_case_count,
+        "largest_moment": reduction.max_tested_moment_ratio
+        * args.preload
+        * joint.row_distance
+        * joint.row_bolts,
+        "deviation_beyond": reduction.deviation_above_tested_moments,
         "written": [str(path) for path in (args.out, args.plot) if path],
     }
 
 
-def _format_results(facts: dict[str, Any], area_before: float) -> list[str]:
-    from ...fields.sums import PRELOAD_RANGE
+def _format_results(result_values: dict[str, Any], area_before: float) -> list[str]:
+    from ...fields.sums import PRELOAD_RATIO_RANGE
 
-    low, high = PRELOAD_RANGE
-    difference = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)
+    low, high = PRELOAD_RATIO_RANGE
+    difference = 100.0 * (result_values["force"] / result_values["force_of_the_bolts"] - 1.0)
     lines = [
-        f"{facts['nodes']} nodes ({facts['open_nodes']} open), pressure up to "
-        f"{facts['p_max'] / 1e6:.4g} MPa, mean {facts['p_mean'] / 1e6:.4g} MPa",
-        f"force {facts['force']:.6g} N, {difference:+.2g} % from the bolt force, "
-        f"{facts['force_of_the_bolts']:.6g} N; the field is scaled to the bolt force",
-        f"A_0 is the nodes' area, {facts['A_0']:.6g} m2 (it was {area_before:.6g} m2)",
+        f"{result_values['nodes']} nodes ({result_values['open_nodes']} open), pressure up to "
+        f"{result_values['p_max'] / 1e6:.4g} MPa, mean {result_values['p_mean'] / 1e6:.4g} MPa",
+        f"force {result_values['force']:.6g} N, {difference:+.2g} % from the bolt force, "
+        f"{result_values['force_of_the_bolts']:.6g} N; the field is scaled to the bolt force",
+        f"A_0 is the nodes' area, {result_values['A_0']:.6g} m2 (it was {area_before:.6g} m2)",
     ]
-    if facts["loads"]:
+    if result_values["loads"]:
         lines.append(
-            f"{facts['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
-            f"{facts['deviation']:.1e} at {facts['loads']} other loads (preload {low:g} to {high:g} times "
-            f"this one, pressed to fully open, moment up to {facts['largest_moment']:.4g} N.m at this one)"
+            f"{result_values['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
+            f"{result_values['deviation']:.1e} at {result_values['loads']} other loads (preload "
+            f"{low:g} to {high:g} times "
+            f"this one, pressed to fully open, moment up to {result_values['largest_moment']:.4g} N.m "
+            "at this one)"
         )
     else:
         lines.append("all nodes are kept")
-    if facts["deviation_beyond"]:
+    if result_values["deviation_beyond"]:
         lines.append(
-            f"larger moments open nodes: within {facts['deviation_beyond']:.1e} until a row is unloaded"
+            f"larger moments open nodes: within {result_values['deviation_beyond']:.1e} until a row is "
+            "unloaded"
         )
-    if "outline" in facts:
-        lines.append(facts["outline"])
+    if "outline" in result_values:
+        lines.append(result_values["outline"])
     return lines

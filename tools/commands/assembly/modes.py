@@ -11,7 +11,7 @@ from jointfmu.mechanics.curve import tabulate_approach
 from ...command_line.common import CommandResult, SubParsers, declare_argument, declare_command
 from ...command_line.outputs import declare_output
 from ...fem import require_fem_packages
-from ...fields.clamped import field_adapter
+from ...fields.bolted_interface import field_adapter
 from . import declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
 
 if TYPE_CHECKING:
@@ -43,7 +43,8 @@ def run(args: argparse.Namespace) -> CommandResult:
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check_arguments(args)
     file = with_assembly(load_joint_file(args.params), assembly, include_bolts=False)
-    law, shear = tabulate_approach(file.values), float(field_adapter(file.joint).shear_ratio(file.values))
+    law = tabulate_approach(file.values)
+    shear = float(field_adapter(file.joint).tangential_stiffness_ratio(file.values))
     with require_fem_packages("the finite-element analysis"):
         contact = BoltedContact.from_assembly(assembly, args.refinement)
         solution = contact.solve(law, args.preload, args.moment)
@@ -54,7 +55,10 @@ def run(args: argparse.Namespace) -> CommandResult:
     judgement = judge_assembly(
         file, assembly, args.preload, force / assembly.contact_area, solution.peak_pressure
     )
-    head = f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.mass:.4g} kg"
+    head = (
+        f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, "
+        f"{modes.assembly_mass:.4g} kg"
+    )
     document = _build_document(args, assembly.name, modes, even)
     return CommandResult(document=document, lines=[head, *_format_modes(modes, even)], judgement=judgement)
 
@@ -78,7 +82,7 @@ def _build_document(
         "assembly": name,
         "preload": args.preload,
         "moment": args.moment,
-        "mass": modes.mass,
+        "mass": modes.assembly_mass,
         "modes": [{"f": f, "f_uniform_pressure": g} for f, g in rows],
         "written": [str(args.vtu)] if args.vtu else [],
     }

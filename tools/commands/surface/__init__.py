@@ -22,8 +22,8 @@ from ...command_line.common import (
     parse_joint_name,
 )
 from ...command_line.outputs import FORCE_HELP, declare_output
-from ...judgement import find_height
-from ...surfaces.heights import FORMS
+from ...judgement import find_rms_height
+from ...surfaces.heights import FORM_NAMES
 from ...surfaces.reading import MAX_RMS_HEIGHT, read_heights
 from ...surfaces.spectrum import METHODS, SCAN_SIDES
 from . import synthesize
@@ -51,7 +51,9 @@ def add(commands: SubParsers) -> None:
     declare_argument(find, "--unit", str, "length unit of files that state none: m, mm, um, nm", "UNIT")
     declare_argument(find, "--unit-x", str, "length unit of x and y only, for files of columns", "UNIT")
     declare_argument(find, "--unit-z", str, "length unit of z only", "UNIT")
-    find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
+    find.add_argument(
+        "--form", choices=FORM_NAMES, default=FORM_NAMES[0], help="form to remove (default: tilt)"
+    )
     text = "treat spikes as heights, not as missing points"
     find.add_argument("--keep-spikes", action="store_true", help=text)
     text = "scaling range: lags and wavelengths [m] (default: the longest range with a power law)"
@@ -106,9 +108,9 @@ def _run_identify(args: argparse.Namespace) -> CommandResult:
     return results.build_result(identified, heights, file, args)
 
 
-def _check_rms_heights(identified: "Identification", force: bool) -> None:
+def _check_rms_heights(identification: "Identification", force: bool) -> None:
     """Raise an error for rms heights above those of any machined surface: most often the unit is wrong."""
-    for name, scan in zip(identified.names, identified.scans, strict=True):
+    for name, scan in zip(identification.file_names, identification.scans, strict=True):
         if scan.rms > MAX_RMS_HEIGHT and not force:
             raise InputRefusal(
                 f"{name}: the rms height is {1e6 * scan.rms:.4g} um, surfaces in contact have up to "
@@ -143,10 +145,11 @@ def _load_start_file(args: argparse.Namespace) -> ParameterFile | None:
         file = load_parameter_file(args.params, args.joint)
         if args.law not in (None, file.law):
             raise InputRefusal(f"{args.params}: has law = {file.law!r}; expected that or none", "law")
-        if args.side in ("1", "2") and find_height(file) and not file.roughness.keys() - {"h"}:
+        if args.side in ("1", "2") and find_rms_height(file) and not file.roughness.keys() - {"h"}:
             other = 3 - int(args.side)
             raise ValueError(
-                f"{args.params}: states h = {find_height(file):g} m of both sides together; expected of the "
+                f"{args.params}: states h = {find_rms_height(file):g} m of both sides together; "
+                "expected of the "
                 f"other side Ra{other} or Rq{other} in its section [{file.heights_prefix[:-1]}], or "
                 "--side both"
             )

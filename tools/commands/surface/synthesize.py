@@ -15,14 +15,16 @@ MAP_POINT_MEMORY, PROFILE_POINT_MEMORY = 64.0, 190.0
 """Memory [B] for one point of a map and of a profile, with its text (measured at a million points)."""
 MAX_RIDGES = 1000
 """Largest number of superposed directions of an isotropic surface."""
-SHAPES = ("isotropic", "textured", "profile")
+SURFACE_TYPES = ("isotropic", "textured", "profile")
 
 
-def add(steps: SubParsers, name: str) -> None:
+def add(subcommands: SubParsers, subcommand_name: str) -> None:
     """Declare the command `jointfmu surface synthesize` with its options."""
-    make = declare_command(steps, name, _run_synthesize, "make a random Weierstrass-Mandelbrot surface")
+    make = declare_command(
+        subcommands, subcommand_name, _run_synthesize, "make a random Weierstrass-Mandelbrot surface"
+    )
     text = "kind of surface (default: isotropic, Hu 2023, Eq. 1)"
-    make.add_argument("--shape", choices=SHAPES, default=SHAPES[0], help=text)
+    make.add_argument("--shape", choices=SURFACE_TYPES, default=SURFACE_TYPES[0], help=text)
     declare_argument(make, "--size", float, "side length [m]", "SIZE", required=True)
     declare_argument(make, "--points", int, "number of points along a side", "POINTS", required=True)
     text = "fractal dimension; isotropic: D_s (2 to 3); textured: D along x and y; profile: D (1 to 2)"
@@ -34,7 +36,7 @@ def add(steps: SubParsers, name: str) -> None:
     text = "number M of superposed directions of an isotropic surface"
     declare_argument(make, "--ridges", int, text, "RIDGES", default=20)
     declare_argument(make, "--seed", int, "seed of the random phases", "SEED", default=0)
-    declare_output(make, "--out", csvfile.SURFACE_FILE, "file to write (.csv)", required=True)
+    declare_output(make, "--out", csvfile.SURFACE_FILE_KIND, "file to write (.csv)", required=True)
 
 
 def _run_synthesize(args: argparse.Namespace) -> CommandResult:

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 
-from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.law import MAX_MODES, ElasticBodies
 from jointfmu.quantity import Array
 
 from ..whole_joint import AXES, LinearJoint
@@ -41,12 +42,12 @@ loss in partial slip needs more accurate modes."""
 STIFFNESS_DIGITS = 6
 """Significant digits of the stiffness of a mode: more than for its displacements, fewer than those in which
 different processors agree."""
-MAX_GAIN = 10.0
+MAX_DISPLACEMENT_CORRECTION = 10.0
 """Largest factor [1] of the correction of modal displacements at the points, and of its inverse."""
 
 
 def reduce_bodies(
-    linear: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
+    linear_joint: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> ElasticBodies:
     """Modes of the bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
 
@@ -56,24 +57,25 @@ def reduce_bodies(
 
     Raises RuntimeError if a body can move freely.
     """
-    joint = linear.joint
+    joint = linear_joint.joint
     interface = joint.interface
-    bolts = joint.bolts - interface.centroid
-    motions, deformed = compute_states(linear, spring, normal_stiffness, preload)
-    fields = _energy_modes(linear, deformed, motions)
+    bolts = joint.bolt_positions - interface.centroid
+    motions, deformed = compute_states(linear_joint, spring, normal_stiffness, preload)
+    fields = _energy_modes(linear_joint, deformed, motions)
     stretch = joint.elongation_matrix.T @ fields
     patches = spring.patches
     start = spring.preloaded_approach(preload, 0.0)
-    point_stiffness, patch_approach = spring.curve.derivatives(start, 1)[1], spring.patch_approach(start)
-    ratio = spring.foundation().stiffness_ratio
+    point_stiffness = spring.curve.derivatives(start, 1)[1]
+    patch_approach = spring.contact.patch_approach(start)
+    ratio = spring.friction.foundation().stiffness_ratio
     patch_shear = ratio * spring.curve.derivatives(patch_approach, 1)[1]
     x, y = patches.position.T
     traces = [joint.relative_displacement_matrix(axis) @ fields for axis in AXES]
-    springs, area = interface.area * normal_stiffness, spring.joint.A_0
+    springs, area = interface.quadrature_area * normal_stiffness, spring.joint.A_0
     opening = _match_stiffness(
-        averaging_matrix(joint, spring.shape.position, normal_stiffness) @ traces[2],
-        _rigid_opening(spring.shape.position),
-        area * spring.shape.share * point_stiffness,
+        averaging_matrix(joint, spring.points.position, normal_stiffness) @ traces[2],
+        _rigid_opening(spring.points.position),
+        area * spring.points.area_share * point_stiffness,
         _rigid_opening(interface.centred_position),
         traces[2],
         springs,
@@ -81,17 +83,19 @@ def reduce_bodies(
     combinations = shear_combinations(motions)
     deformation = -(deformed @ combinations.T)
     shears = ShearStates(
-        (combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear.body_matrix @ deformation)).T
+        (combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear_joint.body_matrix @ deformation)).T
     )
-    law, approach = spring.foundation(), approach_at_stiffness(spring, normal_stiffness)
-    surface = FrictionPoints(interface.area, approach, rigid_displacement_matrix(interface.centred_position))
+    law, approach = spring.friction.foundation(), approach_at_stiffness(spring, normal_stiffness)
+    surface = FrictionPoints(
+        interface.quadrature_area, approach, rigid_displacement_matrix(interface.centred_position)
+    )
     tangential = np.concatenate(traces[:2])
     target_work = compute_friction_work(law, shears, surface, tangential)
     means = averaging_matrix(joint, patches.position, normal_stiffness)
     patch_rows = _match_stiffness(
         np.concatenate([means @ traces[0], means @ traces[1]]),
         rigid_displacement_matrix(patches.position),
-        np.tile(area * patches.share * patch_shear, 2),
+        np.tile(area * patches.area_share * patch_shear, 2),
         surface.rigid_displacement,
         tangential,
         np.tile(ratio * springs, 2),
@@ -99,12 +103,20 @@ def reduce_bodies(
     rotations = patch_rotations(interface.centred_position, patches, means, traces)
     unit = ShearStates(
         np.eye(6)[:, (0, 1, 5)],
-        ((linear.body_matrix @ (linear.displacement - linear.rigid_displacement)).T @ fields),
+        (
+            (
+                linear_joint.body_matrix
+                @ (linear_joint.unit_motion_displacement - linear_joint.rigid_displacement)
+            ).T
+            @ fields
+        ),
     )
     linear_contact = LinearContact(
         unit,
-        stick_stiffness_matrix(evaluate_friction(law, unit, surface, tangential)[1], interface.area),
-        linear.stiffness.diagonal(),
+        stick_stiffness_matrix(
+            evaluate_friction(law, unit, surface, tangential)[1], interface.quadrature_area
+        ),
+        linear_joint.stiffness.diagonal(),
     )
     sliders = place_sliders(patches, area, patch_approach, rotations)
     patch_rows = PatchFit(law, shears, *sliders, target_work, linear_contact).fit(patch_rows)
@@ -118,7 +130,7 @@ def reduce_bodies(
     return ElasticBodies(stiffness=modal_stiffness, **values)
 
 
-def _normalise_modes(displacements: dict[str, Array]) -> tuple[Array, dict[str, Any]]:
+def _normalise_modes(modal_displacements: dict[str, Array]) -> tuple[Array, dict[str, Any]]:
     """Normalise the modes to a largest displacement of 1 and round them.
 
     The sign makes the first largest displacement positive: otherwise the last bits of a processor would
@@ -128,8 +140,8 @@ def _normalise_modes(displacements: dict[str, Array]) -> tuple[Array, dict[str, 
 
     Returns the largest displacement (k) of each mode, and the normalised rows as flat tuples.
     """
-    largest = np.max(np.abs(np.concatenate(list(displacements.values()))), axis=0)
-    rounded = {name: np.round(rows / largest, DIGITS) for name, rows in displacements.items()}
+    largest = np.max(np.abs(np.concatenate(list(modal_displacements.values()))), axis=0)
+    rounded = {name: np.round(rows / largest, MODE_DECIMALS) for name, rows in modal_displacements.items()}
     all_rows = np.concatenate(list(rounded.values()))
     first = np.argmax(np.abs(all_rows), axis=0)
     sign = np.sign(all_rows[first, np.arange(len(first))])
@@ -141,7 +153,7 @@ def _to_tuple(values: Array) -> tuple[float, ...]:
     return tuple((values + 0.0).tolist())
 
 
-def _energy_modes(linear: LinearJoint, states: Array, motions: Array) -> Array:
+def _energy_modes(linear_joint: LinearJoint, state_deformations: Array, motions: Array) -> Array:
     """Compute modes (n, k) of the bodies that are orthonormal in the energy norm.
 
     The first modes span the response of the linear joint to unit motions; the others come from the proper
@@ -150,32 +162,41 @@ def _energy_modes(linear: LinearJoint, states: Array, motions: Array) -> Array:
     state_deformations : (n, s) [m] deformation of the bodies
     motions            : (s, 6) [m, rad] of side 2 in these states
     """
-    linear_modes = _decompose(
-        _scale_to_unit_energy(linear.displacement - linear.rigid_displacement, linear), linear
+    linear_modes = _decompose_orthogonally(
+        _scale_to_unit_energy(
+            linear_joint.unit_motion_displacement - linear_joint.rigid_displacement, linear_joint
+        ),
+        linear_joint,
     )
-    states = _scale_to_unit_energy(states, linear)
+    state_deformations = _scale_to_unit_energy(state_deformations, linear_joint)
     for _ in range(2):  # repeated Gram-Schmidt: two passes are enough
-        states = states - linear_modes @ (linear_modes.T @ (linear.body_matrix @ states))
+        state_deformations = state_deformations - linear_modes @ (
+            linear_modes.T @ (linear_joint.body_matrix @ state_deformations)
+        )
     weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING_STATE_WEIGHT, 1.0)
-    other_modes = _decompose(weight * states, linear)[:, : MODES - linear_modes.shape[1]]
+    other_modes = _decompose_orthogonally(weight * state_deformations, linear_joint)[
+        :, : MAX_MODES - linear_modes.shape[1]
+    ]
     return np.concatenate([linear_modes, other_modes], axis=1)
 
 
-def _scale_to_unit_energy(fields: Array, linear: LinearJoint) -> Array:
+def _scale_to_unit_energy(displacements: Array, linear_joint: LinearJoint) -> Array:
     """Scale displacements (n, s) [m] to unit energy norm, u K u = 1."""
-    return np.asarray(fields / np.sqrt(np.sum(fields * (linear.body_matrix @ fields), axis=0)))
+    return np.asarray(
+        displacements / np.sqrt(np.sum(displacements * (linear_joint.body_matrix @ displacements), axis=0))
+    )
 
 
-def _decompose(fields: Array, linear: LinearJoint) -> Array:
+def _decompose_orthogonally(displacements: Array, linear_joint: LinearJoint) -> Array:
     """Proper orthogonal decomposition of fields (n, s) in the energy norm.
 
     Returns orthonormal modes (n, k), the largest singular value first, without those below
     MIN_SINGULAR_VALUE_RATIO.
     """
-    energy, vectors = np.linalg.eigh(fields.T @ (linear.body_matrix @ fields))
+    energy, vectors = np.linalg.eigh(displacements.T @ (linear_joint.body_matrix @ displacements))
     energy, vectors = energy[::-1], vectors[:, ::-1]
     count = int(np.sum(energy > MIN_SINGULAR_VALUE_RATIO**2 * energy[0]))
-    return np.asarray(fields @ (vectors[:, :count] / np.sqrt(energy[:count])))
+    return np.asarray(displacements @ (vectors[:, :count] / np.sqrt(energy[:count])))
 
 
 def _rigid_opening(position: Array) -> Array:
@@ -185,7 +206,12 @@ def _rigid_opening(position: Array) -> Array:
 
 
 def _match_stiffness(
-    means: Array, rigid: Array, mean_stiffness: Array, all_rigid: Array, trace: Array, spring_stiffness: Array
+    reduced_displacement: Array,
+    reduced_rigid_displacement: Array,
+    reduced_stiffness: Array,
+    full_rigid_displacement: Array,
+    full_displacement: Array,
+    full_stiffness: Array,
 ) -> Array:
     """Correct the modal displacements (n, k) of a reduced set of springs until it is as stiff as all springs.
 
@@ -197,15 +223,21 @@ def _match_stiffness(
     full_stiffness : (q) [N/m] of all springs
     """
     few_rigid_part = np.linalg.solve(
-        rigid.T @ (mean_stiffness[:, None] * rigid), rigid.T @ (mean_stiffness[:, None] * means)
+        reduced_rigid_displacement.T @ (reduced_stiffness[:, None] * reduced_rigid_displacement),
+        reduced_rigid_displacement.T @ (reduced_stiffness[:, None] * reduced_displacement),
     )
     all_rigid_part = np.linalg.solve(
-        all_rigid.T @ (spring_stiffness[:, None] * all_rigid),
-        all_rigid.T @ (spring_stiffness[:, None] * trace),
+        full_rigid_displacement.T @ (full_stiffness[:, None] * full_rigid_displacement),
+        full_rigid_displacement.T @ (full_stiffness[:, None] * full_displacement),
     )
-    few_bending, all_bending = means - rigid @ few_rigid_part, trace - all_rigid @ all_rigid_part
-    target = all_bending.T @ (spring_stiffness[:, None] * all_bending)
+    few_bending = reduced_displacement - reduced_rigid_displacement @ few_rigid_part
+    all_bending = full_displacement - full_rigid_displacement @ all_rigid_part
+    target = all_bending.T @ (full_stiffness[:, None] * all_bending)
     target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
-    ratio, vectors = la.eigh(few_bending.T @ (mean_stiffness[:, None] * few_bending), target)
-    gain = np.minimum(1.0 / np.sqrt(np.maximum(ratio, MAX_GAIN**-2)), MAX_GAIN)
-    return np.asarray(rigid @ all_rigid_part + few_bending @ (vectors * gain) @ vectors.T @ target)
+    ratio, vectors = la.eigh(few_bending.T @ (reduced_stiffness[:, None] * few_bending), target)
+    gain = np.minimum(
+        1.0 / np.sqrt(np.maximum(ratio, MAX_DISPLACEMENT_CORRECTION**-2)), MAX_DISPLACEMENT_CORRECTION
+    )
+    return np.asarray(
+        reduced_rigid_displacement @ all_rigid_part + few_bending @ (vectors * gain) @ vectors.T @ target
+    )

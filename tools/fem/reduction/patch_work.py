@@ -15,16 +15,16 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from jointfmu.mechanics.footprint.friction import CIRCLE_POINTS
-from jointfmu.mechanics.footprint.shape import FrictionPatches
+from jointfmu.mechanics.footprint.distribution import FrictionPatches
+from jointfmu.mechanics.footprint.patch_reduction import CIRCLE_POINTS
 from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
-PAIR_WEIGHT = np.sqrt(0.5)
+COMBINED_STATE_WEIGHT = np.sqrt(0.5)
 """Weight of each of two states that are combined [1]."""
 REGULARISATION_WEIGHT = 0.1
 """Weight of the change of the patch displacements (regularisation) over the weight of the forces [1]."""
-MAX_STEPS = 10
+MAX_FIT_STEPS = 10
 """Largest number of steps of the Levenberg-Marquardt method."""
 INITIAL_DAMPING, DAMPING_DECREASE, DAMPING_INCREASE, MAX_DAMPING = 1e-3, 0.2, 5.0, 1e6
 """Levenberg-Marquardt damping over the diagonal of the normal equations [1]: initial value, factor after a
@@ -39,7 +39,7 @@ MIN_RELATIVE_SCALE = 0.03
 """Displacement of the patches by a mode over that by the most effective mode [1]: lower limit for scales."""
 
 
-def shear_combinations(motion: Array) -> Array:
+def shear_combinations(state_motions: Array) -> Array:
     """Coefficients (w, s) that combine s states to w states in shear.
 
     The combinations are the states along x, along y and about z alone (the same number for each axis), then
@@ -47,12 +47,12 @@ def shear_combinations(motion: Array) -> Array:
 
     state_motions : (s, 6) [m, rad] of the states
     """
-    single = np.flatnonzero(~np.any(motion[:, 2:5], axis=1))
-    single = single[np.count_nonzero(motion[single], axis=1) == 1]
-    identity = np.eye(len(motion))
-    axes = [identity[single[motion[single][:, axis] != 0.0]] for axis in (0, 1, 5)]
+    single = np.flatnonzero(~np.any(state_motions[:, 2:5], axis=1))
+    single = single[np.count_nonzero(state_motions[single], axis=1) == 1]
+    identity = np.eye(len(state_motions))
+    axes = [identity[single[state_motions[single][:, axis] != 0.0]] for axis in (0, 1, 5)]
     pairs = [(axes[i], axes[j], sign) for i, j in ((0, 1), (0, 2), (1, 2)) for sign in (1.0, -1.0)]
-    return np.concatenate([*axes, *(PAIR_WEIGHT * (a + sign * b) for a, b, sign in pairs)])
+    return np.concatenate([*axes, *(COMBINED_STATE_WEIGHT * (a + sign * b) for a, b, sign in pairs)])
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class FrictionPoints:
                          along y and about z
     """
 
-    area: Array
+    point_area: Array
     approach: Array
     rigid_displacement: Array
 
@@ -93,15 +93,15 @@ class FrictionWork:
 
     forces: Array
     stick_forces: Array
-    loss: Array
+    cycle_loss: Array
 
     @cached_property
-    def scales(self) -> tuple[Array, Array, Array]:
+    def residual_scales(self) -> tuple[Array, Array, Array]:
         """Scales of forces, stick forces (s, 3 + k) and losses (s): their relative errors count alike."""
         return (
             _force_scale(self.forces),
             _force_scale(self.stick_forces),
-            np.maximum(self.loss, MIN_DISPLACEMENT * np.max(self.loss)),
+            np.maximum(self.cycle_loss, MIN_DISPLACEMENT * np.max(self.cycle_loss)),
         )
 
 
@@ -127,28 +127,33 @@ class MonotonicFriction:
     cycle_loss_derivative : derivative of cycle_loss with respect to the magnitude [Pa]
     """
 
-    u: Array
-    v: Array
-    magnitude: Array
+    displacement_x: Array
+    displacement_y: Array
+    displacement_magnitude: Array
     secant_stiffness: Array
     tangent_stiffness: Array
     stick_stiffness: Array
-    loss: Array
-    loss_derivative: Array
+    cycle_loss: Array
+    cycle_loss_derivative: Array
 
     @classmethod
-    def evaluate(cls, law: Foundation, approach: Array, displacement: Array) -> "MonotonicFriction":
+    def evaluate(cls, friction_law: Foundation, approach: Array, displacement: Array) -> "MonotonicFriction":
         """Friction at approaches (n) [m] and tangential displacements (s, 2 n) [m]: along x, then along y."""
         u, v = np.split(displacement, 2, axis=1)
         size = np.maximum(np.hypot(u, v), MIN_DISPLACEMENT)
         stick, tangent = (
-            law.stiffness_ratio * law.curve.derivatives(x, 1)[1]
-            for x in (approach, approach - law.stiffness_ratio / law.friction_coefficient * size)
+            friction_law.stiffness_ratio * friction_law.curve.derivatives(x, 1)[1]
+            for x in (
+                approach,
+                approach - friction_law.stiffness_ratio / friction_law.friction_coefficient * size,
+            )
         )
         stick = np.broadcast_to(stick, size.shape)
-        force = np.minimum(law.virgin_traction(approach, size), stick * size)
+        force = np.minimum(friction_law.virgin_traction(approach, size), stick * size)
         rate = 4.0 * (force - tangent * size)
-        return cls(u, v, size, force / size, tangent, stick, law.cycle_energies(approach, size)[0], rate)
+        return cls(
+            u, v, size, force / size, tangent, stick, friction_law.cycle_energies(approach, size)[0], rate
+        )
 
 
 @dataclass(frozen=True)
@@ -183,15 +188,15 @@ class PatchFit:
     linear_contact        : stick stiffness of the complete contact, which the patches keep
     """
 
-    law: Foundation
-    states: ShearStates
+    friction_law: Foundation
+    shear_states: ShearStates
     sliders: FrictionPoints
     rotation_displacement: Array
     target_work: FrictionWork
     linear_contact: LinearContact
 
     def evaluate_sliders(
-        self, states: ShearStates, patch_displacement: Array
+        self, shear_states: ShearStates, patch_displacement: Array
     ) -> tuple[Array, MonotonicFriction]:
         """Evaluate the friction of all sliders in states of the joint.
 
@@ -204,7 +209,7 @@ class PatchFit:
             np.concatenate([np.tile(half, (count, 1)) for half in np.split(patch_displacement, 2)])
             + self.rotation_displacement
         )
-        return evaluate_friction(self.law, states, self.sliders, by_modes)
+        return evaluate_friction(self.friction_law, shear_states, self.sliders, by_modes)
 
     def fit(self, patch_displacement: Array) -> Array:
         """Fit the patch displacements (2 m, k) by the Levenberg-Marquardt method, from given initial values.
@@ -215,17 +220,15 @@ class PatchFit:
         typical = np.sqrt(np.mean(patch_displacement**2, axis=0))
         weight = (
             REGULARISATION_WEIGHT
-            * np.sqrt(len(self.target_work.loss) / patch_displacement.size)
+            * np.sqrt(len(self.target_work.cycle_loss) / patch_displacement.size)
             / np.maximum(typical, MIN_RELATIVE_SCALE * typical.max())
         )
-        weight, initial, damping = (
-            np.broadcast_to(weight, patch_displacement.shape),
-            patch_displacement,
-            INITIAL_DAMPING,
-        )
+        weight = np.broadcast_to(weight, patch_displacement.shape)
+        initial = patch_displacement
+        damping = INITIAL_DAMPING
         work_residual = self._work_residual(patch_displacement, weight * (patch_displacement - initial))
         stiffness_residual = self._stiffness_residual(patch_displacement)
-        for _ in range(MAX_STEPS):
+        for _ in range(MAX_FIT_STEPS):
             work_jacobian = np.concatenate([self._work_jacobian(patch_displacement), np.diag(weight.ravel())])
             stiffness_jacobian = self._stiffness_jacobian(patch_displacement)
             hessian = work_jacobian.T @ work_jacobian
@@ -246,27 +249,27 @@ class PatchFit:
                 damping *= DAMPING_INCREASE
             else:
                 return patch_displacement
-            patch_displacement, (work_residual, stiffness_residual), damping = (
-                trial,
-                residuals,
-                DAMPING_DECREASE * damping,
-            )
+            patch_displacement = trial
+            work_residual, stiffness_residual = residuals
+            damping = DAMPING_DECREASE * damping
         return patch_displacement
 
     def _stiffness_residual(self, patch_displacement: Array) -> Array:
         """Weighted relative error (w (w + 1) / 2) [1] of the stick stiffness of the patches."""
         _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
         error = (
-            stick_stiffness_matrix(friction, self.sliders.area) - self.linear_contact.contact_stiffness
+            stick_stiffness_matrix(friction, self.sliders.point_area) - self.linear_contact.contact_stiffness
         ) / self.linear_contact.stiffness_scale
         return np.asarray(STIFFNESS_WEIGHT * error[np.triu_indices(len(error))])
 
     def _stiffness_jacobian(self, patch_displacement: Array) -> Array:
         """Derivative of the stiffness residual with respect to the patch displacements."""
         _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
-        force = (self.sliders.area * friction.stick_stiffness * np.stack([friction.u, friction.v])).swapaxes(
-            0, 1
-        )
+        force = (
+            self.sliders.point_area
+            * friction.stick_stiffness
+            * np.stack([friction.displacement_x, friction.displacement_y])
+        ).swapaxes(0, 1)
         force = (
             force.reshape(len(force), 2, -1, len(patch_displacement) // 2).sum(axis=2).reshape(len(force), -1)
         )
@@ -276,30 +279,36 @@ class PatchFit:
             STIFFNESS_WEIGHT * slope[np.triu_indices(len(slope))].reshape(-1, patch_displacement.size)
         )
 
-    def _work_residual(self, patch_displacement: Array, change: Array) -> Array:
+    def _work_residual(self, patch_displacement: Array, weighted_change: Array) -> Array:
         """Relative errors [1] of forces, stick forces and loss of the patches, then their weighted change."""
-        displacement, friction = self.evaluate_sliders(self.states, patch_displacement)
-        actual, target = assemble_friction_work(friction, self.sliders.area, displacement), self.target_work
+        displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
+        actual = assemble_friction_work(friction, self.sliders.point_area, displacement)
+        target = self.target_work
         pairs = (
             (actual.forces, target.forces),
             (actual.stick_forces, target.stick_forces),
-            (actual.loss, target.loss),
+            (actual.cycle_loss, target.cycle_loss),
         )
-        errors = [((a - b) / size).ravel() for (a, b), size in zip(pairs, target.scales, strict=True)]
-        return np.concatenate([*errors, change.ravel()])
+        errors = [
+            ((a - b) / size).ravel() for (a, b), size in zip(pairs, target.residual_scales, strict=True)
+        ]
+        return np.concatenate([*errors, weighted_change.ravel()])
 
     def _work_jacobian(self, patch_displacement: Array) -> Array:
         """Derivative of the relative errors of forces and loss with respect to the patch displacements."""
-        displacement, friction = self.evaluate_sliders(self.states, patch_displacement)
-        area, amplitude = self.sliders.area, self.states.modal_coordinates
+        displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
+        area, amplitude = self.sliders.point_area, self.shear_states.modal_coordinates
         (n_states, modes), count = amplitude.shape, len(patch_displacement) // 2
-        u, v, size = friction.u, friction.v, friction.magnitude
+        u, v, size = friction.displacement_x, friction.displacement_y, friction.displacement_magnitude
         direction, halves = (u / size, v / size), np.split(displacement, 2)
         secant, tangent = friction.secant_stiffness, friction.tangent_stiffness
 
-        def patch_products(slope: Array, slider_displacement: Array) -> Array:
+        def patch_products(slider_stiffness: Array, slider_displacement: Array) -> Array:
             """Product of tangent and displacement (s, 3 + k, m), summed over the sliders of each patch."""
-            factors = slope.reshape(n_states, -1, count), slider_displacement.reshape(-1, count, 3 + modes)
+            factors = (
+                slider_stiffness.reshape(n_states, -1, count),
+                slider_displacement.reshape(-1, count, 3 + modes),
+            )
             return np.einsum("scm,cmh->shm", *factors)
 
         def patch_sums(slider_values: Array) -> Array:
@@ -314,11 +323,11 @@ class PatchFit:
                 forces[0, :, :, i] += patch_products(slope, halves[j])
             forces[1, :, :, i] = patch_products(springs, halves[i])
             patch_forces[:, :, i] = patch_sums(area * secant * shift), patch_sums(springs * shift)
-            loss[:, i] = patch_sums(area * friction.loss_derivative * direction[i])
+            loss[:, i] = patch_sums(area * friction.cycle_loss_derivative * direction[i])
         force_derivative, mode = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
         force_derivative[:, :, 3 + mode, :, :, mode] += patch_forces
         derivatives = *force_derivative, loss[..., None] * amplitude[:, None, None]
-        pairs = zip(derivatives, self.target_work.scales, strict=True)
+        pairs = zip(derivatives, self.target_work.residual_scales, strict=True)
         return np.concatenate(
             [(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, patch_displacement.size) for x, s in pairs]
         )
@@ -335,7 +344,10 @@ def rigid_displacement_matrix(position: Array) -> Array:
 
 
 def patch_rotations(
-    position: Array, patches: FrictionPatches, means: sp.csr_matrix, traces: list[Array]
+    quadrature_position: Array,
+    patches: FrictionPatches,
+    averaging_matrix: sp.csr_matrix,
+    tangential_displacements: list[Array],
 ) -> Array:
     """Rotation (m, k) [1/m] of the patches about their centres by the modes.
 
@@ -346,16 +358,17 @@ def patch_rotations(
     averaging_matrix : averaging matrix (m, q) [1]
     tangential_displacements : displacement (q, k) [1] of the quadrature points along x and y by the modes
     """
-    cell = cKDTree(patches.position).query(position)[1]
-    x, y = (position - (means @ position)[cell]).T
-    lever, square = x[:, None] * traces[1] - y[:, None] * traces[0], means @ (x * x + y * y)
+    cell = cKDTree(patches.position).query(quadrature_position)[1]
+    x, y = (quadrature_position - (averaging_matrix @ quadrature_position)[cell]).T
+    lever = x[:, None] * tangential_displacements[1] - y[:, None] * tangential_displacements[0]
+    square = averaging_matrix @ (x * x + y * y)
     extended = square > 0.0
     inverse = np.where(extended, 1.0 / np.where(extended, square, 1.0), 0.0)
-    return np.asarray(inverse[:, None] * (means @ lever))
+    return np.asarray(inverse[:, None] * (averaging_matrix @ lever))
 
 
 def place_sliders(
-    patches: FrictionPatches, area: float, approach: Array, rotations: Array
+    patches: FrictionPatches, contact_area: float, patch_approach: Array, modal_rotations: Array
 ) -> tuple[FrictionPoints, Array]:
     """Sliders of the patches: c = 1 at the centre, or c on a circle around it if patches have a radius.
 
@@ -368,17 +381,20 @@ def place_sliders(
     circle = CIRCLE_POINTS if np.any(patches.radius) else 0.0 * CIRCLE_POINTS[:1]
     offset = circle[:, None] * patches.radius[:, None]
     count, (x, y) = len(circle), offset.reshape(-1, 2).T[:, :, None]
-    slider_rotations = np.tile(rotations, (count, 1))
+    slider_rotations = np.tile(modal_rotations, (count, 1))
     sliders = FrictionPoints(
-        np.tile(area * patches.share / count, count),
-        np.tile(approach, count),
+        np.tile(contact_area * patches.area_share / count, count),
+        np.tile(patch_approach, count),
         rigid_displacement_matrix((patches.position + offset).reshape(-1, 2)),
     )
     return sliders, np.concatenate([-y * slider_rotations, x * slider_rotations])
 
 
 def evaluate_friction(
-    law: Foundation, states: ShearStates, points: FrictionPoints, modal_displacement: Array
+    friction_law: Foundation,
+    shear_states: ShearStates,
+    friction_points: FrictionPoints,
+    modal_displacement: Array,
 ) -> tuple[Array, MonotonicFriction]:
     """Evaluate the friction of n points in states of the joint.
 
@@ -386,37 +402,53 @@ def evaluate_friction(
 
     Returns the displacement (2 n, 3 + k) of the points by motions and modes, and their friction.
     """
-    displacement = np.concatenate([points.rigid_displacement, modal_displacement], axis=1)
-    coordinates = np.concatenate([states.motion, states.modal_coordinates], axis=1)
-    return displacement, MonotonicFriction.evaluate(law, points.approach, coordinates @ displacement.T)
+    displacement = np.concatenate([friction_points.rigid_displacement, modal_displacement], axis=1)
+    coordinates = np.concatenate([shear_states.motion, shear_states.modal_coordinates], axis=1)
+    return displacement, MonotonicFriction.evaluate(
+        friction_law, friction_points.approach, coordinates @ displacement.T
+    )
 
 
-def assemble_friction_work(friction: MonotonicFriction, area: Array, displacement: Array) -> FrictionWork:
+def assemble_friction_work(
+    friction: MonotonicFriction, point_area: Array, displacement: Array
+) -> FrictionWork:
     """Generalised forces and loss of the friction of n points.
 
     point_area   : (n) [m2]
     displacement : (2 n, 3 + k) of the points by motions and modes
     """
     forces, stick_forces = (
-        np.concatenate([area * slope * shift for shift in (friction.u, friction.v)], axis=1) @ displacement
+        np.concatenate(
+            [point_area * slope * shift for shift in (friction.displacement_x, friction.displacement_y)],
+            axis=1,
+        )
+        @ displacement
         for slope in (friction.secant_stiffness, friction.stick_stiffness)
     )
-    return FrictionWork(forces, stick_forces, friction.loss @ area)
+    return FrictionWork(forces, stick_forces, friction.cycle_loss @ point_area)
 
 
-def stick_stiffness_matrix(friction: MonotonicFriction, area: Array) -> Array:
+def stick_stiffness_matrix(friction: MonotonicFriction, point_area: Array) -> Array:
     """Stick stiffness (w, w) [N/m, N, N.m] of points with areas (n) [m2] for each pair of w states."""
     return np.asarray(
-        sum((area * friction.stick_stiffness * shift) @ shift.T for shift in (friction.u, friction.v))
+        sum(
+            (point_area * friction.stick_stiffness * shift) @ shift.T
+            for shift in (friction.displacement_x, friction.displacement_y)
+        )
     )
 
 
 def compute_friction_work(
-    law: Foundation, states: ShearStates, points: FrictionPoints, modal_displacement: Array
+    friction_law: Foundation,
+    shear_states: ShearStates,
+    friction_points: FrictionPoints,
+    modal_displacement: Array,
 ) -> FrictionWork:
     """Generalised forces and loss of the friction of n points in states of the joint.
 
     modal_displacement : (2 n, k) [1] of the points along x, then along y, by the modes
     """
-    displacement, friction = evaluate_friction(law, states, points, modal_displacement)
-    return assemble_friction_work(friction, points.area, displacement)
+    displacement, friction = evaluate_friction(
+        friction_law, shear_states, friction_points, modal_displacement
+    )
+    return assemble_friction_work(friction, friction_points.point_area, displacement)

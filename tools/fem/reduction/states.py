@@ -14,28 +14,28 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import working_preload
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
-from ..elasticity import Cholesky, ElasticBody, Index
+from ..elasticity import Cholesky, ElasticBody, IndexArray
 from ..whole_joint import AXES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
 from .patch_work import MIN_DISPLACEMENT
 
-SHEAR_LEVELS = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
+SHEAR_MOTION_RATIOS = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
 """Motions along x, y and about z over the motion at which the linear joint reaches its friction limit [1]."""
-OPENING_LEVELS = (-0.6, -0.2, 0.3, 0.6, 0.9, 1.2)
+OPENING_MOTION_RATIOS = (-0.6, -0.2, 0.3, 0.6, 0.9, 1.2)
 """Motions along z and about x, y, over the motion at which the linear joint loses its preload force [1]."""
 COMBINED_MOTION_COUNT = 12
 """Number of motions along and about all axes at once."""
 MAX_NEWTON_STEPS, RELATIVE_TOLERANCE = 40, 1e-9
 """Largest number of steps of Newton's method; residual over the largest prescribed motion [1] at its end."""
-REFINEMENT_STEPS = 3
+EQUILIBRIUM_ITERATIONS = 3
 """Number of steps that bring the states in shear to equilibrium at all quadrature points."""
 
 
 def compute_states(
-    linear: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
+    linear_joint: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> tuple[Array, Array]:
     """Compute the states of a joint under motions of side 2, which start from the preloaded joint.
 
@@ -48,15 +48,17 @@ def compute_states(
 
     Raises RuntimeError if a body can move freely.
     """
-    cells = CellLoads.from_joint(linear.joint, spring, normal_stiffness)
-    joint_states = CellJoint.from_cells(cells, linear.joint.bolts - linear.joint.interface.centroid, preload)
-    motions = np.array(list(joint_states.motions()))
-    deformation = cells.displacement @ np.stack(
+    cells = CellLoads.from_joint(linear_joint.joint, spring, normal_stiffness)
+    joint_states = CellJoint.from_cells(
+        cells, linear_joint.joint.bolt_positions - linear_joint.joint.interface.centroid, preload
+    )
+    motions = np.array(list(joint_states.generate_motions()))
+    deformation = cells.unit_load_displacement @ np.stack(
         [joint_states.solve_forces(motion) for motion in motions], axis=1
     )
     sheared = ~np.any(motions[:, 2:5], axis=1)
     deformation[:, sheared] = refine_equilibrium(
-        linear, spring, normal_stiffness, motions[sheared], deformation[:, sheared]
+        linear_joint, spring, normal_stiffness, motions[sheared], deformation[:, sheared]
     )
     return motions, deformation
 
@@ -76,15 +78,15 @@ class CellLoads:
     joint: JointFiniteElements
     spring: BoltedJointSpring
     normal_stiffness: Array
-    loads: sp.csr_matrix
-    displacement: Array
+    averaging_operators: sp.csr_matrix
+    unit_load_displacement: Array
 
     @classmethod
     def from_joint(
         cls, joint: JointFiniteElements, spring: BoltedJointSpring, normal_stiffness: Array
     ) -> "CellLoads":
         """Compute the displacement under all unit loads. Raises RuntimeError if a body can move freely."""
-        means = averaging_matrix(joint, spring.shape.position, normal_stiffness)
+        means = averaging_matrix(joint, spring.points.position, normal_stiffness)
         stretch = sp.csr_matrix(joint.elongation_matrix.T)
         loads = sp.vstack(
             [*(means @ joint.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
@@ -99,17 +101,17 @@ class CellLoads:
         return cls(joint, spring, normal_stiffness, loads, np.concatenate([displacement1, displacement2]))
 
 
-def _solve_body(body: ElasticBody, fixed_unknowns: Index, loads: sp.csr_matrix) -> Array:
+def _solve_body(body: ElasticBody, fixed_unknowns: IndexArray, unit_loads: sp.csr_matrix) -> Array:
     """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed."""
-    displacement, free = (
-        np.zeros(loads.shape[::-1]),
-        np.setdiff1d(np.arange(body.unknown_count), fixed_unknowns),
-    )
-    displacement[free] = Cholesky(body.stiffness[free][:, free]).solve(loads[:, free].T.tocsc())
+    displacement = np.zeros(unit_loads.shape[::-1])
+    free = np.setdiff1d(np.arange(body.unknown_count), fixed_unknowns)
+    displacement[free] = Cholesky(body.stiffness[free][:, free]).solve(unit_loads[:, free].T.tocsc())
     return displacement
 
 
-def averaging_matrix(joint: JointFiniteElements, centres: Array, normal_stiffness: Array) -> sp.csr_matrix:
+def averaging_matrix(
+    joint: JointFiniteElements, cell_centres: Array, normal_stiffness: Array
+) -> sp.csr_matrix:
     """Averaging matrix (n, q) [1] over cells of the contact, weighted by the normal stiffness (q) [Pa/m].
 
     A quadrature point belongs to the cell with the nearest centre. A cell without quadrature points takes the
@@ -119,13 +121,13 @@ def averaging_matrix(joint: JointFiniteElements, centres: Array, normal_stiffnes
     """
     interface = joint.interface
     position = interface.centred_position
-    cell = cKDTree(centres).query(position)[1]
-    weight = interface.area * np.maximum(normal_stiffness, 1e-6 * normal_stiffness.max())
-    empty = np.flatnonzero(np.bincount(cell, weight, minlength=len(centres)) == 0.0)
-    nearest = cKDTree(position).query(centres[empty])[1]
+    cell = cKDTree(cell_centres).query(position)[1]
+    weight = interface.quadrature_area * np.maximum(normal_stiffness, 1e-6 * normal_stiffness.max())
+    empty = np.flatnonzero(np.bincount(cell, weight, minlength=len(cell_centres)) == 0.0)
+    nearest = cKDTree(position).query(cell_centres[empty])[1]
     rows, columns = np.append(cell, empty), np.append(np.arange(cell.size), nearest)
     sums = sp.csr_matrix(
-        (np.append(weight, np.ones(empty.size)), (rows, columns)), shape=(len(centres), cell.size)
+        (np.append(weight, np.ones(empty.size)), (rows, columns)), shape=(len(cell_centres), cell.size)
     )
     return (sp.diags(1.0 / np.asarray(sums.sum(axis=1)).ravel()) @ sums).tocsr()
 
@@ -148,50 +150,52 @@ class CellJoint:
     preload: float
 
     @classmethod
-    def from_cells(cls, cells: CellLoads, bolts: Array, preload: float) -> "CellJoint":
+    def from_cells(cls, cell_loads: CellLoads, bolt_positions: Array, preload: float) -> "CellJoint":
         """Joint preloaded by bolts at positions (b, 2) [m], with the compliance of its cells."""
-        spring, compliance = cells.spring, np.asarray(cells.loads @ cells.displacement)
-        x, y = spring.shape.position.T
-        n, b = x.size, len(bolts)
+        spring = cell_loads.spring
+        compliance = np.asarray(cell_loads.averaging_operators @ cell_loads.unit_load_displacement)
+        x, y = spring.points.position.T
+        n, b = x.size, len(bolt_positions)
         rigid = np.zeros((3 * n + b, 6))
         rigid[:n, 2:5] = np.stack([np.ones(n), y, -x], axis=1)
         rigid[n : 2 * n, [0, 5]] = np.stack([np.ones(n), -y], axis=1)
         rigid[2 * n : 3 * n, [1, 5]] = np.stack([np.ones(n), x], axis=1)
-        rigid[3 * n :, 2:5] = np.stack([np.ones(b), bolts[:, 1], -bolts[:, 0]], axis=1)
+        rigid[3 * n :, 2:5] = np.stack([np.ones(b), bolt_positions[:, 1], -bolt_positions[:, 0]], axis=1)
         start = spring.preloaded_approach(preload, 0.0)
         return cls(spring, 0.5 * (compliance + compliance.T), rigid, start, preload)
 
-    def cell_forces(self, g: Array) -> tuple[Array, sp.csr_matrix]:
+    def cell_forces(self, displacements: Array) -> tuple[Array, sp.csr_matrix]:
         """Forces (3 n + b) [N] at displacements (3 n + b) [m] of cells and bolts, and symmetric tangent.
 
         Forces are changes from the preloaded joint. The order is: opening (n), displacement along x (n),
         displacement along y (n), elongation of the bolts (b).
         """
         spring, n = self.spring, self.preload_approach.size
-        joint, area = spring.joint, spring.joint.A_0 * spring.shape.share
-        foundation = spring.foundation()
-        ratio, slip_ratio = (
-            foundation.stiffness_ratio,
-            foundation.friction_coefficient / foundation.stiffness_ratio,
-        )
-        approach = self.preload_approach - g[:n]
+        joint, area = spring.joint, spring.joint.A_0 * spring.points.area_share
+        foundation = spring.friction.foundation()
+        ratio = foundation.stiffness_ratio
+        slip_ratio = foundation.friction_coefficient / foundation.stiffness_ratio
+        approach = self.preload_approach - displacements[:n]
         p, k = spring.curve.derivatives(approach, 1)
         p_preload = spring.curve.derivatives(self.preload_approach, 0)[0]
-        u, v = g[n : 2 * n], g[2 * n : 3 * n]
+        u, v = displacements[n : 2 * n], displacements[2 * n : 3 * n]
         size = np.maximum(np.hypot(u, v), 1e-30)
         secant = foundation.virgin_traction(approach, size) / size
         tangent = ratio * spring.curve.derivatives(approach - size / slip_ratio, 1)[1]
         secant = np.where(size < 1e-6 * np.max(np.abs(self.preload_approach)), ratio * k, secant)
         softening = (tangent - secant) / size**2
-        preload = np.full(g.size - 3 * n, float(working_preload(joint, self.preload)))
-        bolts, elongation = spring.bolts, g[3 * n :]
+        preload = np.full(displacements.size - 3 * n, float(working_preload(joint, self.preload)))
+        bolts, elongation = spring.bolts, displacements[3 * n :]
         bolt = bolts.tangent(preload, elongation)
         pull = bolts.stiffness * (elongation + bolts.gap(preload, elongation))
         force = np.concatenate([-area * (p - p_preload), area * secant * u, area * secant * v, pull])
         diagonal = [area * k, area * (secant + softening * u * u), area * (secant + softening * v * v), bolt]
-        cross = np.zeros(g.size)
+        cross = np.zeros(displacements.size)
         cross[n : 2 * n] = area * softening * u * v  # d(force along x) / d(displacement along y)
-        slope = sp.diags([cross[: g.size - n], np.concatenate(diagonal), cross[: g.size - n]], [-n, 0, n])
+        slope = sp.diags(
+            [cross[: displacements.size - n], np.concatenate(diagonal), cross[: displacements.size - n]],
+            [-n, 0, n],
+        )
         return force, slope.tocsr()
 
     def stiffness(self) -> Array:
@@ -225,18 +229,18 @@ class CellJoint:
                 break
         return force
 
-    def motions(self) -> Iterator[Array]:
+    def generate_motions(self) -> Iterator[Array]:
         """Generate motions (6) [m, rad] of side 2 into slip and opening: along each axis, then along all."""
         joint, K = self.spring.joint, np.diag(self.stiffness())
-        radius = np.sqrt(self.spring.shape.share @ np.sum(self.spring.shape.position**2, axis=1))
+        radius = np.sqrt(self.spring.points.area_share @ np.sum(self.spring.points.position**2, axis=1))
         clamping = joint.n_bolts * float(working_preload(joint, self.preload))
         load = clamping * np.array([joint.mu, joint.mu, 1.0, radius, radius, joint.mu * radius])
         unit = load / K
         for axis in range(6):
-            for factor in OPENING_LEVELS if axis in (2, 3, 4) else SHEAR_LEVELS:
+            for factor in OPENING_MOTION_RATIOS if axis in (2, 3, 4) else SHEAR_MOTION_RATIOS:
                 yield factor * unit * (np.arange(6) == axis)
         for number in range(COMBINED_MOTION_COUNT):
-            yield (2.0 * ((0.5 + (number + 1.0) * SEQUENCE_STEPS) % 1.0) - 1.0) * unit
+            yield (2.0 * ((0.5 + (number + 1.0) * LOW_DISCREPANCY_STEPS) % 1.0) - 1.0) * unit
 
 
 def approach_at_stiffness(spring: BoltedJointSpring, normal_stiffness: Array) -> Array:
@@ -246,11 +250,11 @@ def approach_at_stiffness(spring: BoltedJointSpring, normal_stiffness: Array) ->
 
 
 def refine_equilibrium(
-    linear: LinearJoint,
+    linear_joint: LinearJoint,
     spring: BoltedJointSpring,
     normal_stiffness: Array,
     motions: Array,
-    deformation: Array,
+    negative_deformation: Array,
 ) -> Array:
     """Refine the negative deformation (n, s) [m] towards equilibrium with the law at all quadrature points.
 
@@ -261,35 +265,37 @@ def refine_equilibrium(
     Each iteration uses the stiffness of the preloaded joint. Slip only lowers the stiffness, so the iteration
     converges. A state whose step grows (its contact closes) is not changed.
     """
-    joint, law, preloaded = linear.joint, spring.foundation(), approach_at_stiffness(spring, normal_stiffness)
+    joint = linear_joint.joint
+    law = spring.friction.foundation()
+    preloaded = approach_at_stiffness(spring, normal_stiffness)
     interface, curve = joint.interface, spring.curve
-    relative, stretch = (
-        [joint.relative_displacement_matrix(axis) for axis in AXES],
-        sp.csr_matrix(joint.elongation_matrix),
-    )
-    rigid = linear.rigid_displacement @ motions.T
+    relative = [joint.relative_displacement_matrix(axis) for axis in AXES]
+    stretch = sp.csr_matrix(joint.elongation_matrix)
+    rigid = linear_joint.rigid_displacement @ motions.T
     prescribed = [rows @ rigid for rows in (*relative, stretch.T)]
     last_decrement = np.full(len(motions), np.inf)
     p_preload = curve.derivatives(preloaded, 0)[0][:, None]
-    displacement = -deformation
-    for _ in range(REFINEMENT_STEPS):
+    displacement = -negative_deformation
+    for _ in range(EQUILIBRIUM_ITERATIONS):
         u, v, opening, elongation = (
             start + rows @ displacement
             for start, rows in zip(prescribed, (*relative, stretch.T), strict=True)
         )
         approach = preloaded[:, None] - opening
         size = np.maximum(np.hypot(u, v), MIN_DISPLACEMENT)
-        secant = interface.area[:, None] * law.virgin_traction(approach, size) / size
+        secant = interface.quadrature_area[:, None] * law.virgin_traction(approach, size) / size
         loads = relative[0].T @ (secant * u) + relative[1].T @ (secant * v)
-        loads += linear.bolt_stiffness * (stretch @ elongation)
-        loads -= relative[2].T @ (interface.area[:, None] * (curve.derivatives(approach, 0)[0] - p_preload))
-        residual = -(linear.body_matrix @ displacement + loads)
-        step = linear.solve(residual)
+        loads += linear_joint.bolt_stiffness * (stretch @ elongation)
+        loads -= relative[2].T @ (
+            interface.quadrature_area[:, None] * (curve.derivatives(approach, 0)[0] - p_preload)
+        )
+        residual = -(linear_joint.body_matrix @ displacement + loads)
+        step = linear_joint.solve(residual)
         decrement = np.sum(step * residual, axis=0)
         displacement = displacement + np.where(decrement < last_decrement, step, 0.0)
         last_decrement = np.minimum(decrement, last_decrement)
     return -displacement
 
 
-SEQUENCE_STEPS = 0.8566748838545029 ** np.arange(1.0, 7.0)
+LOW_DISCREPANCY_STEPS = 0.8566748838545029 ** np.arange(1.0, 7.0)
 """Steps of a low-discrepancy sequence in six dimensions: powers of the inverse root of x^7 = x + 1."""

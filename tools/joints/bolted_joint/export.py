@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Variable
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.quantity import Array, quantity_field
 
 from ...export.exports import Exports, LoadCurve
@@ -48,7 +48,7 @@ def springs_of_joint(
     Every node of the pressure shape becomes a pair of coincident nodes with consecutive labels: the node of
     side 1, then that of side 2. The first label is `first_label`.
     """
-    count = spring.shape.share.size
+    count = spring.points.area_share.size
     labels = first_label + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
     return _distribute_to_nodes(spring, labels, preload, moment, None)
 
@@ -67,7 +67,7 @@ def springs_on_mesh(spring: BoltedJointSpring, mesh: "NodePairs", preload: float
     from scipy.spatial import KDTree
 
     _check_area(spring, mesh)
-    shape, position = spring.shape, mesh.position
+    shape, position = spring.points, mesh.position
     share = mesh.area / mesh.area.sum()
     distance, nearest = KDTree(shape.position).query(position)
     allowed = _MAX_DISTANCE_RATIO * float(np.hypot(*np.ptp(shape.position, axis=0)))
@@ -133,7 +133,7 @@ def _distribute_to_nodes(
     nodes: NDArray[np.int64],
     preload: float,
     moment: float,
-    totals: dict[str, float] | None,
+    total_outputs: dict[str, float] | None,
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
 
@@ -141,7 +141,7 @@ def _distribute_to_nodes(
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
-    joint, shape = spring.joint, spring.shape
+    joint, shape = spring.joint, spring.points
     p = preload_pressure(joint, shape, preload, moment)
     highest = spring.curve.end[1]
     if not (np.isfinite(preload + moment) and 0.0 < np.max(p) <= highest):
@@ -149,15 +149,15 @@ def _distribute_to_nodes(
             f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
             f"contact after embedding ({joint.embedding:g} N), and at most {highest:g} Pa"
         )
-    nodal_stiffness = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
+    nodal_stiffness = shape.area_share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
     closed = nodal_stiffness > 0.0
     fraction = (nodal_stiffness / nodal_stiffness.sum())[closed]
     spring_totals = _interface_totals(spring, preload, moment)
-    sums = totals or spring_totals
+    sums = total_outputs or spring_totals
     return Springs(
         nodes[closed],
         shape.position[closed],
-        (shape.share * joint.A_0)[closed],
+        (shape.area_share * joint.A_0)[closed],
         p[closed],
         sums["K_zz"] * fraction,
         sums["K_xx"] * fraction,
@@ -195,13 +195,13 @@ def tabulate_normal_force(
 
     start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    shape = spring.shape.merge_nodes(with_moment=moment != 0.0)
+    shape = spring.points.merge_nodes(keeps_moment=moment != 0.0)
     approach = spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
-    weight = spring.joint.A_0 * shape.share
+    weight = spring.joint.A_0 * shape.area_share
     springs, held_bolts = spring.bolts, spring.bolts.preload_force(spring.joint, preload, moment)
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
 
-    def missing(separation: Array) -> tuple[Array, Array]:
+    def compression_correction(separation: Array) -> tuple[Array, Array]:
         """Correction for bolts, which only pull: force [N] and stiffness [N/m] of bolts that push."""
         elongation = separation[:, None] + np.zeros(len(held_bolts))
         gap = springs.gap(held_bolts, elongation)
@@ -221,7 +221,7 @@ def tabulate_normal_force(
     opening = float(np.max(start) - low)
     s = np.concatenate([np.linspace(-end, 0.0, _ERROR_POINTS), np.linspace(0.0, opening, _ERROR_POINTS)[1:]])
     force, stiffness = contact_force_and_stiffness(s)
-    pushing, lost = missing(s)
+    pushing, lost = compression_correction(s)
     normal_force = preload_force - force + bolts * s + pushing
     scale = preload_force, preload_stiffness
     table = decimate_curve(
@@ -257,7 +257,7 @@ def _make_springs(
 
 
 def _contact_curve(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
-    ratio = float(joint.shear_ratio())
+    ratio = float(joint.shear_stiffness_ratio())
     note = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
     return BoltedJointSpring.of_nodes(joint).curve, [note]
 

@@ -6,17 +6,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.law import Bolted, bolt_pressures, preload_pressure
+from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, bolt_pressures, preload_pressure
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, pressure_distribution
+from jointfmu.mechanics.footprint.distribution import MergedDistribution, NodalField, PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import MergedDistribution, NodalField, PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ...drawing.vdi2230 import proof_load
 from ...fem.validation import MeasuredFrequencies
-from ...fields.clamped import FieldAdapter
+from ...fields.bolted_interface import FieldAdapter
 from ...pressure import NominalPressure
 
 if TYPE_CHECKING:
@@ -35,8 +34,8 @@ class PlaneLayout:
     """
 
     bolt_positions: Array
-    outline: tuple[Array, ...]
-    extent: Array
+    contact_outline: tuple[Array, ...]
+    bounding_box: Array
     hole_diameter: float
     head_diameter: float
 
@@ -95,35 +94,42 @@ PRESSURE = NominalPressure(
 
 
 def _field_pressures(
-    joint: Bolted, shape: PressureDistribution | MergedDistribution, preload: ArrayLike, moment: ArrayLike
+    joint: Bolted,
+    pressure_shape: PressureDistribution | MergedDistribution,
+    preload: ArrayLike,
+    moment: ArrayLike,
 ) -> Array:
     """Nodal pressures [Pa] at a preload, without a further loss by embedding.
 
     A field is computed for the preload that remains after embedding.
     """
-    return preload_pressure(replace(joint, embedding=0.0), shape, preload, moment)
+    return preload_pressure(replace(joint, embedding=0.0), pressure_shape, preload, moment)
 
 
 def _with_elastic_sides(
-    file: ParameterFile, assembly: "Assembly", preload: float, attached: str, shape: PressureDistribution
+    file: ParameterFile,
+    assembly: "Assembly",
+    preload: float,
+    attachment: str,
+    pressure_shape: PressureDistribution,
 ) -> ParameterFile:
-    from .new.computed import compute_joint_of_assembly
+    from .new.plate_finite_elements import compute_joint_of_assembly
 
-    return compute_joint_of_assembly(file, lambda: assembly, preload, attached, shape).file
+    return compute_joint_of_assembly(file, lambda: assembly, preload, attachment, pressure_shape).file
 
 
 def _joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
-    from .new.computed import joint_facts
+    from .new.plate_finite_elements import joint_facts
 
     return joint_facts(file, preload)
 
 
 FIELD = FieldAdapter(
-    pressures=_field_pressures,
-    shear_ratio=lambda joint: joint.shear_ratio(),
+    nodal_pressures=_field_pressures,
+    tangential_stiffness_ratio=lambda joint: joint.shear_stiffness_ratio(),
     bolt_layout=PlaneLayout.from_joint,
-    with_elastic_bodies=_with_elastic_sides,
-    facts=_joint_facts,
+    insert_elastic_bodies=_with_elastic_sides,
+    describe_joint=_joint_facts,
 )
 
 

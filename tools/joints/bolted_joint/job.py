@@ -20,7 +20,7 @@ from ...ramps import ramp
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
 from ...systems.master import Slave
-from ...systems.ringing import Axis, Body, Pull, Rest
+from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
 from .picture import draw_plan
 
 _FMU = "BoltedJoint"
@@ -38,7 +38,7 @@ RAMPS = {_FMU: _check_separation}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
-def through_fmu(point: Point, folder: Path) -> float | None:
+def compute_through_fmu(point: Point, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     if point.quantity != "p_max":
         return None
@@ -51,15 +51,15 @@ _MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
 paper."""
 
 
-def figures(outcome: Any) -> list[Figure]:
+def figures(job_result: Any) -> list[Figure]:
     """Figures of the bolted joint, from the results of the main job (`JobResult`)."""
     joint = load_default("bolted_joint").values
     return [
         Figure(
             "Stiffness and damping over preload",
             "Normal (zz) and tangential (xx) direction; the damping is the viscous equivalent.",
-            stiffness_panels(outcome.ramps[_FMU]),
-            data=f"{_FMU}.csv",
+            stiffness_panels(job_result.ramps[_FMU]),
+            data_file=f"{_FMU}.csv",
         ),
         Figure(
             "Contact pressure",
@@ -84,30 +84,30 @@ VIBRATION_PRELOADS = (3e3, 9e3, 15e3, 30e3)
 """Preloads per bolt [N] of the simulated free vibrations."""
 
 
-def _vibration_at_rest(path: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
+def _rest_state(path: Path, preload: float, parameters: Mapping[str, Any]) -> WorkingPoint:
     start = {**parameters, "preload": preload, "v_rel_x": 1.0}
     with Slave(path, start, (), ("K_xx", "f_x")) as law:
-        K, dashpot = law.get()
+        K, dashpot = law.get_outputs()
     if K <= 0.0:
         raise ValueError(f"load = {preload:g} N: the joint has no stiffness there; allowed are preloads > 0")
-    return Rest(0.0, 0.0, K, 0.0 - dashpot)
+    return WorkingPoint(0.0, 0.0, K, 0.0 - dashpot)
 
 
-RINGING = Body(
-    model=_FMU,
-    motion=("s_rel_x", "v_rel_x"),
-    force="f_x",
-    partner="TranslationalMass",
-    over="preload",
-    loads=lambda path, parameters: VIBRATION_PRELOADS,
-    start=lambda preload: {"preload": preload},
-    rest=_vibration_at_rest,
-    release=1.0,
-    load=Axis("preload", "kN", 1e-3),
-    deflection=Axis("motion", "um", 1e6),
+RINGING = VibrationTest(
+    model_name=_FMU,
+    motion_inputs=("s_rel_x", "v_rel_x"),
+    force_output="f_x",
+    body_model="TranslationalMass",
+    load_variable="preload",
+    find_example_loads=lambda path, parameters: VIBRATION_PRELOADS,
+    find_start_values=lambda preload: {"preload": preload},
+    find_working_point=_rest_state,
+    release_force=1.0,
+    load_axis=PlotAxis("preload", "kN", 1e-3),
+    deflection_axis=PlotAxis("motion", "um", 1e6),
     doc="in shear",
-    stiffness="K_xx",
-    pull=Pull(15e3, 8e-7, "half of the friction limit"),
+    stiffness_output="K_xx",
+    slip_deflection=SlipDeflection(15e3, 8e-7, "half of the friction limit"),
 )
 
 

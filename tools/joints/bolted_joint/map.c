@@ -1,34 +1,31 @@
-/* Contact pressure for the page of the laboratory: position x, y [m], share of the area [1] and pressure [Pa] of each
- * node at the present inputs. */
+/* Map of the contact pressure for the page. Rows of four numbers, one for each point: position x, y [m], share of the
+ * area [1], pressure [Pa] at the present inputs. */
 #include "instance.h"
 #include "tabulated_joint.h"
 
-enum { MAX_MAP_NODES = sizeof ((JointModel *)0)->weight / sizeof *((JointModel *)0)->weight };
-
-static int n_map_nodes; /* in the map */
+static int row_count; /* rows that are in use */
 
 __attribute__((visibility("default"))) int lab_map_size(void)
 {
-    return n_map_nodes;
+    return row_count;
 }
 
-/* Map as rows of four numbers; NULL: the joint refuses the inputs. */
+/* NULL: the inputs are refused. */
 __attribute__((visibility("default"))) const double *lab_map(Instance *m)
 {
-    static double map[MAX_MAP_NODES][4];
+    static double map[MAX_POINTS][4];
     if (instance_evaluate(m) != OK)
         return NULL;
     const double *inputs = m->state.values + FIRST_INPUT;
-    const JointModel *model = &m->joint->model;
-    n_map_nodes = 0;
-    for (int i = 0; i < MAX_MAP_NODES && model->weight[i][0] > 0.0; i++) {
-        double *node = map[n_map_nodes++];
-        node[2] = model->weight[i][0];
-        node[0] = model->weight[i][1] / node[2];
-        node[1] = model->weight[i][2] / node[2];
-        const double opening =
-            inputs[INPUT_S_REL_Z] + inputs[INPUT_THETA_X] * node[1] - inputs[INPUT_THETA_Y] * node[0];
-        curve_evaluate(&m->joint->curve, model->start[i] - opening, 0, &node[3]);
+    const Contact *contact = &m->joint->model.contact;
+    row_count = 0;
+    for (int i = 0; i < MAX_POINTS && contact->weight[i][0] > 0.0; i++) {
+        double *row = map[row_count++];
+        row[2] = contact->weight[i][0];
+        row[0] = contact->weight[i][1] / row[2];
+        row[1] = contact->weight[i][2] / row[2];
+        const double opening = inputs[INPUT_S_REL_Z] + inputs[INPUT_THETA_X] * row[1] - inputs[INPUT_THETA_Y] * row[0];
+        curve_evaluate(&m->joint->curve, contact->preload.approach[i] - opening, 0, &row[3]);
     }
     return map[0];
 }

@@ -5,11 +5,10 @@ from html import escape
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
+from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.quantity import Array
 
 from .field import PlaneLayout
@@ -27,7 +26,7 @@ MIN_SECTION_HEIGHT = 70.0
 VIRIDIS = np.array(
     [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]], dtype=np.float64
 )
-INK, GREY, RED, OPEN_COLOUR = "#1d232b", "#5a6572", "#c1442e", "#e3e6ea"
+LINE_COLOUR, GREY, RED, OPEN_COLOUR = "#1d232b", "#5a6572", "#c1442e", "#e3e6ea"
 
 
 @dataclass
@@ -47,12 +46,21 @@ class SvgDrawing:
         element = f"<{tag} {attribute_text}"
         self.elements.append(f"{element}>{escape(text)}</{tag}>" if text else f"{element}/>")
 
-    def add_line(self, x1: float, y1: float, x2: float, y2: float, stroke: str = INK, dash: str = "") -> None:
-        more = {"stroke_dasharray": dash} if dash else {}
+    def add_line(
+        self, x1: float, y1: float, x2: float, y2: float, stroke: str = LINE_COLOUR, dash_pattern: str = ""
+    ) -> None:
+        more = {"stroke_dasharray": dash_pattern} if dash_pattern else {}
         self.add_element("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=stroke, **more)
 
     def add_text(
-        self, x: float, y: float, text: str, anchor: str = "middle", fill: str = INK, /, **attributes: object
+        self,
+        x: float,
+        y: float,
+        text: str,
+        anchor: str = "middle",
+        fill: str = LINE_COLOUR,
+        /,
+        **attributes: object,
     ) -> None:
         self.add_element("text", text, x=x, y=y, text_anchor=anchor, fill=fill, **attributes)
 
@@ -92,7 +100,7 @@ def draw_plan(joint: Bolted, preload: float, moment: float) -> str:
     """
     shape, layout = pressure_distribution(joint.pattern), PlaneLayout.from_joint(joint)
     p = np.asarray(preload_pressure(joint, shape, preload, moment))
-    low, high = layout.extent
+    low, high = layout.bounding_box
     scale = min(MAX_WIDTH / (high - low)[0], MAX_HEIGHT / (high - low)[1])
     size = scale * (high - low)
     sheet = SvgDrawing(max(size[0], 260.0) + 2.0 * MARGIN + 90.0, max(size[1], 150.0) + 2.0 * MARGIN)
@@ -102,8 +110,8 @@ def draw_plan(joint: Bolted, preload: float, moment: float) -> str:
 
     points, top = isinstance(joint.pattern, NodalField), float(p.max())
     dot = DOT_RADIUS_RATIO * float(np.sqrt(np.prod(size) / len(p)))
-    cells = scale * _cell_sizes(joint, shape.share) + CELL_OVERLAP
-    for i in np.argsort(p if points else -shape.share, kind="stable"):
+    cells = scale * _cell_sizes(joint, shape.area_share) + CELL_OVERLAP
+    for i in np.argsort(p if points else -shape.area_share, kind="stable"):
         (x, y), value = to_pixels(shape.position[i]), float(p[i])
         fill = _pressure_colour(value / top) if value > 0.0 else OPEN_COLOUR
         if points:
@@ -111,10 +119,10 @@ def draw_plan(joint: Bolted, preload: float, moment: float) -> str:
         else:
             dx, dy = cells[i]
             sheet.add_element("rect", x=x - 0.5 * dx, y=y - 0.5 * dy, width=dx, height=dy, fill=fill)
-    for lower, upper in layout.outline:
+    for lower, upper in layout.contact_outline:
         (x1, y2), (x2, y1) = to_pixels(lower), to_pixels(upper)
-        sheet.add_element("rect", x=x1, y=y1, width=x2 - x1, height=y2 - y1, fill="none", stroke=INK)
-    attached = _attachment(joint)
+        sheet.add_element("rect", x=x1, y=y1, width=x2 - x1, height=y2 - y1, fill="none", stroke=LINE_COLOUR)
+    attached = _attachment_name(joint)
     _draw_bolts(
         sheet,
         np.array([to_pixels(bolt) for bolt in layout.bolt_positions]),
@@ -131,19 +139,20 @@ def draw_plan(joint: Bolted, preload: float, moment: float) -> str:
     if attached == "faces":
         for ends in ((x1, y1, x2, y1), (x2, y1, x2, y2), (x2, y2, x1, y2), (x1, y2, x1, y1)):
             sheet.add_support(*ends)
-    notes = {"faces": "attached: outer faces of both sides", "heads": f"attached: {_seat_text(joint)}"}
+    notes = {
+        "faces": "attached: outer faces of both sides",
+        "heads": f"attached: {_bearing_surface_text(joint)}",
+    }
     if attached in notes:
         sheet.add_text(x1, y1 - 22.0, notes[attached], "start", RED)
-    prefix = "" if layout.outline else "points over "
+    prefix = "" if layout.contact_outline else "points over "
     width, height = (f"{prefix}{1e3 * extent:.4g} mm" for extent in high - low)
     sheet.add_text(0.5 * (x1 + x2), y2 + 26.0, f"{width}, x to the right", "middle", GREY)
     rotation = f"rotate(-90 {x1 - 26.0:.1f} {0.5 * (y1 + y2):.1f})"
     sheet.add_text(x1 - 26.0, 0.5 * (y1 + y2), f"{height}, y up", "middle", GREY, transform=rotation)
     _draw_colour_bar(sheet, sheet.width - 98.0, MARGIN, sheet.height - 2.0 * MARGIN, top)
-    moment_text, remaining_preload = (
-        f", {moment:g} N m" if moment else "",
-        float(working_preload(joint, preload)),
-    )
+    moment_text = f", {moment:g} N m" if moment else ""
+    remaining_preload = float(working_preload(joint, preload))
     sheet.add_text(
         MARGIN,
         22.0,
@@ -162,12 +171,12 @@ def _cell_sizes(joint: Bolted, share: Array) -> Array:
     return np.asarray(side * step / np.sqrt(np.prod(step)))
 
 
-def _attachment(joint: Bolted) -> str:
+def _attachment_name(joint: Bolted) -> str:
     bodies = joint.bodies
     return bodies.attached if joint.elastic and isinstance(bodies, ElasticBodies) else ""
 
 
-def _seat_text(joint: Bolted) -> str:
+def _bearing_surface_text(joint: Bolted) -> str:
     return "under heads and " + ("at threads" if getattr(joint.bodies, "thread_depth", 0.0) else "nuts")
 
 
@@ -199,22 +208,22 @@ def _draw_colour_bar(sheet: SvgDrawing, x: float, y: float, height: float, max_p
 
 
 def _draw_bolts(
-    sheet: SvgDrawing, positions: Array, layout: PlaneLayout, scale: float, is_attached: bool
+    sheet: SvgDrawing, positions: Array, layout: PlaneLayout, pixels_per_metre: float, is_attached: bool
 ) -> None:
     """Draw holes, heads, centre lines and numbers of bolts at positions (b, 2) [px]."""
-    hole, head = 0.5 * scale * layout.hole_diameter, 0.5 * scale * layout.head_diameter
+    hole, head = 0.5 * pixels_per_metre * layout.hole_diameter, 0.5 * pixels_per_metre * layout.head_diameter
     for number, (x, y) in enumerate(positions, start=1):
         reach = max(hole, head, 6.0) + 7.0
         if hole:
-            sheet.add_element("circle", cx=x, cy=y, r=hole, fill="#fff", stroke=INK)
+            sheet.add_element("circle", cx=x, cy=y, r=hole, fill="#fff", stroke=LINE_COLOUR)
         if head and is_attached:
             wide = max(head - hole, 4.0) if hole else 4.0
             ring = {"stroke_width": wide, "stroke_dasharray": "2 4", "stroke_opacity": 0.9}
             sheet.add_element("circle", cx=x, cy=y, r=head - 0.5 * wide, fill="none", stroke=RED, **ring)
         if head:
-            sheet.add_element("circle", cx=x, cy=y, r=head, fill="none", stroke=INK, stroke_width=1.5)
+            sheet.add_element("circle", cx=x, cy=y, r=head, fill="none", stroke=LINE_COLOUR, stroke_width=1.5)
         for dx, dy in ((reach, 0.0), (0.0, reach)):
-            sheet.add_line(x - dx, y - dy, x + dx, y + dy, INK, "9 3 2 3")
+            sheet.add_line(x - dx, y - dy, x + dx, y + dy, LINE_COLOUR, "9 3 2 3")
         side = reach * 0.72
         halo = {"stroke": "#fff", "stroke_width": 3, "paint_order": "stroke", "font_weight": 600}
         sheet.add_text(x + side, y - side, str(number), "start", **halo)
@@ -224,8 +233,8 @@ def draw_section(joint: Bolted) -> str:
     """Section of both sides, as SVG: thicknesses, bolts, and surfaces at which the load is applied."""
     bodies = joint.bodies
     assert isinstance(bodies, ElasticBodies)
-    layout, attached = PlaneLayout.from_joint(joint), _attachment(joint)
-    (low, _), (high, _) = layout.extent
+    layout, attached = PlaneLayout.from_joint(joint), _attachment_name(joint)
+    (low, _), (high, _) = layout.bounding_box
     first, second = bodies.thickness
     scale = min(MAX_WIDTH / (high - low), MAX_HEIGHT / (first + second))
     up = max(scale, MIN_SECTION_HEIGHT / (first + second))
@@ -235,7 +244,7 @@ def draw_section(joint: Bolted) -> str:
     x1, x2 = MARGIN, MARGIN + scale * (high - low)
     sheet = SvgDrawing(max(x2 - x1, 300.0) + 2.0 * MARGIN + 60.0, bottom + head + MARGIN)
     for y, height, fill in ((top, up * second, "#dfe6ef"), (middle, up * first, "#eef1f5")):
-        sheet.add_element("rect", x=x1, y=y, width=x2 - x1, height=height, fill=fill, stroke=INK)
+        sheet.add_element("rect", x=x1, y=y, width=x2 - x1, height=height, fill=fill, stroke=LINE_COLOUR)
     for y, name, thickness in (
         (0.5 * (top + middle), "side 2", second),
         (0.5 * (middle + bottom), "side 1", first),
@@ -250,7 +259,11 @@ def draw_section(joint: Bolted) -> str:
         )
         names = ", ".join(str(j + 1) for j in np.flatnonzero(np.abs(places - x) < 0.1))
         sheet.add_text(x, bottom + head + 24.0, names)
-    surfaces = {"faces": "the outer faces", "edge": "the edges", "heads": f"what lies {_seat_text(joint)}"}
+    surfaces = {
+        "faces": "the outer faces",
+        "edge": "the edges",
+        "heads": f"what lies {_bearing_surface_text(joint)}",
+    }
     if attached == "edge":
         sheet.add_support(x1, bottom, x1, middle)
         sheet.add_support(x2, top, x2, middle)
@@ -286,7 +299,7 @@ def _draw_bolt_section(
     """Draw one bolt, schematic [px]: with head and nut, or with head and tapped thread."""
     (top, bottom), shank = vertical_range, 0.6 * head_radius
     sheet.add_element(
-        "rect", x=x - shank, y=top, width=2.0 * shank, height=bottom - top, fill="#fff", stroke=INK
+        "rect", x=x - shank, y=top, width=2.0 * shank, height=bottom - top, fill="#fff", stroke=LINE_COLOUR
     )
     for y in (bottom,) if thread_depth else (top - head_height, bottom):
         sheet.add_element(
@@ -296,7 +309,7 @@ def _draw_bolt_section(
             width=2.0 * head_radius,
             height=head_height,
             fill="#fff",
-            stroke=INK,
+            stroke=LINE_COLOUR,
         )
     if is_attached:
         under = {"stroke": RED, "stroke_width": 5, "stroke_dasharray": "2 3"}
@@ -304,4 +317,4 @@ def _draw_bolt_section(
             sheet.add_element("line", x1=x - head_radius, y1=y, x2=x + head_radius, y2=y, **under)
         for wall in (x - shank, x + shank) if thread_depth else ():
             sheet.add_element("line", x1=wall, y1=top, x2=wall, y2=top + thread_depth, **under)
-    sheet.add_line(x, top - head_height - 8.0, x, bottom + head_height + 8.0, INK, "9 3 2 3")
+    sheet.add_line(x, top - head_height - 8.0, x, bottom + head_height + 8.0, LINE_COLOUR, "9 3 2 3")

@@ -18,11 +18,11 @@ from scipy.interpolate import CubicSpline
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.bodies import Modes
-from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF, BoltSprings
+from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
 from jointfmu.joints.bolted_joint.contact import pressure_transfer
-from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, slip_force
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points, friction_patches_of
-from jointfmu.joints.bolted_joint.whole import JointAssembly
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points, friction_patches_of
+from jointfmu.joints.bolted_joint.kinematics import tangential_jacobian
+from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, interface_alone, node_pressure, slip_force
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
 from jointfmu.quantity import Array, flatten_parameters
@@ -60,7 +60,7 @@ def equal_pressures(pattern: PressureSource) -> tuple[Array, Array]:
     """
     shape = pressure_distribution(pattern)
     closed = shape.preload_shape > 0.0
-    logs, shares = discrete_gauss(np.log(shape.preload_shape[closed]), shape.share[closed], EQUAL)
+    logs, shares = discrete_gauss(np.log(shape.preload_shape[closed]), shape.area_share[closed], EQUAL)
     return np.exp(logs), shares
 
 
@@ -165,7 +165,7 @@ def _evaluate(
     force = joint.A_0 * mean * np.exp(places.force)
     compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
     K = joint.A_0 * total("k")
-    rho = joint.shear_ratio()
+    rho = joint.shear_stiffness_ratio()
     C = 0.0 * K
     if works:
         C = mindlin.equivalent_damping(total(works[0]) / total(works[1]), joint.mass, K)
@@ -210,9 +210,10 @@ class Sides(NamedTuple):
     def of(cls, joint: Bolted, pattern: PressureSource) -> "Sides":
         """Raises ValueError for bodies that were computed for another contact."""
         shape, few = contact_points(pattern), friction_patches_of(pattern)
-        modes = Modes.of(joint.bodies, shape.share.size, few.position)
-        bolts = BoltSprings(modes.bolts, count=1.0, stiffness=1.0, lift_off=0.0)
-        whole = JointAssembly.of(modes, shape, few, area=1.0, bolts=bolts, closure_pressure=0.0)
+        assert isinstance(joint.bodies, ElasticBodies)
+        modes = Modes.of(joint.bodies, shape.area_share.size, few.position)
+        bolts = len(modes.bolt_elongation)
+        along_x = tangential_jacobian(few)[:, :, :1]
 
         def products(weight: Array, *motions: tuple[Array, Array]) -> Array:
             rows = [np.column_stack(motion) for motion in motions]
@@ -222,13 +223,9 @@ class Sides(NamedTuple):
 
         return cls(
             (shape.preload_shape, pressure_transfer(shape, few) @ shape.preload_shape),
-            products(whole.point_area, (whole.point_opening[:, :1], modes.opening)),
-            products(
-                whole.patch_area, *zip(whole.patch_motion[:, :, :1], modes.patch_displacement, strict=True)
-            ),
-            products(
-                np.ones(len(whole.bolt_elongation)), (whole.bolt_elongation[:, :1], modes.bolt_elongation)
-            ).sum(axis=0),
+            products(shape.area_share, (np.ones(len(shape.area_share)), modes.opening)),
+            products(few.area_share, *zip(along_x, modes.patch_displacement, strict=True)),
+            products(np.ones(bolts), (np.ones(bolts), modes.bolt_elongation)).sum(axis=0),
             modes.stiffness,
         )
 
@@ -248,7 +245,7 @@ class Sides(NamedTuple):
                 points, patches = (places.at(scaled, load + np.log(equal)) for equal in self.equal)
             pulling = 1.0 if np.isfinite(load) else AT_LIFT_OFF
             normal = joint.A_0 * (points @ self.normal) + joint.bolt_stiffness * self.bolts * pulling
-            shear = joint.shear_ratio() * joint.A_0 * (patches @ self.shear)
+            shear = joint.shear_stiffness_ratio() * joint.A_0 * (patches @ self.shear)
             H = np.stack([each.reshape(-1, size, size) for each in (normal, shear)])
             beside = np.moveaxis(H[:, :, 1:, 0], 0, -1)
             follow = np.linalg.solve(H.sum(axis=0)[:, 1:, 1:] + np.diag(self.modes), beside)
@@ -331,9 +328,11 @@ def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     states = [tightened.evaluate(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
     pressure = node_pressure(
-        alone, spring.shape.preload_shape, spring.shape.moment_shape, loads[:, None], 0.0
+        alone, spring.points.preload_shape, spring.points.moment_shape, loads[:, None], 0.0
     )
-    slip = alone.A_0 * spring.foundation().friction_coefficient * (pressure @ spring.shape.share)
+    slip = (
+        alone.A_0 * spring.friction.foundation().friction_coefficient * (pressure @ spring.points.area_share)
+    )
     lost = [loss_factor(spring, each, shear_at(alone, each)) if each > 0.0 else 0.0 for each in loads]
     found = {"approach": approach(spring, loads), "slip_force": slip, "loss_factor": np.array(lost)}
     return curves | found
@@ -345,7 +344,7 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
     equal are taken together.
     """
-    joint, shape = spring.joint, spring.shape.merge_nodes(with_moment=False)
+    joint, shape = spring.joint, spring.points.merge_nodes(keeps_moment=False)
     lowest = 1e-9 * spring.curve.closing_end_load * joint.A_0 / joint.n_bolts
     ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
     places, weights = np.polynomial.legendre.leggauss(3)
@@ -354,7 +353,7 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     node = spring.curve.inverse(
         node_pressure(joint, shape.preload_shape, shape.moment_shape, preload[:, None], 0.0)
     )
-    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.share
+    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.area_share
     rate = joint.n_bolts * preload / K
     panels = half * (rate[1:].reshape(-1, 3) @ weights)
     integral = 3.0 * rate[0] + np.concatenate([[0.0], np.cumsum(panels)])

@@ -7,18 +7,18 @@ from typing import NamedTuple
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import Compliances
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
+    ElasticBodies,
     interface_alone,
     shaped_pressure,
     slip_force,
     working_preload,
 )
 from jointfmu.joints.bolted_joint.outputs import bolt_force_name
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
-from jointfmu.mechanics.footprint.shape import NodalField
+from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
 
 from ...report.course import LoadHistory
@@ -26,13 +26,13 @@ from ...report.figure import ComparisonRow, Figure
 from ...shown import format_quantity
 from .field import PlaneLayout
 from .picture import draw_plan, draw_section
-from .pull import MAX_BOLT_FORCE_RATIO, bolt_forces
+from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces
 
 PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-SHEAR_RATIO = 0.1
+REPORTED_SHEAR_RATIO = 0.1
 """Shear force over the gross-slip force [1] at which the loss factor is reported."""
 
 
@@ -52,7 +52,7 @@ def picture_figure(load_history: LoadHistory) -> Figure:
     text = "The tightened interface from side 2, grey where it is open. "
     if isinstance(joint.pattern, NodalField):
         text += "Dots show the pressure at some nodes of the field, which represent all nodes. "
-    if not PlaneLayout.from_joint(joint).outline:
+    if not PlaneLayout.from_joint(joint).contact_outline:
         text += "The outline is not in the file. "
     text += (
         "The numbers of the bolts are those of the FMU's F_bolt. "
@@ -107,7 +107,7 @@ def friction_results(file: ParameterFile, preload: float) -> tuple[float, list[F
     """
     joint = interface_alone(file.values)
     remaining_preload = float(working_preload(joint, preload))
-    shear = SHEAR_RATIO * float(slip_force(joint, remaining_preload))
+    shear = REPORTED_SHEAR_RATIO * float(slip_force(joint, remaining_preload))
     rows = []
     for mu in (joint.mu, *file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)
@@ -123,20 +123,20 @@ def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: floa
     shear             : amplitude [N] of the shear force
     """
     joint, shape = spring.joint, spring.patches
-    law, mean = spring.foundation(), remaining_preload * joint.n_bolts / joint.A_0
+    law, mean = spring.friction.foundation(), remaining_preload * joint.n_bolts / joint.A_0
     approach = spring.curve.inverse(shaped_pressure(shape.preload_shape, shape.moment_shape, mean, 0.0))
-    low, size = (
-        0.0,
+    low = 0.0
+    size = (
         law.friction_coefficient
         / law.stiffness_ratio
-        * float(np.max(approach - spring.curve.displacement[0])),
+        * float(np.max(approach - spring.curve.displacement[0]))
     )
     for _ in range(60):
         middle = 0.5 * (low + size)
-        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.share)
+        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.area_share)
         low, size = (middle, size) if carried < shear else (low, middle)
     lost, stored = (
-        float(shape.share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
+        float(shape.area_share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
     )
     return lost / (2.0 * np.pi * stored)
 
@@ -197,12 +197,15 @@ def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
     return rows
 
 
-def _stiffness_text(compliances: Compliances, tension: float, moment: float) -> str:
+def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: float) -> str:
     share = compliances.shares[0]
     largest = float(np.max(share))
-    effect = "it matters for the stiffness" if compliances.matters else "it hardly affects the stiffness"
+    effect = (
+        "it matters for the stiffness" if compliances.interface_matters else "it hardly affects the stiffness"
+    )
     return (
-        f"Small motions of the attachments about the tightened state, {_format_value(tension, 'N')} "
+        "Small motions of the attachments about the tightened state, "
+        f"{_format_value(remaining_preload, 'N')} "
         "in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
@@ -225,5 +228,5 @@ def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, 
 
 
 FIGURES = {"BoltedJoint": joint_figures}
-BESIDE: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
+CATALOGUE_COMPARISONS: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
 """Comparisons with catalogue values: none, because there are no catalogues of bolted joints."""

@@ -6,7 +6,7 @@ from ...joint_parts import Option
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
-    from jointfmu.contact.surface import Elastic, contact_modulus
+    from jointfmu.contact.surface import ElasticConstants, contact_modulus
     from jointfmu.joints.gear_contact import KIND
     from jointfmu.joints.gear_contact.spring import GearContactSpring
 
@@ -26,30 +26,32 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
         raise ValueError(
             f"--radii = {' '.join(options['radii'])}: the flanks do not bulge towards each other"
         )
-    sides = [Elastic(E=sheet.value_of(f"side{i}.E"), nu=sheet.value_of(f"side{i}.nu")) for i in (1, 2)]
+    sides = [
+        ElasticConstants(E=sheet.value_of(f"side{i}.E"), nu=sheet.value_of(f"side{i}.nu")) for i in (1, 2)
+    ]
     hertz = hertz_line_contact(load, width, curvature, contact_modulus(*sides))
     text = f"Hertz's line contact under {load:g} N, {width * 1e3:g} mm wide, 1/R = {curvature:.4g} 1/m"
     sheet.add("A_0", float(hertz.area), "derived", text)
-    sheet.add_stated("inputs.f", load)
+    sheet.add_drawing_value("inputs.f", load)
     file = sheet.build_file(f"flanks {options['width']} wide")
     state = GearContactSpring.tabulate(file.values).evaluate(load)
     facts = {
         "load": (load, "N", "normal load"),
         "half_width": (float(hertz.half_width), "m", "half width of the patch (Hertz)"),
-        "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks (Hertz)"),
+        "p_hertz": (float(hertz.peak_pressure), "Pa", "largest pressure of smooth flanks (Hertz)"),
         "h": (file.values_by_name["h"], "m", "combined rms height of both flanks"),
         "K_N": (float(state["K_N"]), "N/m", "stiffness of the rough interface at this load"),
         "s_rel": (float(state["s_rel"]), "m", "approach of the rough interface at this load"),
     }
-    return NewJoint(file, facts, faces.warn_hardness(float(hertz.pressure), file.values_by_name["H"]))
+    return NewJoint(file, facts, faces.warn_hardness(float(hertz.peak_pressure), file.values_by_name["H"]))
 
 
-def _parse_curvature(text: str) -> float:
+def _parse_curvature(radius_text: str) -> float:
     from ...drawing.reading import parse_number
 
-    if text.strip().lower() in ("inf", "flat"):
+    if radius_text.strip().lower() in ("inf", "flat"):
         return 0.0
-    radius = parse_number("radii", text, "mm", "m", lower_bound=None)
+    radius = parse_number("radii", radius_text, "mm", "m", lower_bound=None)
     if radius == 0.0:
         raise ValueError("--radii = 0 mm is no radius; expected one, negative where hollow, or flat")
     return 1.0 / radius

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.contact.interface import at_largest_spot
+from jointfmu.contact.interface import evaluate_at_largest_spot
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.joints.gear_contact.spring import GearContact
 
@@ -42,7 +42,7 @@ def is_claim_met(contact: GearContact, of: str, over: str) -> bool:
         "lambda": [_replace_parameters(contact, lambda_=v, **fine) for v in (0.3, 0.5, 0.7, 0.9)],
     }
     if of == "A_r":
-        rows = [[float(at_largest_spot(law, 1e-6)[of]) for law in studies[over]]]
+        rows = [[float(evaluate_at_largest_spot(law, 1e-6)[of]) for law in studies[over]]]
     else:
         fractions = np.geomspace(1e-3, 1e-1, 9)
         rows = [[_state_at_real_area(law, fraction)[of] for law in studies[over]] for fraction in fractions]
@@ -58,11 +58,13 @@ def _replace_parameters(contact: GearContact, **new_values: Any) -> GearContact:
     return replace(contact, **new_values)
 
 
-def _state_at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
+def _state_at_real_area(law: Yu2022, area_fraction: float) -> dict[str, float]:
     """State of the law at a real contact area of `area_fraction` times A_0; largest spot by Eq. 54."""
     spots = law.spots()
-    largest = fraction * law.A_0 * (1.0 - spots.m) / (spots.m * spots.weight)
-    state: dict[str, Any] = law.state(np.log(largest / spots.reference))
+    largest = (
+        area_fraction * law.A_0 * (1.0 - spots.size_exponent) / (spots.size_exponent * spots.size_prefactor)
+    )
+    state: dict[str, Any] = law.state(np.log(largest / spots.reference_area))
     return {name: float(value) for name, value in state.items()}
 
 

@@ -35,16 +35,16 @@ RAMPS = {"GearContact": _check_approach}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
-def figures(outcome: Any) -> list[Figure]:
+def figures(job_result: Any) -> list[Figure]:
     """Figure of the gear contact, from the results of the main job (`JobResult`)."""
-    c = outcome.ramps["GearContact"].columns
+    c = job_result.ramps["GearContact"].columns
     load = c["f"] / 1e3
     panels = [
         Panel("Stiffness over load", "load [kN]", "K_N [N/um]", [Series("K_N", load, c["K_N"] / 1e6)]),
         Panel("Approach over load", "load [kN]", "s_rel [um]", [Series("s_rel", load, c["s_rel"] * 1e6)]),
     ]
     text = "Up to about a tenth of the nominal area in real contact."
-    return [Figure("Stiffness and approach over load", text, panels, data="GearContact.csv")]
+    return [Figure("Stiffness and approach over load", text, panels, data_file="GearContact.csv")]
 
 
 def evaluate(

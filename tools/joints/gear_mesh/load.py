@@ -25,7 +25,7 @@ def _load_table(mesh: MeshParameters, _: None, max_error: float) -> "LoadTable":
 
     pair, closing = tabulate_pair(mesh)
     i = int(np.argmin(np.abs(pair.displacement - closing)))
-    columns = (pair.load, pair.stiffness, pair.slope_start, pair.slope_end)
+    columns = (pair.load, pair.stiffness, pair.stiffness_slope_start, pair.stiffness_slope_end)
     load, stiffness, start, end = (mesh.contact_ratio * column for column in columns)
     positive = tabulate_law(
         Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), max_error

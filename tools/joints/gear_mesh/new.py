@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointfmu.contact.surface import Elastic, contact_modulus
+from jointfmu.contact.surface import ElasticConstants, contact_modulus
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 
@@ -36,9 +36,9 @@ class InvoluteGearPair:
     helix_angle    : [rad] at the reference circle
     """
 
-    module: float
+    normal_module: float
     tooth_counts: tuple[float, float]
-    width: float
+    face_width: float
     pressure_angle: float
     helix_angle: float
 
@@ -50,7 +50,7 @@ class InvoluteGearPair:
     @property
     def reference_radii(self) -> tuple[float, float]:
         """Radii of both reference circles [m]."""
-        first, second = (0.5 * self.module * z / np.cos(self.helix_angle) for z in self.tooth_counts)
+        first, second = (0.5 * self.normal_module * z / np.cos(self.helix_angle) for z in self.tooth_counts)
         return float(first), float(second)
 
     @property
@@ -66,15 +66,15 @@ class InvoluteGearPair:
         The mean total length of the contact lines is epsilon_alpha width/cos(beta_b), for any overlap ratio.
         """
         (r1, r2), base = self.reference_radii, self.base_radii
-        path = sum(np.sqrt((r + self.module) ** 2 - b**2) for r, b in zip((r1, r2), base, strict=True)) - (
-            r1 + r2
-        ) * np.sin(self.transverse_angle)
+        path = sum(
+            np.sqrt((r + self.normal_module) ** 2 - b**2) for r, b in zip((r1, r2), base, strict=True)
+        ) - (r1 + r2) * np.sin(self.transverse_angle)
         return float(path / (2.0 * np.pi * base[0] / self.tooth_counts[0]))
 
     @property
     def overlap_ratio(self) -> float:
         """Overlap ratio epsilon_beta [1] (ISO 21771): phase shift over the face width, in mesh cycles."""
-        return float(self.width * np.sin(self.helix_angle) / (np.pi * self.module))
+        return float(self.face_width * np.sin(self.helix_angle) / (np.pi * self.normal_module))
 
     @property
     def relative_curvature(self) -> float:
@@ -96,8 +96,8 @@ class InvoluteGearPair:
         q = 0.04723 + 0.15551 / virtual[0] + 0.25791 / virtual[1]  # mm um/N
         material = 2.0 / (1.0 / moduli[0] + 1.0 / moduli[1]) / E_STEEL
         rack = 1.0 - 0.02 * (20.0 - np.degrees(self.pressure_angle))  # C_B
-        loaded = min(torque / self.reference_radii[0] / self.width / REFERENCE_LINE_LOAD, 1.0) ** 0.25
-        theory = 1e9 / q * np.cos(self.helix_angle) * material * self.width
+        loaded = min(torque / self.reference_radii[0] / self.face_width / REFERENCE_LINE_LOAD, 1.0) ** 0.25
+        theory = 1e9 / q * np.cos(self.helix_angle) * material * self.face_width
         return float(STIFFNESS_CORRECTION * rack * loaded * theory)
 
     def mesh_stiffness(self, tooth_stiffness: float) -> float:
@@ -107,7 +107,7 @@ class InvoluteGearPair:
         """
         return tooth_stiffness * (0.75 * self.contact_ratio + 0.25)
 
-    def damping(self, stiffness: float, density: tuple[float, float]) -> float:
+    def mesh_damping(self, mesh_stiffness: float, density: tuple[float, float]) -> float:
         """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
 
         mesh_stiffness : [N/m] of the mesh
@@ -115,10 +115,10 @@ class InvoluteGearPair:
                          reduced to the line of action
         """
         masses = [
-            0.5 * np.pi * rho * self.width * r**4 / b**2
+            0.5 * np.pi * rho * self.face_width * r**4 / b**2
             for rho, r, b in zip(density, self.reference_radii, self.base_radii, strict=True)
         ]
-        return float(2.0 * DAMPING_RATIO * np.sqrt(stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
+        return float(2.0 * DAMPING_RATIO * np.sqrt(mesh_stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
 
 
 def make_joint(options: DrawingOptions) -> NewJoint:
@@ -131,8 +131,8 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     faces.add_faces(sheet, options)
     moduli = (sheet.value_of("side1.E"), sheet.value_of("side2.E"))
     load = torque / wheels.base_radii[0]
-    sides = [Elastic(E=E, nu=sheet.value_of(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
-    hertz = hertz_line_contact(load, wheels.width, wheels.relative_curvature, contact_modulus(*sides))
+    sides = [ElasticConstants(E=E, nu=sheet.value_of(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
+    hertz = hertz_line_contact(load, wheels.face_width, wheels.relative_curvature, contact_modulus(*sides))
     _add_parameters(sheet, wheels, options, wheels.tooth_stiffness(moduli, torque))
     text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
     sheet.add("A_0", float(hertz.area), "derived", text)
@@ -145,7 +145,11 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     stiffness = wheels.contact_ratio * float(spring.curve.derivatives(np.array([deflection]), 1)[1][0])
     facts = {
         "load": (load, "N", "normal force of the mesh at the torque"),
-        "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks, one pair in contact"),
+        "p_hertz": (
+            float(hertz.peak_pressure),
+            "Pa",
+            "largest pressure of smooth flanks, one pair in contact",
+        ),
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.values_by_name["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
@@ -158,7 +162,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         ),
         "deflection": (deflection, "m", "deflection of a tooth pair at this load"),
     }
-    return NewJoint(file, facts, faces.warn_hardness(float(hertz.pressure), file.values_by_name["H"]))
+    return NewJoint(file, facts, faces.warn_hardness(float(hertz.peak_pressure), file.values_by_name["H"]))
 
 
 def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
@@ -192,14 +196,14 @@ def _add_parameters(
     """
     for i, radius in enumerate(wheels.base_radii):
         sheet.add(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
-    sheet.add_stated("teeth1", wheels.tooth_counts[0])
+    sheet.add_drawing_value("teeth1", wheels.tooth_counts[0])
     if options["backlash"] is None:
         distance = sum(wheels.reference_radii) * 1e3
-        min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.module * 1e3) * 1e-3
+        min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.normal_module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
         sheet.add("backlash", min_backlash, "estimate", text)
     else:
-        sheet.add_stated("backlash", parse_number("backlash", options["backlash"], "um", "m"))
+        sheet.add_drawing_value("backlash", parse_number("backlash", options["backlash"], "um", "m"))
     sheet.add(
         "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
     )
@@ -208,7 +212,7 @@ def _add_parameters(
     sheet.add("overlap_ratio", wheels.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771")
     sheet.add("engagement", 0.3, "estimate", "docs/gear_mesh.md says what it does")
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
-    d = wheels.damping(tooth_stiffness * wheels.contact_ratio, (density[0], density[1]))
+    d = wheels.mesh_damping(tooth_stiffness * wheels.contact_ratio, (density[0], density[1]))
     sheet.add("d", d, "estimate", f"a damping ratio of {DAMPING_RATIO:g} for the wheels as solid discs")
     for name in ("phi1", "phi2"):
         sheet.add(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")

@@ -62,7 +62,7 @@ _FIGURE_FORCES = (5e2, 1e3, 2e3)
 """Constant forces of the mesh [N] in the figures over the mesh cycle."""
 
 
-def figures(outcome: Any) -> list[Figure]:
+def figures(job_result: Any) -> list[Figure]:
     """Figures of the gear mesh, from the results of the main job (`JobResult`)."""
     return [
         Figure(
@@ -73,8 +73,8 @@ def figures(outcome: Any) -> list[Figure]:
         Figure(
             "Torque over angle",
             "What turns wheel 1, wheel 2 held: backlash and the flanks of both sides; then the first touch.",
-            torque_angle_panels(outcome.ramps["GearMesh"]),
-            data="GearMesh.csv",
+            torque_angle_panels(job_result.ramps["GearMesh"]),
+            data_file="GearMesh.csv",
         ),
     ]
 
@@ -126,7 +126,7 @@ def evaluate(
     """
     mesh = columns(parameters, values, 1)
     angle = factor * loads
-    cycle = mesh_phase(mesh, (angle, 0.0, fixed_angle(mesh), 0.0))
+    cycle = mesh_phase(mesh, (angle, 0.0, first_contact_angle(mesh), 0.0))
     count, _ = pairs_in_contact(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, cycle)
     loaded = loads > 0.0
     deflection = mesh.r_b1 * factor
@@ -147,7 +147,7 @@ def _tabulate_pair(mesh: MeshParameters, max_pressure: Array) -> Rows:
     return Rows(np.log(s), {"K": (np.log(K), slope * s / K), "f": (np.log(f), K * s / f)})
 
 
-def fixed_angle(mesh: MeshParameters) -> Any:
+def first_contact_angle(mesh: MeshParameters) -> Any:
     """Angle [rad] of wheel 2 at which the driving flanks are in contact at phi1 = 0."""
     return 0.5 * mesh.backlash / mesh.r_b2
 
@@ -162,7 +162,7 @@ def largest_table_angle(mesh: MeshParameters) -> Any:
 
 def evaluate_exported(joint: MeshParameters, loads: Array) -> dict[str, Array]:
     """K (m) [N/m] and f (m) [N] of the exported joint at angles (m) [rad]."""
-    state = GearMeshSpring.tabulate(joint).evaluate(loads, 0.0, fixed_angle(joint), 0.0)
+    state = GearMeshSpring.tabulate(joint).evaluate(loads, 0.0, first_contact_angle(joint), 0.0)
     return {name: state[name] for name in REDUCED.units}
 
 

@@ -82,10 +82,10 @@ def find_drive(name: str) -> CatalogueEntry:
     )
 
 
-def _name_distance(key: str, wanted: str) -> tuple[float, ...]:
+def _name_distance(known_name: str, wanted_name: str) -> tuple[float, ...]:
     """Distance between two names, for sorting: difference of the letters, then of size, then of ratio."""
-    letters, wanted_letters = (re.sub("[^a-z]", "", name) for name in (key, wanted))
-    numbers = ([float(n) for n in re.findall(r"[1-9]\d*", name)] for name in (key, wanted))
+    letters, wanted_letters = (re.sub("[^a-z]", "", name) for name in (known_name, wanted_name))
+    numbers = ([float(n) for n in re.findall(r"[1-9]\d*", name)] for name in (known_name, wanted_name))
     distances = [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
     return -SequenceMatcher(None, letters, wanted_letters).ratio(), *distances
 

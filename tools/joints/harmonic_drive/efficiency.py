@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from scipy.optimize import brentq
-
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
@@ -38,9 +36,9 @@ def drives_with_friction() -> list[CatalogueEntry]:
     ]
 
 
-def friction_and_ratio(item: CatalogueEntry) -> dict[str, float]:
+def friction_and_ratio(catalogue_entry: CatalogueEntry) -> dict[str, float]:
     """Ratio and friction parameters of a catalogue drive: {parameter of the FMU: value}."""
-    numbers = {"ratio": item.numbers["ratio"], **friction_parameters(item.numbers)}
+    numbers = {"ratio": catalogue_entry.numbers["ratio"], **friction_parameters(catalogue_entry.numbers)}
     return {name: number.value for name, number in numbers.items()}
 
 
@@ -52,18 +50,18 @@ class PythonDrive:
         self._model, self._spring = model, model.tabulate(file.values)
         self._memory = model.initial_history(self._spring)
         self._rest = {v.name: file.start_value(v.name) for v in model.inputs}
-        self.set(0.0, 0.0, 0.0, 0.0)
-        self.step(0.0, 0.0)
+        self.set_inputs(0.0, 0.0, 0.0, 0.0)
+        self.do_step(0.0, 0.0)
 
-    def set(self, *values: float) -> None:
+    def set_inputs(self, *values: float) -> None:
         self._inputs = {**self._rest, **dict(zip(_FLANGE_MOTION, values, strict=True))}
 
-    def get(self) -> list[float]:
+    def get_outputs(self) -> list[float]:
         """Outputs tau, tau1 [N.m] and K_WTS [N.m/rad] at the present inputs."""
         outputs = self._advance()[0]
         return [float(outputs[name]) for name in (*_TORQUE_OUTPUTS, "K_WTS")]
 
-    def step(self, time: float, size: float) -> None:
+    def do_step(self, time: float, step_size: float) -> None:
         """Accept the present inputs: update the history variables."""
         self._memory = self._advance()[1]
 
@@ -78,6 +76,7 @@ def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, s
     transmitted_torque : wind-up [rad] -> torque [N.m]
     stiffness          : approximate stiffness [N.m/rad], for the initial bracket
     """
+    from scipy.optimize import brentq  # slow to import, and most commands import this module
 
     def residual(angle: float) -> float:
         return transmitted_torque(angle) - torque
@@ -118,12 +117,12 @@ class DriveTestRig:
         torque : [N.m] external torque on the output, positive in the direction of its angle
         """
         wind_up, ratio = self._wind_up(torque), self.ratio
-        self.drive.set(self.motor_angle, 0.0, self.motor_angle / ratio + wind_up, 0.0)
-        self.drive.step(float(self.step_count), 1.0)
+        self.drive.set_inputs(self.motor_angle, 0.0, self.motor_angle / ratio + wind_up, 0.0)
+        self.drive.do_step(float(self.step_count), 1.0)
         self.step_count += 1
         self.motor_angle += math.copysign(_DEVELOPED_ROTATION_RATIO * self.presliding, speed)
-        self.drive.set(self.motor_angle, speed, self.motor_angle / ratio + wind_up, speed / ratio)
-        return -self.drive.get()[1]
+        self.drive.set_inputs(self.motor_angle, speed, self.motor_angle / ratio + wind_up, speed / ratio)
+        return -self.drive.get_outputs()[1]
 
     def efficiency(self, speed: float, load: float) -> float:
         """Efficiency [1]: output power over motor power.
@@ -142,6 +141,7 @@ class DriveTestRig:
 
         max_torque : end of the search; inf is returned if a larger torque is needed
         """
+        from scipy.optimize import brentq  # slow to import, and most commands import this module
 
         def required_torque(load: float) -> float:
             """Motor torque [N.m] for slow rotation in the direction of the load."""
@@ -157,8 +157,8 @@ class DriveTestRig:
         """Wind-up [rad] of the output under a torque [N.m]."""
 
         def transmitted_torque(angle: float) -> float:
-            self.drive.set(self.motor_angle, 0.0, self.motor_angle / self.ratio + angle, 0.0)
-            return self.drive.get()[0]
+            self.drive.set_inputs(self.motor_angle, 0.0, self.motor_angle / self.ratio + angle, 0.0)
+            return self.drive.get_outputs()[0]
 
         return solve_wind_up(transmitted_torque, torque, self.stiffness)
 
@@ -168,7 +168,7 @@ def open_fmu_test_rig(path: Path, parameters: Mapping[str, float]) -> Iterator[D
     """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test rig; the parameters replace default values."""
     wires = (*_TORQUE_OUTPUTS, "K_WTS", "ratio", "presliding")
     with Slave(path, {**parameters, **_STEADY_PARAMETERS}, _FLANGE_MOTION, wires) as drive:
-        _, _, stiffness, ratio, presliding = drive.get()
+        _, _, stiffness, ratio, presliding = drive.get_outputs()
         yield DriveTestRig(drive, ratio, presliding, stiffness)
 
 
@@ -176,7 +176,7 @@ def make_python_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
     """Make a test rig of the drive in Python, with the parameters of a file. No FMU is needed."""
     steady = file.with_values(_STEADY_PARAMETERS, "user", "steady")
     drive = PythonDrive(model, steady)
-    return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])
+    return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get_outputs()[2])
 
 
 LOST_MOTION_RATIO = 0.04

@@ -18,6 +18,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ class PublishedFriction:
     load_loss_back    : friction over transmitted torque [1], if the output drives
     """
 
-    size: float
+    drive_size: float
     ratio: float
     starting_torque: float
     running_torque: float | None
@@ -79,28 +80,29 @@ class ScaledFriction:
     load_loss_back: ScaledNumber
 
 
+@lru_cache(maxsize=512)  # most drives of the catalogue share size and ratio with others
 def scale_friction(
-    size: float, ratio: float, published_drives: Collection[PublishedFriction]
+    drive_size: float, ratio: float, published_drives: tuple[PublishedFriction, ...]
 ) -> ScaledFriction:
     """Scale the friction of published drives (four or more) to a drive of a size [1] and a ratio [1]."""
     starting_logs = np.array(
         [
-            (np.log(k.size / REFERENCE_SIZE), np.log(k.starting_torque * k.ratio / REFERENCE_RATIO))
+            (np.log(k.drive_size / REFERENCE_SIZE), np.log(k.starting_torque * k.ratio / REFERENCE_RATIO))
             for k in published_drives
         ]
     )
     running_logs = [
-        np.log(k.running_torque / (k.size / REFERENCE_SIZE) ** SIZE_EXPONENT)
+        np.log(k.running_torque / (k.drive_size / REFERENCE_SIZE) ** SIZE_EXPONENT)
         for k in published_drives
         if k.running_torque is not None
     ]
     design = np.stack([np.ones(len(starting_logs)), starting_logs[:, 0]], axis=1)
     reference = _scale_torque(
-        design, starting_logs[:, 1], np.array([1.0, np.log(size / REFERENCE_SIZE)]), 1.0
+        design, starting_logs[:, 1], np.array([1.0, np.log(drive_size / REFERENCE_SIZE)]), 1.0
     )
     ones = np.ones((len(running_logs), 1))
     running = _scale_torque(
-        ones, np.array(running_logs), np.ones(1), (size / REFERENCE_SIZE) ** SIZE_EXPONENT
+        ones, np.array(running_logs), np.ones(1), (drive_size / REFERENCE_SIZE) ** SIZE_EXPONENT
     )
     rise = (max(x - reference.value, 0.0) for x in running)
     starting = ScaledNumber(*(REFERENCE_RATIO / ratio * x for x in reference))
@@ -110,13 +112,13 @@ def scale_friction(
     return ScaledFriction(starting, ScaledNumber(*rise), *losses)
 
 
-def _scale_torque(design: Array, logarithms: Array, design_row: Array, factor: float) -> ScaledNumber:
+def _scale_torque(design_matrix: Array, logarithms: Array, design_row: Array, factor: float) -> ScaledNumber:
     """Torque [N.m] from a linear regression of its logarithm, times a factor.
 
     design_matrix, logarithms : (n, k), (n) data of the regression
     design_row : (k) of the drive
     """
-    value, half = _predict(design, logarithms, design_row)
+    value, half = _predict(design_matrix, logarithms, design_row)
     return ScaledNumber(*(factor * float(np.exp(x)) for x in (value, value - half, value + half)))
 
 
@@ -127,7 +129,7 @@ def _mean_loss(values: Sequence[float | None]) -> ScaledNumber:
     return ScaledNumber(value, max(value - half, 0.0), value + half)
 
 
-def _predict(design: Array, values: Array, design_row: Array) -> tuple[float, float]:
+def _predict(design_matrix: Array, values: Array, design_row: Array) -> tuple[float, float]:
     """Predict a value by linear regression; value, and half width of its prediction interval.
 
     design_matrix, values : (n, k), (n) data of the regression
@@ -135,16 +137,19 @@ def _predict(design: Array, values: Array, design_row: Array) -> tuple[float, fl
     """
     from scipy.special import stdtrit
 
-    law = np.linalg.lstsq(design, values)[0]
+    law = np.linalg.lstsq(design_matrix, values)[0]
     freedom = values.size - law.size
-    residuals = values - design @ law
+    residuals = values - design_matrix @ law
     deviation = np.sqrt(
-        residuals @ residuals / freedom * (1.0 + design_row @ np.linalg.inv(design.T @ design) @ design_row)
+        residuals
+        @ residuals
+        / freedom
+        * (1.0 + design_row @ np.linalg.inv(design_matrix.T @ design_matrix) @ design_row)
     )
     return float(design_row @ law), float(stdtrit(freedom, 0.5 + 0.5 * CONFIDENCE_LEVEL) * deviation)
 
 
-QUOTED_SPEED = 2000.0 * math.pi / 30.0
+CATALOGUE_SPEED = 2000.0 * math.pi / 30.0
 """Speed [rad/s] of the wave generator at which catalogues state running torque and efficiency: 2000
 rev/min."""
 FRICTION_COLUMNS = ("starting_torque", "running_torque", "back_driving_torque", "efficiency")
@@ -186,8 +191,8 @@ def friction_parameters(
     _check_stated(numbers, stated_names)
     values: dict[str, tuple[Callable[[float], float], str]] = {"starting_torque": (lambda torque: torque, "")}
     if running is not None:
-        text = f" over {QUOTED_SPEED:.4g} rad/s"
-        values["running_torque"] = (lambda torque: (torque - start.value) / QUOTED_SPEED, text)
+        text = f" over {CATALOGUE_SPEED:.4g} rad/s"
+        values["running_torque"] = (lambda torque: (torque - start.value) / CATALOGUE_SPEED, text)
     if (output := numbers.get("efficiency")) is not None and rated is not None:
         idle = _no_load_torque_ratio(numbers)
         values["efficiency"] = (
@@ -235,14 +240,14 @@ def _check_stated(numbers: Mapping[str, SourcedNumber], stated_names: Collection
 
 
 def _make_parameter(
-    column: str, number: SourcedNumber, convert: Callable[[float], float], text: str
+    column: str, number: SourcedNumber, convert: Callable[[float], float], source_text: str
 ) -> SourcedNumber:
     """Friction parameter from a catalogue number, with source and interval.
 
     convert : number -> parameter
     """
-    kind = "derived" if text and number.kind != "estimate" else number.kind
-    source, interval = f"{number.source}; {PARAMETER_OF_COLUMN[column][1]}{text}", None
+    kind = "derived" if source_text and number.kind != "estimate" else number.kind
+    source, interval = f"{number.source}; {PARAMETER_OF_COLUMN[column][1]}{source_text}", None
     if number.interval is not None:
         low, high = sorted(max(round(convert(end), _INTERVAL_DECIMALS), 0.0) for end in number.interval)
         interval = low, high
@@ -262,8 +267,8 @@ def rated_efficiency(drive: Drive, temperature: float = REFERENCE_TEMPERATURE) -
     """
     transmitted = drive.rated_torque / abs(drive.ratio)
     load = -math.copysign(drive.rated_torque, drive.ratio)
-    friction_torque = friction_limits(drive, QUOTED_SPEED, load, temperature)[0] + viscous_torque(
-        drive, QUOTED_SPEED, temperature
+    friction_torque = friction_limits(drive, CATALOGUE_SPEED, load, temperature)[0] + viscous_torque(
+        drive, CATALOGUE_SPEED, temperature
     )
     return float(transmitted / (transmitted + friction_torque))
 
@@ -284,7 +289,7 @@ def _published_friction(name: str, ratio: float, numbers: Mapping[str, SourcedNu
     losses = friction_parameters({"ratio": SourcedNumber(ratio, "catalogue", ""), **numbers})
     running = numbers.get("running_torque")
     return PublishedFriction(
-        size_of_name(name),
+        parse_drive_size(name),
         ratio,
         numbers["starting_torque"].value,
         running.value if running else None,
@@ -293,7 +298,7 @@ def _published_friction(name: str, ratio: float, numbers: Mapping[str, SourcedNu
     )
 
 
-def size_of_name(name: str) -> float:
+def parse_drive_size(name: str) -> float:
     """Size [1] in the name SERIES-SIZE-RATIO of a drive; a letter after the size, as in 14A, is ignored."""
     match = re.search(r"-(\d+)[A-Z]?-\d+$", name)
     assert match, name
@@ -310,16 +315,17 @@ def add_friction_estimates(
     Without a rated torque there is no estimate of the efficiency.
     """
     numbers, ratio = dict(entry.numbers), entry.numbers["ratio"].value
-    law = scale_friction(size_of_name(entry.name), ratio, [each for each, _ in published_drives.values()])
+    published = tuple(each for each, _ in published_drives.values())
+    law = scale_friction(parse_drive_size(entry.name), ratio, published)
     makers: dict[str, list[str]] = {}
     for name, (_, maker) in published_drives.items():
         makers.setdefault(maker, []).append(name)
     text = " and ".join(f"{maker} ({', '.join(names)})" for maker, names in makers.items())
     text += ", scaled by size and ratio"
 
-    def add_estimate(column: str, value: float, *ends: float) -> None:
+    def add_estimate(column: str, value: float, *interval_ends: float) -> None:
         """Add the estimate of a column, unless the drive has this column."""
-        interval = min(ends), max(ends)
+        interval = min(interval_ends), max(interval_ends)
         numbers.setdefault(column, SourcedNumber(value, "estimate", text, interval=interval))
 
     add_estimate("starting_torque", *law.starting_torque)

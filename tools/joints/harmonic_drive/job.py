@@ -19,7 +19,7 @@ from ...ramps import ramp
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series, published_series
 from ...systems.master import Slave
-from ...systems.ringing import Axis, Body, Pull, Rest
+from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
 from . import efficiency
 
 
@@ -39,7 +39,7 @@ RAMPS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance": _ch
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
-def through_fmu(point: Point, folder: Path) -> float | None:
+def compute_through_fmu(point: Point, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     where = point.where
 
@@ -68,22 +68,22 @@ def through_fmu(point: Point, folder: Path) -> float | None:
 _COMPLIANCE_FMU = "HarmonicDriveCompliance"
 
 
-def figures(outcome: Any) -> list[Figure]:
+def figures(job_result: Any) -> list[Figure]:
     """Figures of the harmonic drive, from the results of the main job (`JobResult`)."""
-    result = outcome.ramps[_COMPLIANCE_FMU]
+    result = job_result.ramps[_COMPLIANCE_FMU]
     return [
         Figure(
             "Stiffness over torque",
             "K_WTS and the contact pair's part of it on the drive's scale, as the FMU gives them; then the "
             "pair on the scale of the paper's figures.",
-            stiffness_panels(result, outcome.rows),
-            data=f"{_COMPLIANCE_FMU}.csv",
+            stiffness_panels(result, job_result.validated_points),
+            data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "Torque over wind-up",
             "The integral of dT/K_WTS, odd in the torque.",
             [torque_angle_panel(result)],
-            data=f"{_COMPLIANCE_FMU}.csv",
+            data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "What friction costs",
@@ -92,7 +92,7 @@ def figures(outcome: Any) -> list[Figure]:
             "motor. Starting and running torque fix friction_coulomb and friction_viscous, the efficiency "
             "load_loss, the back-driving torque load_loss_back. Of the CSF drives the running torque is an "
             "estimate, and the back-driving torque fixes both where that is not below 0.",
-            friction_panels(_spring_fmu(outcome)),
+            friction_panels(_spring_fmu(job_result)),
         ),
     ]
 
@@ -103,16 +103,14 @@ def _spring_fmu(outcome: Any) -> Path:
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
-def friction_panels(fmu: Path) -> list[Panel]:
+def friction_panels(fmu_path: Path) -> list[Panel]:
     """Panels of efficiency over load, and of back-driving torque, of the catalogue drives, by an FMU."""
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.drives_with_friction(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
-        rated, published_torque = (
-            drive.numbers["rated_torque"].value,
-            drive.numbers["back_driving_torque"].value,
-        )
-        with efficiency.open_fmu_test_rig(fmu, efficiency.friction_and_ratio(drive)) as bench:
+        rated = drive.numbers["rated_torque"].value
+        published_torque = drive.numbers["back_driving_torque"].value
+        with efficiency.open_fmu_test_rig(fmu_path, efficiency.friction_and_ratio(drive)) as bench:
             rows = {
                 rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in rated * share]
                 for rpm in (500, 2000, 3500)
@@ -147,7 +145,7 @@ def stiffness_panels(result: RampResult, rows: list[ValidatedPoint]) -> list[Pan
         Series(
             "computed: largest and least over w",
             [r.point.where["torque"] for r in ends],
-            [float(r.computed) for r in ends],
+            [float(r.computed_value) for r in ends],
             "empty",
             titles=[r.point.id for r in ends],
         ),
@@ -171,26 +169,26 @@ TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 
 
 def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
-    """Torques [N.m] of the simulated free vibrations, from zero to the rated torque."""
+    """Mean torques [N.m] at which free vibrations are simulated: from zero to the rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
-        (rated,) = drive.get()
+        (rated,) = drive.get_outputs()
     return [share * rated for share in TORQUE_RATIOS]
 
 
-def _vibration_at_rest(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
+def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> WorkingPoint:
     with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
-        (damping,) = dashpot.get()
+        (damping,) = dashpot.get_outputs()
     with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
         angle, stiffness = _wind_up_and_stiffness(law, torque)
-    return Rest(torque, angle, stiffness, damping)
+    return WorkingPoint(torque, angle, stiffness, damping)
 
 
 def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
     """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m]."""
 
     def torque_and_stiffness(angle: float) -> tuple[float, float]:
-        drive.set(angle, 0.0)
-        transmitted, stiffness = drive.get()
+        drive.set_inputs(angle, 0.0)
+        transmitted, stiffness = drive.get_outputs()
         return transmitted, stiffness
 
     def transmitted_torque(angle: float) -> float:
@@ -200,22 +198,22 @@ def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
     return angle, torque_and_stiffness(angle)[1]
 
 
-RINGING = Body(
-    model="HarmonicDriveSpring",
-    motion=("phi2", "w2"),
-    force="tau2",
-    partner="RotationalInertia",
-    over="tau",
-    loads=_vibration_torques,
-    start=lambda torque: {},
-    rest=_vibration_at_rest,
-    release=1e-3,
-    load=Axis("torque", "N m", 1.0),
-    deflection=Axis("wind-up", "urad", 1e6),
+RINGING = VibrationTest(
+    model_name="HarmonicDriveSpring",
+    motion_inputs=("phi2", "w2"),
+    force_output="tau2",
+    body_model="RotationalInertia",
+    load_variable="tau",
+    find_example_loads=_vibration_torques,
+    find_start_values=lambda torque: {},
+    find_working_point=_rest_state,
+    release_force=1e-3,
+    load_axis=PlotAxis("torque", "N m", 1.0),
+    deflection_axis=PlotAxis("wind-up", "urad", 1e6),
     doc="motor held",
-    stiffness="K_WTS",
-    pull=Pull(0.0, 5e-4, "three lengths of its hysteresis"),
-    elastic={"hysteresis_loss": 0.0},
+    stiffness_output="K_WTS",
+    slip_deflection=SlipDeflection(0.0, 5e-4, "three lengths of its hysteresis"),
+    frictionless_parameters={"hysteresis_loss": 0.0},
 )
 
 
@@ -250,7 +248,7 @@ _TRANSMISSION = TransmissionView(
     rated="rated_torque",
     default_speed=200.0,
 )
-_LOAD_CYCLE = MODELS["HarmonicDriveSpring"].loop
+_LOAD_CYCLE = MODELS["HarmonicDriveSpring"].load_cycle
 _EXAMPLE_DRIVE = efficiency.drives_with_friction()[0]
 _EXAMPLE = Example(
     f"friction of the catalogue's {_EXAMPLE_DRIVE.name}, 1 arcmin of hysteresis and of kinematic error",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.harmonic_drive import KIND
 from jointfmu.joints.harmonic_drive.drive import HARMONICS, Drive
 from jointfmu.joints.harmonic_drive.law import (
@@ -82,13 +82,13 @@ def TRANSMISSION(name: str, drive: Drive) -> Transmission:
         damping=drive.d,
         rated_torque=drive.rated_torque,
         max_torque=float(spring.curve.end[1]),
-        dry=drive.friction_coulomb,
-        viscous=drive.friction_viscous,
-        static=drive.friction_coulomb + drive.friction_stribeck,
+        dry_friction=drive.friction_coulomb,
+        viscous_friction=drive.friction_viscous,
+        static_friction=drive.friction_coulomb + drive.friction_stribeck,
         stribeck_speed=drive.stribeck_speed,
-        presliding=drive.presliding,
-        wind_up=wind_up,
-        lacks=tuple(_list_missing_effects(drive)),
+        presliding_angle=drive.presliding,
+        compute_wind_up=wind_up,
+        omitted_effects=tuple(_list_missing_effects(drive)),
     )
 
 
@@ -142,7 +142,7 @@ def _mean_pressure(drive: _ContactPairDrive, torque: float) -> float:
 
 def _stiffness_ratio(drive: _ContactPairDrive, torque: float) -> float:
     """K_TS of the drive over K_T radius^2 [1], the torsional stiffness of a pair with K_T of the law."""
-    tangential = at_pressure(drive.law, _mean_pressure(drive, torque))["K_T"]
+    tangential = evaluate_at_pressure(drive.law, _mean_pressure(drive, torque))["K_T"]
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
 
 

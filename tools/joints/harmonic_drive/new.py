@@ -13,7 +13,13 @@ from ...drawing.part import DrawingOptions, NewJoint, NewJointCommand
 from ...drawing.reading import parse_number, parse_temperature
 from ...joint_parts import Option
 from .catalogue import COLUMNS, STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive
-from .friction import FRICTION_COLUMNS, QUOTED_SPEED, describe_interval, friction_parameters, rated_efficiency
+from .friction import (
+    CATALOGUE_SPEED,
+    FRICTION_COLUMNS,
+    describe_interval,
+    friction_parameters,
+    rated_efficiency,
+)
 
 if TYPE_CHECKING:
     from .fit.drive import CatalogueRow
@@ -54,10 +60,8 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
         printed["rated_torque"] = SourcedNumber(printed["T2"].value, "estimate", text)
-    friction_numbers, (printed["ratio"], ratio_text) = (
-        _friction_parameters(options, printed),
-        _signed_ratio(options, printed["ratio"]),
-    )
+    friction_numbers = _friction_parameters(options, printed)
+    (printed["ratio"], ratio_text) = _signed_ratio(options, printed["ratio"])
     printed = {name: number for name, number in printed.items() if name not in FRICTION_COLUMNS}
     if options["corner"] is not None:
         if options["law"] == "hu2023":
@@ -73,27 +77,28 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     return joint if options["temperature"] is None else _set_temperature(joint, options["temperature"])
 
 
-def _set_temperature(joint: NewJoint, text: str) -> NewJoint:
+def _set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
     """Set the start temperature of the lubricant, and compute the friction facts at this temperature.
 
     temperature_text : temperature as the user states it
     """
-    kelvin, drive = parse_temperature("temperature", text), joint.file.values
+    kelvin, drive = parse_temperature("temperature", temperature_text), joint.file.values
     file = replace(
         joint.file,
         inputs={**joint.file.inputs, "temperature": kelvin},
         origins={**joint.file.origins, "inputs.temperature": "user"},
-        sources={**joint.file.sources, "inputs.temperature": f"stated: {text}"},
+        sources={**joint.file.sources, "inputs.temperature": f"stated: {temperature_text}"},
     )
     dry = float(friction_limits(drive, 0.0, 0.0, kelvin)[0])
-    text = f"{kelvin - KELVIN_AT_ZERO:g} degrees C"
-    facts = {"starting_torque": (dry, "N.m", f"at the wave generator, at {text}")}
+    temperature_text = f"{kelvin - KELVIN_AT_ZERO:g} degrees C"
+    facts = {"starting_torque": (dry, "N.m", f"at the wave generator, at {temperature_text}")}
     wet = float(
-        friction_limits(drive, QUOTED_SPEED, 0.0, kelvin)[0] + viscous_torque(drive, QUOTED_SPEED, kelvin)
+        friction_limits(drive, CATALOGUE_SPEED, 0.0, kelvin)[0]
+        + viscous_torque(drive, CATALOGUE_SPEED, kelvin)
     )
-    facts["running_torque"] = (wet, "N.m", f"the same at 2000 rev/min, at {text}")
+    facts["running_torque"] = (wet, "N.m", f"the same at 2000 rev/min, at {temperature_text}")
     if "efficiency" in joint.facts:
-        what = f"{joint.facts['efficiency'][2]}, at {text}"
+        what = f"{joint.facts['efficiency'][2]}, at {temperature_text}"
         facts["efficiency"] = (rated_efficiency(drive, kelvin), "1", what)
     return replace(joint, file=file, facts={**joint.facts, **facts})
 
@@ -176,13 +181,17 @@ def _stated_number(options: DrawingOptions, value: float) -> SourcedNumber:
     return SourcedNumber(value, kind, options["source"] or "stated")
 
 
-def _default_unit(options: DrawingOptions, name: str) -> str:
+def _default_unit(options: DrawingOptions, column_name: str) -> str:
     """Unit of a stated number without a unit."""
-    return options["stiffness_unit"] or _DEFAULT_UNITS[name] if name.startswith("K") else _DEFAULT_UNITS[name]
+    return (
+        options["stiffness_unit"] or _DEFAULT_UNITS[column_name]
+        if column_name.startswith("K")
+        else _DEFAULT_UNITS[column_name]
+    )
 
 
 def _make_line_joint(
-    numbers: dict[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], name: str
+    numbers: dict[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], drive_name: str
 ) -> NewJoint:
     """Make a drive with the three lines of the catalogue as stiffness (law `catalogue`)."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -207,7 +216,7 @@ def _make_line_joint(
     text = f"not published; {DAMPING_TIME:g} s times K1, 2 % of critical at 60 Hz"
     numbers["d"] = SourcedNumber(DAMPING_TIME * numbers["K1"].value, "estimate", text)
     numbers |= friction_numbers
-    file = catalogue.make_line_drive(name, numbers)
+    file = catalogue.make_line_drive(drive_name, numbers)
     spring = HarmonicDriveSpring.tabulate(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
@@ -230,15 +239,17 @@ def _make_line_joint(
 
 
 def _make_pair_joint(
-    numbers: Mapping[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], name: str
+    numbers: Mapping[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], drive_name: str
 ) -> NewJoint:
     """Make a drive with the law of Hu 2023, fitted to the row."""
     from .fit import catalogue
 
     kind, ratio = numbers["rated_torque"].kind, numbers["ratio"].value
     row = _catalogue_row(numbers)
-    found = catalogue.fit_pair(row, numbers=catalogue.source_numbers(row, kind, ratio, name), source=name)
-    file = replace(found.parameters, name=name)
+    found = catalogue.fit_pair(
+        row, numbers=catalogue.source_numbers(row, kind, ratio, drive_name), source=drive_name
+    )
+    file = replace(found.parameters, name=drive_name)
     loss = numbers.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":
         friction_numbers = {"hysteresis_loss": loss, **friction_numbers}

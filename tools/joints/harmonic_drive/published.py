@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointfmu.contact.interface import at_largest_spot
+from jointfmu.contact.interface import evaluate_at_largest_spot
 from jointfmu.contact.laws import hu2023 as hu
 from jointfmu.contact.laws import kogut_etsion
 from jointfmu.contact.surface import hardness_coefficient
@@ -55,11 +55,11 @@ def kogut_etsion_constant(drive: HarmonicDrive, product: str, stage: int) -> flo
     stage   : 1 or 2
     """
     if product == "area":
-        return float((kogut_etsion.SECOND_STAGE_AREA, kogut_etsion.PLASTIC_AREA)[stage - 1])
+        return float((kogut_etsion.SECOND_STAGE_AREA_RATIO, kogut_etsion.PLASTIC_AREA_RATIO)[stage - 1])
     powers = kogut_etsion.eliminate_deformation(
         (kogut_etsion.FIRST_STAGE, kogut_etsion.SECOND_STAGE)[stage - 1]
     )
-    return powers.A if product == "load" else powers.B
+    return powers.load_factor if product == "load" else powers.stiffness_factor
 
 
 def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
@@ -67,8 +67,8 @@ def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
 
     nu : Poisson's ratio [1]
     """
-    stage, w = kogut_etsion.SECOND_STAGE, kogut_etsion.PLASTIC_ONSET
-    load_per_area = stage.c * w**stage.d / (stage.m * w**stage.n)
+    stage, w = kogut_etsion.SECOND_STAGE, kogut_etsion.PLASTIC_DEFORMATION_RATIO
+    load_per_area = stage.load_factor * w**stage.load_exponent / (stage.area_factor * w**stage.area_exponent)
     return float(2.0 / 3.0 * hardness_coefficient(nu) * load_per_area)
 
 
@@ -85,8 +85,14 @@ def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
     )
     load, area = {
         "elastic": (1.0, 1.0),
-        "first": (first.A * kogut_etsion.SECOND_STAGE_AREA**first.p, kogut_etsion.SECOND_STAGE_AREA),
-        "second": (second.A * kogut_etsion.PLASTIC_AREA**second.p, kogut_etsion.PLASTIC_AREA),
+        "first": (
+            first.load_factor * kogut_etsion.SECOND_STAGE_AREA_RATIO**first.load_exponent,
+            kogut_etsion.SECOND_STAGE_AREA_RATIO,
+        ),
+        "second": (
+            second.load_factor * kogut_etsion.PLASTIC_AREA_RATIO**second.load_exponent,
+            kogut_etsion.PLASTIC_AREA_RATIO,
+        ),
     }[stage]
     pressure = 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * load / area
     return float(law.sigma_y / np.sqrt(3.0) / (law.mu * pressure))
@@ -97,7 +103,7 @@ def smallest_mean_pressure(drive: HarmonicDrive) -> float:
 
     Then all spots are elastic. This is the smallest F_r/S_r of all larger spots.
     """
-    state = at_largest_spot(drive.law, hu.critical_area(drive.law))
+    state = evaluate_at_largest_spot(drive.law, hu.critical_area(drive.law))
     return float(state["F"] / state["A_r"])
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from jointfmu.joints.harmonic_drive import KIND
 from jointfmu.joints.harmonic_drive.drive import Drive, lost_motion_angle
-from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive
 from jointfmu.joints.harmonic_drive.law import ContactPairDrive, drive_stiffness
+from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, TableDrive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.quantity import Array
 
@@ -63,7 +63,7 @@ def _table(drive: TableDrive, torque: Array) -> tuple[Array, Array]:
 
 def _lines(drive: CatalogueDrive, torque: Array) -> tuple[Array, Array]:
     """K_WTS and wind-up of a catalogue's three lines: along a line, or by Newton's method within a corner."""
-    first, second = drive.corners
+    first, second = drive.corner_angles
     K = np.where(torque < drive.T1, drive.K1, np.where(torque < drive.T2, drive.K2, drive.K3))
     phi = np.minimum(torque, drive.T1) / drive.K1 + np.maximum(torque - drive.T2, 0.0) / drive.K3
     phi = phi + np.clip(torque - drive.T1, 0.0, drive.T2 - drive.T1) / drive.K2

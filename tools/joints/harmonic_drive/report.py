@@ -23,7 +23,7 @@ from ...report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET, Compari
 from .catalogue import COLUMNS, STIFFNESS_NAMES, find_drive
 from .efficiency import DriveTestRig, hysteresis_loss, lost_motion, make_python_test_rig
 from .fit.drive import CatalogueRow
-from .friction import FRICTION_COLUMNS, PARAMETER_OF_COLUMN, QUOTED_SPEED
+from .friction import CATALOGUE_SPEED, FRICTION_COLUMNS, PARAMETER_OF_COLUMN
 
 MOTOR_SPEEDS = (500, 2000, 3500)
 """Motor speeds [rev/min] in the figure of the efficiency."""
@@ -160,16 +160,18 @@ def _is_stiffness_from_catalogue(file: ParameterFile, numbers: Mapping[str, Sour
     return file.origins.get("K_FTS0") == "catalogue"
 
 
-def _compute_friction_value(bench: DriveTestRig, column: str, numbers: Mapping[str, SourcedNumber]) -> float:
+def _compute_friction_value(
+    test_rig: DriveTestRig, column: str, numbers: Mapping[str, SourcedNumber]
+) -> float:
     """Computed value of a friction column: a torque [N.m] or the efficiency [1]."""
     if column == "starting_torque":
-        return bench.starting_torque()
+        return test_rig.starting_torque()
     if column == "running_torque":
-        return bench.motor_torque(QUOTED_SPEED, 0.0)
+        return test_rig.motor_torque(CATALOGUE_SPEED, 0.0)
     if column == "efficiency":
-        return bench.efficiency(QUOTED_SPEED, numbers["rated_torque"].value)
-    return bench.back_driving_torque(_BACK_DRIVING_LIMIT_RATIO * numbers[column].value)
+        return test_rig.efficiency(CATALOGUE_SPEED, numbers["rated_torque"].value)
+    return test_rig.back_driving_torque(_BACK_DRIVING_LIMIT_RATIO * numbers[column].value)
 
 
 FIGURES = {"HarmonicDriveSpring": friction_figures}
-BESIDE = {"HarmonicDriveSpring": compare_with_catalogue}
+CATALOGUE_COMPARISONS = {"HarmonicDriveSpring": compare_with_catalogue}

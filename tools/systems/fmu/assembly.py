@@ -2,37 +2,37 @@
 
 from dataclasses import replace
 
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 
 from ..system import System
-from ..wiring import ends, model_of, wires
-from .model import LAGS, Feed, SystemComponent, SystemModel
+from ..wiring import find_connections, find_model, find_signals
+from .model import LAG_PARAMETERS, InputSource, SystemComponent, SystemModel
 
-LEAST_INTERVAL = 1e-3
+MIN_INTERVAL = 1e-3
 """Smallest communication step [s] of the default experiment: the implicit step needs no smaller one."""
 
 
-def assembly(system: System) -> SystemModel:
+def assemble_system(system: System) -> SystemModel:
     """Make the model of a system: components in the order of evaluation, with the sources of their inputs.
 
     Raises ValueError as `wiring.find_connections`, and for a system without a body.
     """
-    feeds: dict[str, dict[str, Feed | None]] = {name: {} for name in system.components}
-    for wire in wires(system):
-        feeds[wire.target][wire.input] = Feed(wire.source, wire.output)
-    for first, second in ends(system):
-        if first.joint and first.component and second.component is None:  # fixed to the ground
-            zero_inputs = {variable: None for m, variable in first.members.items() if m != first.flow}
+    feeds: dict[str, dict[str, InputSource | None]] = {name: {} for name in system.components}
+    for wire in find_signals(system):
+        feeds[wire.target][wire.input] = InputSource(wire.source, wire.output)
+    for first, second in find_connections(system):
+        if first.is_joint and first.component and second.component is None:  # fixed to the ground
+            zero_inputs = {variable: None for m, variable in first.members.items() if m != first.flow_member}
             feeds[first.component.name] |= zero_inputs
     components = []
     for name, component in system.components.items():
-        model = model_of(component)
+        model = find_model(component)
         if model.state_count:
-            model = replace(model, fixed_parameters=LAGS)
-        file = component.file or partner_parameters(component.model).with_values(
+            model = replace(model, fixed_parameters=LAG_PARAMETERS)
+        file = component.parameter_file or partner_parameters(component.model_name).with_values(
             component.parameters, "user", system.name
         )
-        start = {v.name: file.start_value(v.name) for v in model.inputs} | component.state
+        start = {v.name: file.start_value(v.name) for v in model.inputs} | component.constant_inputs
         components.append(SystemComponent(name, model, file, feeds[name], start))
     if not any(component.model.state_count for component in components):
         raise ValueError(
@@ -41,7 +41,7 @@ def assembly(system: System) -> SystemModel:
     components.sort(
         key=lambda component: (component.model.state_count > 0, not component.model.is_time_dependent)
     )
-    interval = max(system.interval, LEAST_INTERVAL)
+    interval = max(system.interval, MIN_INTERVAL)
     return SystemModel(
         system.name, system.description, components, system.stop_time, interval, system.interval
     )

@@ -3,20 +3,20 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from jointfmu_fmu_src.archive import pack, workshop
-from jointfmu_fmu_src.joint_parts.data import NO_TABLES, Split
-from jointfmu_fmu_src.licence import licences
+from jointfmu_fmu_src.archive import staging_folder, write_archive
+from jointfmu_fmu_src.joint_parts.data import EMPTY_TABLES, ParameterSplit
+from jointfmu_fmu_src.licence import licence_files
 from jointfmu_fmu_src.native.build import fmu_members
-from jointfmu_fmu_src.native.compiled.compiler import TARGETS, exported, libraries
-from jointfmu_fmu_src.native.data import data_of
-from jointfmu_fmu_src.native.page import plain_page
+from jointfmu_fmu_src.native.compiled.compiler import TARGETS, compile_libraries, select_units
+from jointfmu_fmu_src.native.data import make_fmu_data
+from jointfmu_fmu_src.native.page import render_variables_page
 
 from jointfmu.files.outputs import ARCHIVE, check_outputs
 
 from ...host import is_needed_to_run
-from .code import sources
+from .code import generate_sources
 from .model import SystemModel
-from .proof import proof
+from .proof import make_proof_files
 
 
 def fmu_paths(title: str, out: Path, versions: Sequence[str] = ("2", "3")) -> list[Path]:
@@ -24,17 +24,21 @@ def fmu_paths(title: str, out: Path, versions: Sequence[str] = ("2", "3")) -> li
     return [out / f"fmi{version}" / f"{title}.fmu" for version in versions]
 
 
-def all_sources(assembly: SystemModel) -> tuple[dict[str, str], str]:
+def make_sources(system_model: SystemModel) -> tuple[dict[str, str], str]:
     """{file name: text} of all C sources of a system's FMU, with its data, and the instantiation token."""
-    model, files = assembly.model(), sources(assembly)
-    parameters, parameter_split = assembly.parameters(model), Split((), {}, {}, model.parameters, NO_TABLES)
-    data = data_of(model, parameters, parameter_split, files, of_file=False)
-    files |= {"data.h": data.header(), "data.c": data.source(f" from the system {assembly.name!r}")}
+    model, files = system_model.make_model(), generate_sources(system_model)
+    parameters = system_model.make_parameters(model)
+    parameter_split = ParameterSplit((), {}, {}, model.parameters, EMPTY_TABLES)
+    data = make_fmu_data(model, parameters, parameter_split, files, has_file=False)
+    files |= {
+        "data.h": data.make_header(),
+        "data.c": data.make_source(f" from the system {system_model.name!r}"),
+    }
     return files, data.token
 
 
 def build_system(
-    assembly: SystemModel,
+    system_model: SystemModel,
     out: Path,
     versions: Sequence[str] = ("2", "3"),
     platforms: Sequence[str] = tuple(TARGETS),
@@ -51,23 +55,25 @@ def build_system(
     Raises ImportError if a package is missing, RuntimeError if the compiler fails, ValueError if a folder
     cannot be written or the system is too large.
     """
-    model = assembly.model()
+    model = system_model.make_model()
     files_out = fmu_paths(model.title, out, versions)
     check_outputs(files_out, ARCHIVE, force)
-    parameters = assembly.parameters(model)
-    files, token = all_sources(assembly)
-    page = plain_page(model, parameters, Path(__file__).with_name("page.html")).encode()
-    documents = {"index.html": page, **licences()}
+    parameters = system_model.make_parameters(model)
+    files, token = make_sources(system_model)
+    page = render_variables_page(model, parameters, Path(__file__).with_name("page.html")).encode()
+    documents = {"index.html": page, **licence_files()}
     pages = {f"documentation/{path}": content for path, content in documents.items()}
     written_files, proof_files = [], None
     for version, target in zip(versions, files_out, strict=True):
-        binaries = libraries(model.name, files, exported(sorted(files), version), platforms)
+        binaries = compile_libraries(model.name, files, select_units(sorted(files), version), platforms)
         members = fmu_members(model, parameters, version, files, token, binaries) | pages
-        with workshop(target) as work:
+        with staging_folder(target) as work:
             if proof_files is None:  # the first FMU computes the reference results of both
                 runnable = {path: content for path, content in members.items() if is_needed_to_run(path)}
-                pack(runnable, work / target.name)
-                proof_files = proof(model, assembly.stop, assembly.own_interval, work / target.name)
-            pack(members | proof_files, work / target.name)
+                write_archive(runnable, work / target.name)
+                proof_files = make_proof_files(
+                    model, system_model.stop_time, system_model.separate_interval, work / target.name
+                )
+            write_archive(members | proof_files, work / target.name)
         written_files.append(target)
     return written_files

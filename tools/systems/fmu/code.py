@@ -4,59 +4,77 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from jointfmu_fmu_src.joint_parts.c_text import array, string
-from jointfmu_fmu_src.native.code.elementary import tables
-from jointfmu_fmu_src.native.code.generate import RUNTIME, code, native_part, runtime, variables_c
-from jointfmu_fmu_src.native.data import block, split
+from jointfmu_fmu_src.joint_parts.c_text import format_array, format_string
+from jointfmu_fmu_src.native.code.elementary import make_tables_header
+from jointfmu_fmu_src.native.code.generate import (
+    RUNTIME_FOLDER,
+    format_variables_c,
+    generate_code,
+    list_runtime_files,
+    load_native_definition,
+)
+from jointfmu_fmu_src.native.data import make_data_block, split_parameters
 
 from .model import SystemComponent, SystemModel
 
-_COMMON = runtime(("elementary",))
-_LAYERS = {path.stem for path in _COMMON} - {"joint", "variables"} | {"elementary_tables"}
+_COMMON_FILES = list_runtime_files(("elementary",))
+_SHARED_STEMS = {path.stem for path in _COMMON_FILES} - {"joint", "variables"} | {"elementary_tables"}
 """Stems of files that all components share."""
-_FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "find_warnings", "describe_warning")
-_DEFINITION = re.compile(
+_JOINT_FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "find_warnings", "describe_warning")
+_DEFINITION_PATTERN = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
 )
-_WARNINGS = 32
+_MAX_WARNINGS = 32
 """Largest number of warnings in one FMU [1]: bits of the flags of logged warnings."""
 
 
-def sources(assembly: SystemModel) -> dict[str, str]:
+def generate_sources(system_model: SystemModel) -> dict[str, str]:
     """{file name: text} of all C sources of a system except data.h and data.c."""
-    model = assembly.model()
+    model = system_model.make_model()
     code_by_prefix: dict[str, dict[str, str]] = {}
     prefixes = {}
-    for component in assembly.components:
+    for component in system_model.components:
         component_code = _component_code(component)
         equal = [prefix for prefix, known in code_by_prefix.items() if known == component_code]
         prefixes[component.name] = equal[0] if equal else f"p{len(code_by_prefix) + 1}_"
         code_by_prefix.setdefault(prefixes[component.name], component_code)
     files = {
         path.name: path.read_text(encoding="utf-8")
-        for path in (*_COMMON, *Path(__file__).parent.glob("*.[ch]"))
+        for path in (*_COMMON_FILES, *Path(__file__).parent.glob("*.[ch]"))
     }
-    files |= {"elementary_tables.h": tables(), "variables.c": variables_c(model)}
-    files |= {"model.h": _header(assembly), "components.c": _components(assembly, prefixes)}
+    files |= {"elementary_tables.h": make_tables_header(), "variables.c": format_variables_c(model)}
+    files |= {
+        "model.h": _format_model_header(system_model),
+        "components.c": _format_components(system_model, prefixes),
+    }
     for prefix, component_code in code_by_prefix.items():
-        files |= _prefixed(prefix, component_code)
+        files |= _add_prefix(prefix, component_code)
     return dict(sorted(files.items()))
 
 
 def _component_code(component: SystemComponent) -> dict[str, str]:
     """{file name: text} of a component's C, without the FMI layer and the runtime of the system."""
-    parameter_split = split(component.model, component.parameters)
-    count = 1 + len(component.model.inputs) + len(component.model.outputs) + len(parameter_split.exposed)
-    data = block("part", "", [0.0] * count, list(parameter_split.fixed.values()), parameter_split.tables)
-    files = code(component.model, component.parameters, parameter_split)
-    files |= {"data.h": data.header(), "data.c": data.source()}
-    return {name: text for name, text in files.items() if name.rpartition(".")[0] not in _LAYERS}
+    parameter_split = split_parameters(component.model, component.parameters)
+    count = (
+        1 + len(component.model.inputs) + len(component.model.outputs) + len(parameter_split.variable_names)
+    )
+    data = make_data_block(
+        "part", "", [0.0] * count, list(parameter_split.data_values.values()), parameter_split.tables
+    )
+    files = generate_code(component.model, component.parameters, parameter_split)
+    files |= {"data.h": data.make_header(), "data.c": data.make_source()}
+    return {name: text for name, text in files.items() if name.rpartition(".")[0] not in _SHARED_STEMS}
 
 
-def _prefixed(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
+def _add_prefix(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
     """Add a prefix to the names of C files, and to all external names that they define."""
     names = sorted(
-        {name for file, text in files.items() if file.endswith(".c") for name in _DEFINITION.findall(text)}
+        {
+            name
+            for file, text in files.items()
+            if file.endswith(".c")
+            for name in _DEFINITION_PATTERN.findall(text)
+        }
     )
     macros = "".join(f"#define {name} {prefix}{name}\n" for name in names)
     head = f'#include "{prefix}names.h"\n'
@@ -71,20 +89,20 @@ def _prefixed(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
     return prefixed_files
 
 
-def _header(assembly: SystemModel) -> str:
+def _format_model_header(system_model: SystemModel) -> str:
     """Text of model.h: sizes of the system."""
-    memory = sum(native_part(p.model).memory.size for p in assembly.components)
-    events = sum(_event_count(p) for p in assembly.components)
-    wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in assembly.components)
+    memory = sum(load_native_definition(p.model).history_layout.size for p in system_model.components)
+    events = sum(_event_count(p) for p in system_model.components)
+    wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in system_model.components)
     counts = {
-        "N_INPUTS": len(assembly.inputs),
-        "N_OUTPUTS": len(assembly.outputs),
-        "N_PARAMETERS": sum(len(p.exposed) for p in assembly.components),
-        "N_COMPONENTS": len(assembly.components),
+        "N_INPUTS": len(system_model.inputs),
+        "N_OUTPUTS": len(system_model.outputs),
+        "N_PARAMETERS": sum(len(p.variable_parameters) for p in system_model.components),
+        "N_COMPONENTS": len(system_model.components),
         "N_CONNECTIONS": wires,
-        "N_COMPONENT_VALUES": wires + len(assembly.components),
+        "N_COMPONENT_VALUES": wires + len(system_model.components),
     }
-    definitions = {"N_STATES": 2 * len(assembly.bodies), "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
+    definitions = {"N_STATES": 2 * len(system_model.bodies), "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
     definitions |= {
         name: value for name, value in (("N_TIME_EVENTS", events), ("N_HISTORY", memory)) if value
     }
@@ -103,53 +121,53 @@ def _event_count(component: SystemComponent) -> int:
     )
 
 
-def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
+def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -> str:
     """Text of components.c: functions, sizes and connections of the components."""
-    first = 1 + len(assembly.inputs)
-    reference = {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(assembly.inputs, start=1)}
-    reference |= {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(assembly.outputs, start=first)}
+    first = 1 + len(system_model.inputs)
+    reference = {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(system_model.inputs, start=1)}
+    reference |= {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(system_model.outputs, start=first)}
     declared, rows, wires = [], list[str](), list[str]()
     offset = {"parameters": 0, "memory": 0, "row": 0, "wire": 0, "warnings": 0}
     for prefix in dict.fromkeys(prefixes.values()):
-        declared += _declared(prefix)
-    for component in assembly.components:
+        declared += _list_declarations(prefix)
+    for component in system_model.components:
         model, prefix = component.model, prefixes[component.name]
-        sources = [component.feeds.get(v.name, (component.name, v.name)) for v in model.inputs]
+        sources = [component.sources.get(v.name, (component.name, v.name)) for v in model.inputs]
         wires += [str(reference[".".join(feed)] if feed else 0) for feed in sources]
         wires += [str(reference[f"{component.name}.{v.name}"]) for v in model.outputs]
         events = _event_count(component)
         if events:
             declared.append(f"void {prefix}joint_event_times(Joint *joint, double *times);\n")
-        functions = [f"{prefix}joint_{name}" for name in _FUNCTIONS]
+        functions = [f"{prefix}joint_{name}" for name in _JOINT_FUNCTIONS]
         functions.append(f"{prefix}joint_event_times" if events else "NULL")
         counts = [len(model.inputs), len(model.outputs), model.state_count, events, *offset.values()]
-        rows.append("{" + ", ".join([string(component.name), *functions, *map(str, counts)]) + "}")
+        rows.append("{" + ", ".join([format_string(component.name), *functions, *map(str, counts)]) + "}")
         inputs, outputs = len(model.inputs), len(model.outputs)
-        offset["parameters"] += len(component.exposed)
-        offset["memory"] += native_part(model).memory.size
+        offset["parameters"] += len(component.variable_parameters)
+        offset["memory"] += load_native_definition(model).history_layout.size
         offset["row"] += 1 + inputs + outputs
         offset["wire"] += inputs + outputs
         offset["warnings"] += len(model.validity_limits)
-    if offset["warnings"] > _WARNINGS:
+    if offset["warnings"] > _MAX_WARNINGS:
         raise ValueError(
-            f"{assembly.name}: its joints have {offset['warnings']} warnings; "
-            f"allowed are {_WARNINGS} in one FMU"
+            f"{system_model.name}: its joints have {offset['warnings']} warnings; "
+            f"allowed are {_MAX_WARNINGS} in one FMU"
         )
     return (
         '#include "system.h"\n\n'
         + "".join(dict.fromkeys(declared))
         + "\n"
-        + array("const unsigned short connections[N_CONNECTIONS]", wires)
+        + format_array("const unsigned short connections[N_CONNECTIONS]", wires)
         + "\n"
-        + array("const Component components[N_COMPONENTS]", rows)
+        + format_array("const Component components[N_COMPONENTS]", rows)
     )
 
 
-def _declared(prefix: str) -> list[str]:
+def _list_declarations(prefix: str) -> list[str]:
     """C declarations of the functions of the components with a prefix."""
-    text = (RUNTIME / "instance" / "joint.h").read_text(encoding="utf-8")
+    text = (RUNTIME_FOLDER / "instance" / "joint.h").read_text(encoding="utf-8")
     declarations = []
-    for name in _FUNCTIONS:
+    for name in _JOINT_FUNCTIONS:
         match = re.search(rf"^\w+ (joint_{name})\([^;]*;\n", text, re.M)
         assert match
         declarations.append(match[0].replace(match[1], prefix + match[1]))

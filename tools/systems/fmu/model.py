@@ -9,13 +9,13 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields
 from jointfmu.quantity.declaration import group_field
 
-SYSTEM = "system"
+SYSTEM_KIND = "system"
 """Value of `Model.joint` for the model of a system."""
-LAGS = ("lag_a", "lag_b")
+LAG_PARAMETERS = ("lag_a", "lag_b")
 """Parameters of bodies that are needed only if joints and bodies are separate FMUs."""
 
 
-class Feed(NamedTuple):
+class InputSource(NamedTuple):
     """Source of an input: an output of another component."""
 
     component: str
@@ -35,16 +35,16 @@ class SystemComponent:
     name: str
     model: Model
     parameters: ParameterFile
-    feeds: Mapping[str, Feed | None]
-    start: Mapping[str, float]
+    sources: Mapping[str, InputSource | None]
+    start_values: Mapping[str, float]
 
     @property
-    def free(self) -> list[Variable]:
+    def system_inputs(self) -> list[Variable]:
         """Inputs that are inputs of the system."""
-        return [v for v in self.model.inputs if v.name not in self.feeds]
+        return [v for v in self.model.inputs if v.name not in self.sources]
 
     @property
-    def exposed(self) -> list[str]:
+    def variable_parameters(self) -> list[str]:
         """Names of the parameters that are FMU variables of the system."""
         return [*self.model.parameter_fields()]
 
@@ -63,9 +63,9 @@ class SystemModel:
     name: str
     doc: str
     components: Sequence[SystemComponent]
-    stop: float
+    stop_time: float
     interval: float
-    own_interval: float
+    separate_interval: float
 
     @property
     def bodies(self) -> list[SystemComponent]:
@@ -75,7 +75,7 @@ class SystemModel:
     @property
     def inputs(self) -> list[tuple[SystemComponent, Variable]]:
         """(component, variable) of the inputs of the system."""
-        return [(component, v) for component in self.components for v in component.free]
+        return [(component, v) for component in self.components for v in component.system_inputs]
 
     @property
     def outputs(self) -> list[tuple[SystemComponent, Variable]]:
@@ -89,35 +89,37 @@ class SystemModel:
             for v in component.model.outputs
         ]
 
-    def model(self) -> Model:
+    def make_model(self) -> Model:
         """Make the model of the FMU, whose variables are called COMPONENT.VARIABLE."""
         sets = [(p.name, type(p.parameters.values), group_field(p.model.doc)) for p in self.components]
         hidden = [
             f"{p.name}.{name}"
             for p in self.components
             for name, _ in flat_fields(type(p.parameters.values))
-            if name not in p.exposed
+            if name not in p.variable_parameters
         ]
         return Model(
             name=self.name,
-            joint=SYSTEM,
+            joint=SYSTEM_KIND,
             doc=self.doc,
             parameters=make_dataclass("SystemParameters", sets, frozen=True, kw_only=True),
             tabulate=lambda values: values,
             inputs=[with_component_name(component, v) for component, v in self.inputs],
             outputs=[with_component_name(component, v) for component, v in self.outputs],
-            evaluate=_not_in_python,
+            evaluate=_raise_not_in_python,
             validity_limits=(),
-            ramp=LoadRamp("", self.stop, self.interval, self.interval),
-            dependencies=self._dependencies(),
+            ramp=LoadRamp("", self.stop_time, self.interval, self.interval),
+            dependencies=self._find_dependencies(),
             fixed_parameters=hidden,
             state_count=2 * len(self.bodies),
             is_time_dependent=True,
-            initial_history=_not_in_python if any(p.model.initial_history for p in self.components) else None,
-            advance=_not_in_python if any(p.model.initial_history for p in self.components) else None,
+            initial_history=_raise_not_in_python
+            if any(p.model.initial_history for p in self.components)
+            else None,
+            advance=_raise_not_in_python if any(p.model.initial_history for p in self.components) else None,
         )
 
-    def parameters(self, model: Model) -> ParameterFile:
+    def make_parameters(self, model: Model) -> ParameterFile:
         """Make the parameter file of the system from those of all components."""
 
         def collect(attribute: str) -> dict[str, Any]:
@@ -128,10 +130,10 @@ class SystemModel:
             }
 
         values = model.parameters(**{p.name: p.parameters.values for p in self.components})
-        starts = {f"{p.name}.{v.name}": p.start.get(v.name, v.start) for p, v in self.inputs}
-        return ParameterFile(SYSTEM, self.name, values, collect("origins"), collect("sources"), starts)
+        starts = {f"{p.name}.{v.name}": p.start_values.get(v.name, v.start) for p, v in self.inputs}
+        return ParameterFile(SYSTEM_KIND, self.name, values, collect("origins"), collect("sources"), starts)
 
-    def _dependencies(self) -> dict[str, list[str]]:
+    def _find_dependencies(self) -> dict[str, list[str]]:
         """{output: inputs of the system and states on which it depends}."""
         dependencies: dict[str, dict[str, None]] = {}
         for component in self.bodies:
@@ -142,8 +144,8 @@ class SystemModel:
             for v in component.model.outputs[component.model.state_count :]:
                 sources: dict[str, None] = {}
                 for name in component.model.list_dependencies(v.name):
-                    feed = component.feeds.get(name)
-                    if name in states or name not in component.feeds:
+                    feed = component.sources.get(name)
+                    if name in states or name not in component.sources:
                         sources[f"{component.name}.{name}"] = None
                     elif feed:
                         sources |= dependencies[f"{feed.component}.{feed.output}"]
@@ -151,11 +153,13 @@ class SystemModel:
         return {name: [*sources] for name, sources in dependencies.items()}
 
 
-def with_component_name(component: SystemComponent, v: Variable) -> Variable:
+def with_component_name(component: SystemComponent, variable: Variable) -> Variable:
     """Copy of a variable with the name COMPONENT.VARIABLE."""
-    return replace(v, name=f"{component.name}.{v.name}", doc=f"{v.doc} ({component.name})")
+    return replace(
+        variable, name=f"{component.name}.{variable.name}", doc=f"{variable.doc} ({component.name})"
+    )
 
 
-def _not_in_python(*given: object) -> Any:
+def _raise_not_in_python(*arguments: object) -> Any:
     """Raise NotImplementedError: replaces the functions of a model that exist only in C."""
     raise NotImplementedError("a system is evaluated in C alone")

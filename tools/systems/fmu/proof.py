@@ -10,10 +10,10 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, proof_members
-from jointfmu_fmu_src.proof.series import TimeSeries, text
+from jointfmu_fmu_src.proof.files import TEXT_PATH, RelatedFile, proof_members
+from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
-from jointfmu_fmu_src.xml_parts import serialized
+from jointfmu_fmu_src.xml_parts import serialize_xml
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
@@ -22,39 +22,39 @@ from ...host import unpack_fmu
 from ...proof import exchange
 from ...proof.task import Task
 
-TOLERANCE = 5e-3
+OUTPUT_TOLERANCE = 5e-3
 """Tolerance of an output over its scale [1], as stated in docs/systems_explanation.md."""
-SOLVER = 1e-9
+SOLVER_TOLERANCE = 1e-9
 """Relative tolerance of the solver for the references [1]."""
-HOST = 1e-5
+HOST_TOLERANCE = 1e-5
 """Default relative tolerance of a host [1].
 
-The references end where results with this and with the solver tolerance differ by more than TOLERANCE:
+The references end where results with this and with the solver tolerance differ by more than OUTPUT_TOLERANCE:
 from there the motion is too sensitive to be compared.
 """
-SMALL = 1e-2
+MIN_SCALE_RATIO = 1e-2
 """Smallest scale of an output over its nominal value [1]."""
-STEP = 1e-3
+SHORT_STEP = 1e-3
 """Short communication step [s]; at most a tenth of the stop time."""
-LONGER = 10
+LONG_STEP_RATIO = 10
 """Long communication step over the short one [1]."""
-FINE = 3
+STEPS_PER_INTERVAL = 3
 """Integrator steps of model exchange per interval of the system [1]; each is accepted as a load step."""
-MOST_STEPS = 100_000
+MAX_STEPS = 100_000
 """Largest number of integrator steps [1]; longer experiments are cut."""
-ROWS = 200
+ROWS_PER_FILE = 200
 """Approximate number of rows of a result file [1]."""
-JUMP = 10.0
+JUMP_RATIO = 10.0
 """Criterion of a jump: change of an output in a fine step over its changes before and after [1].
 
-The change must also exceed TOLERANCE. A stiffness jumps where the motion reverses.
+The change must also exceed OUTPUT_TOLERANCE. A stiffness jumps where the motion reverses.
 """
 JUMP_DISTANCE = 3
 """Intervals [1] next to a jump in which results are not compared: correct steps find a reversal slightly
 earlier or later."""
-DIGITS = 7
+SIGNIFICANT_DIGITS = 7
 """Significant digits of results [1]."""
-_PAGE = """\
+_PAGE_TEXT = """\
 The proof inside this FMU
 
 The folder extra/{standard} holds the system's own experiment after FMI-LS-REF
@@ -76,94 +76,105 @@ output: a stiffness jumps where the motion turns and friction sticks again.
 """
 
 
-def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, bytes]:
+def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, bytes]:
     """Make the reference files of a system's FMU, {path: content}; only a text if no experiment can be run.
 
     stop, interval : stop time and interval of the system's experiment [s]
     fmu            : path of the FMU, with all files that are needed to run it
     """
-    step = min(STEP, stop / LONGER)
-    substeps = max(int(np.ceil(FINE * step / interval - 1e-6)), 1)
-    count = LONGER * max(min(int(stop / (LONGER * step) + 1e-6), MOST_STEPS // (LONGER * substeps)), 1)
+    step = min(SHORT_STEP, stop / LONG_STEP_RATIO)
+    substeps = max(int(np.ceil(STEPS_PER_INTERVAL * step / interval - 1e-6)), 1)
+    count = LONG_STEP_RATIO * max(
+        min(int(stop / (LONG_STEP_RATIO * step) + 1e-6), MAX_STEPS // (LONG_STEP_RATIO * substeps)), 1
+    )
     fine = step / substeps
     try:
         times = fine * np.arange(count * substeps + 1)
-        results, coarse_results = (_exchanged(model, fmu, times, tolerance) for tolerance in (SOLVER, HOST))
+        results, coarse_results = (
+            _simulate(model, fmu, times, tolerance) for tolerance in (SOLVER_TOLERANCE, HOST_TOLERANCE)
+        )
         while (difference_row := _first_difference(model, results, coarse_results)) < results.time.size:
-            count = (difference_row - 1) // (LONGER * substeps) * LONGER
+            count = (difference_row - 1) // (LONG_STEP_RATIO * substeps) * LONG_STEP_RATIO
             if not count:
                 raise RuntimeError("its own experiment is too sensitive from the start")
             results = _first_rows(results, count * substeps + 1)
     except Exception as error:  # fmpy raises bare Exception
-        return {TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
-    scales = _scales(model, results)
+        return {TEXT_PATH: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
+    scales = _find_scales(model, results)
     smooth = _is_smooth(results, scales)
-    short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONGER))
-    members = {path: _result_file(results, smooth, n * substeps) for path, n in ((short, 1), (long, LONGER))}
+    short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONG_STEP_RATIO))
+    members = {
+        path: _result_file(results, smooth, n * substeps) for path, n in ((short, 1), (long, LONG_STEP_RATIO))
+    }
     runs = {
-        CO_SIMULATION: [(step, short), (LONGER * step, long)],
+        CO_SIMULATION: [(step, short), (LONG_STEP_RATIO * step, long)],
         MODEL_EXCHANGE: [(fine, short)],
     }
     related = [
         RelatedFile(
             "../../documentation/index.html", "text/html", "requirement", "what the FMU takes and gives"
         ),
-        RelatedFile(f"../../{TEXT}", "text/plain", "document", "experiments and tolerance"),
+        RelatedFile(f"../../{TEXT_PATH}", "text/plain", "document", "experiments and tolerance"),
         *(
-            RelatedFile(path, standard.CSV, "result", "by model exchange at a tight tolerance")
+            RelatedFile(path, standard.CSV_TYPE, "result", "by model exchange at a tight tolerance")
             for path in members
         ),
     ]
     for interface, steps in runs.items():
         path = f"{interface.replace(' ', '-')}.exp"
-        members[path] = _experiments(model, count * step, steps, scales)
+        members[path] = _format_experiments(model, count * step, steps, scales)
         labels = {interface: "steps of stepSize"}
-        related.append(RelatedFile(path, standard.EXPERIMENTS, "experiment/validation", model.doc, labels))
-    page = _PAGE.format(
-        standard=standard.NAME,
-        version=standard.VERSION,
+        related.append(
+            RelatedFile(path, standard.EXPERIMENTS_TYPE, "experiment/validation", model.doc, labels)
+        )
+    page = _PAGE_TEXT.format(
+        standard=standard.STANDARD_NAME,
+        version=standard.STANDARD_VERSION,
         own=__version__,
         short=step,
-        long=LONGER * step,
-        solver=SOLVER,
+        long=LONG_STEP_RATIO * step,
+        solver=SOLVER_TOLERANCE,
         fine=fine,
-        tolerance=TOLERANCE,
-        small=SMALL,
-        near=FINE * JUMP_DISTANCE * fine,
+        tolerance=OUTPUT_TOLERANCE,
+        small=MIN_SCALE_RATIO,
+        near=STEPS_PER_INTERVAL * JUMP_DISTANCE * fine,
         end=count * step,
         stop=stop,
-        host=HOST,
+        host=HOST_TOLERANCE,
     )
     return proof_members(members, related, page)
 
 
-def _scales(model: Model, results: TimeSeries) -> dict[str, float]:
+def _find_scales(model: Model, results: TimeSeries) -> dict[str, float]:
     """{output: scale for its tolerance}: largest absolute value, or a share of the nominal value."""
     return {
-        v.name: max(float(np.abs(results.columns[v.name]).max()), SMALL * v.nominal) for v in model.outputs
+        v.name: max(float(np.abs(results.columns[v.name]).max()), MIN_SCALE_RATIO * v.nominal)
+        for v in model.outputs
     }
 
 
 def _first_difference(model: Model, fine: TimeSeries, coarse: TimeSeries) -> int:
-    """Index of the first row at which two results differ by more than TOLERANCE; number of rows if none does.
+    """Index of the first row at which two results differ by more than OUTPUT_TOLERANCE.
 
-    Rows near jumps are not compared.
+    It is the number of rows if there is no difference. Rows near jumps are not compared.
     """
-    scales, rows = _scales(model, fine), fine.time.size
+    scales, rows = _find_scales(model, fine), fine.time.size
     differs = [
-        np.abs(column - coarse.columns[name][:rows]) > TOLERANCE * scales[name]
+        np.abs(column - coarse.columns[name][:rows]) > OUTPUT_TOLERANCE * scales[name]
         for name, column in fine.columns.items()
     ]
     rows_differing = np.flatnonzero(np.any(differs, axis=0) & _is_smooth(fine, scales))
     return int(rows_differing[0]) if rows_differing.size else rows
 
 
-def _first_rows(results: TimeSeries, rows: int) -> TimeSeries:
+def _first_rows(results: TimeSeries, row_count: int) -> TimeSeries:
     """First rows of a time series."""
-    return TimeSeries(results.time[:rows], {name: column[:rows] for name, column in results.columns.items()})
+    return TimeSeries(
+        results.time[:row_count], {name: column[:row_count] for name, column in results.columns.items()}
+    )
 
 
-def _exchanged(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> TimeSeries:
+def _simulate(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> TimeSeries:
     """Simulate all outputs at given times by model exchange; RuntimeError with the reason of a failure."""
     names, messages = [v.name for v in model.outputs], list[str]()
     if not exchange.has_solver():
@@ -191,37 +202,41 @@ def _is_smooth(results: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
     for name, column in results.columns.items():
         change = np.abs(np.diff(column))
         neighbour_change = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
-        jumps |= (change > TOLERANCE * scales[name]) & (change > JUMP * neighbour_change)
-    near = np.convolve(jumps, np.ones(2 * FINE * JUMP_DISTANCE, dtype=int))[FINE * JUMP_DISTANCE - 1 :]
+        jumps |= (change > OUTPUT_TOLERANCE * scales[name]) & (change > JUMP_RATIO * neighbour_change)
+    near = np.convolve(jumps, np.ones(2 * STEPS_PER_INTERVAL * JUMP_DISTANCE, dtype=int))[
+        STEPS_PER_INTERVAL * JUMP_DISTANCE - 1 :
+    ]
     smooth = np.asarray(near[: results.time.size] == 0)
     smooth[0] = True  # at the start nothing has changed yet
     return smooth
 
 
-def _result_file(results: TimeSeries, smooth: np.ndarray, step: int) -> bytes:
+def _result_file(results: TimeSeries, is_smooth: np.ndarray, step: int) -> bytes:
     """CSV file of results at the ends of communication steps of `step` fine steps, about ROWS_PER_FILE rows.
 
     is_smooth : (n) whether a row is far from jumps; other rows are left out
     """
-    rows = step * np.flatnonzero(smooth[::step])
-    rows = rows[:: -(-rows.size // ROWS)]
+    rows = step * np.flatnonzero(is_smooth[::step])
+    rows = rows[:: -(-rows.size // ROWS_PER_FILE)]
     columns = {name: column[rows] for name, column in results.columns.items()}
     times = np.array([float(f"{time:.12g}") for time in results.time[rows]])
-    return text(TimeSeries(times, columns), DIGITS).encode()
+    return format_csv(TimeSeries(times, columns), SIGNIFICANT_DIGITS).encode()
 
 
-def _experiments(
-    model: Model, stop: float, steps: list[tuple[float, str]], scales: Mapping[str, float]
+def _format_experiments(
+    model: Model, stop: float, step_files: list[tuple[float, str]], scales: Mapping[str, float]
 ) -> bytes:
     """XML of the experiments with steps of given sizes [s], each with its reference file."""
     root = Element("Experiments", name=f"{model.title}, its own experiment", description=model.doc)
-    for step, path in steps:
+    for step, path in step_files:
         name = f"steps of {1e3 * step:g} ms"
-        node = SubElement(root, "Experiment", name=name, description=model.doc, tolerance=repr(TOLERANCE))
+        node = SubElement(
+            root, "Experiment", name=name, description=model.doc, tolerance=repr(OUTPUT_TOLERANCE)
+        )
         times = {"startTime": 0.0, "stopTime": stop, "stepSize": step}
-        SubElement(node, standard.TRANSIENT, {key: f"{value:.12g}" for key, value in times.items()})
+        SubElement(node, standard.TRANSIENT_ELEMENT, {key: f"{value:.12g}" for key, value in times.items()})
         SubElement(node, "References", source=path)
-        annotation = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES)
+        annotation = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES_TYPE)
         for output, scale in scales.items():
-            SubElement(annotation, "Scale", name=output, value=f"{scale:.{DIGITS}g}")
-    return serialized(root)
+            SubElement(annotation, "Scale", name=output, value=f"{scale:.{SIGNIFICANT_DIGITS}g}")
+    return serialize_xml(root)

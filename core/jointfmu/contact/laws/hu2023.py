@@ -17,14 +17,20 @@ from ...quantity import CheckedParameters, Number, choice_field, group_field, qu
 from ..powerlaw import PowerTerm, RegimeTerm, SlipTerm, SpotDistribution
 from ..surface import (
     ArealSurface,
-    Elastic,
+    ElasticConstants,
     contact_modulus,
     contact_shear_modulus,
     domain_extension_fit,
     hardness_coefficient,
 )
 from . import mindlin
-from .kogut_etsion import FIRST_STAGE, PLASTIC_AREA, SECOND_STAGE, SECOND_STAGE_AREA, eliminate_deformation
+from .kogut_etsion import (
+    FIRST_STAGE,
+    PLASTIC_AREA_RATIO,
+    SECOND_STAGE,
+    SECOND_STAGE_AREA_RATIO,
+    eliminate_deformation,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,8 +38,8 @@ class Hu2023(CheckedParameters):
     """Parameters of the interface law of Hu 2023; `side1` is the softer body."""
 
     surface: ArealSurface = group_field("equivalent rough surface")
-    side1: Elastic = group_field("softer body")
-    side2: Elastic = group_field("harder body")
+    side1: ElasticConstants = group_field("softer body")
+    side2: ElasticConstants = group_field("harder body")
     sigma_y: float = quantity_field("Pa", "yield strength of the softer body", gt=0.0)
     mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
@@ -56,16 +62,16 @@ class Hu2023(CheckedParameters):
 
     def spots(self) -> SpotDistribution:
         """Regimes of a spot and size distribution (Eq. 17) of the chosen reading; reference area s_min."""
-        return corrected_spots(self) if self.reading == "corrected" else printed_spots(self)
+        return corrected_distribution(self) if self.reading == "corrected" else printed_distribution(self)
 
-    def state(self, u: Number) -> dict[str, Number]:
+    def state(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities at the log-area u [1] of the largest spot.
 
         F [N] Eq. 27, or P A_0 as printed; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22.
         """
         s = self.spots()
         names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
-        return {symbol: s.total(name, u) for symbol, name in names.items()}
+        return {symbol: s.total(name, largest_log_area) for symbol, name in names.items()}
 
 
 def curvature_radius(law: Hu2023) -> Number:
@@ -104,8 +110,10 @@ def elastic_pressure(law: Hu2023) -> Number:
     return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * (3.0 - D) / (4.0 - D)
 
 
-def printed_spots(law: Hu2023) -> SpotDistribution:
-    r"""Spots of the law as printed, all of them elastic. With the area s_l of the largest spot
+def printed_distribution(law: Hu2023) -> SpotDistribution:
+    r"""Load, stiffness and area of the spots by the law as printed: all spots are elastic.
+
+    With the area s_l of the largest spot
 
         P = F_r/S_r = \frac{4 E (3 - D)}{3 pi^{3/2} R (4 - D)} s_l^{1/2}    (Eqs. 9, 18, 23, 28)
 
@@ -125,7 +133,14 @@ def printed_spots(law: Hu2023) -> SpotDistribution:
         )
     else:
         slip = law.shear_traction * s.s_min / (law.mu * _smallest_spot_load(law))
-        tangential = SlipTerm(c=full_stick, p=0.5, h=slip, q=0.5, lower=-np.inf, upper=np.inf)
+        tangential = SlipTerm(
+            coefficient=full_stick,
+            exponent=0.5,
+            slip_coefficient=slip,
+            slip_exponent=0.5,
+            lower=-np.inf,
+            upper=np.inf,
+        )
     terms: dict[str, tuple[RegimeTerm, ...]] = {
         "load": (PowerTerm(law.A_0 * P * (0.5 - m) / (m * weight), 0.5),),
         "normal": (PowerTerm(-2.0 * E * edge, 0.5),),
@@ -133,7 +148,9 @@ def printed_spots(law: Hu2023) -> SpotDistribution:
         "area": (PowerTerm(s.s_min, 1.0),),
         "elastic_area": (PowerTerm(s.s_min, 1.0),),
     }
-    return SpotDistribution(reference=s.s_min, m=m, weight=weight, terms=terms)
+    return SpotDistribution(
+        reference_area=s.s_min, size_exponent=m, size_prefactor=weight, regime_terms=terms
+    )
 
 
 def _smallest_spot_load(law: Hu2023) -> Number:
@@ -142,8 +159,8 @@ def _smallest_spot_load(law: Hu2023) -> Number:
     return 4.0 / 3.0 * E * (s_min / np.pi) ** 1.5 / curvature_radius(law)
 
 
-def corrected_spots(law: Hu2023) -> SpotDistribution:
-    """Spots of the corrected law: size distribution (Eq. 17) and four regimes.
+def corrected_distribution(law: Hu2023) -> SpotDistribution:
+    """Load, stiffness and area of the spots by the corrected law: size distribution (Eq. 17), four regimes.
 
     Load and area are sums over all spots (Eqs. 18-27). The stiffness is the sum over the spots above s_min;
     without this limit its integrals diverge or are undefined (Eqs. 30, 41, corrected).
@@ -154,19 +171,29 @@ def corrected_spots(law: Hu2023) -> SpotDistribution:
     f_ec, H = critical_load(law), law.hardness
     k_ec = f_ec / critical_deformation(law)
     edge = np.log(s_ec / s_min)  # log-area of the end of the elastic regime
-    ends = [edge, edge + np.log(SECOND_STAGE_AREA), edge + np.log(PLASTIC_AREA)]
+    ends = [edge, edge + np.log(SECOND_STAGE_AREA_RATIO), edge + np.log(PLASTIC_AREA_RATIO)]
     bounds = [None, *ends]
     stages = [eliminate_deformation(FIRST_STAGE), eliminate_deformation(SECOND_STAGE)]
 
-    def regime(c: Number, p: float, i: int, smallest: Number = None) -> PowerTerm:
-        """Power law `c (s/s_ec)^p` of regime i, relative to s_min; the first regime begins at `smallest`."""
-        lower = bounds[i] if i else smallest
-        upper = bounds[i + 1] if i < 3 else None
-        return PowerTerm(c * np.exp(-p * edge), p, lower, upper)
+    def regime(
+        coefficient: Number, exponent: float, regime_index: int, first_bound: Number = None
+    ) -> PowerTerm:
+        """Power law coefficient (s/s_ec)^exponent of a regime, as a function of s/s_min.
 
-    load = [regime(f_ec, 1.5, 0), *(regime(f_ec * st.A, st.p, i + 1) for i, st in enumerate(stages))]
+        first_bound : log-area at which regime 0 begins
+        """
+        lower = bounds[regime_index] if regime_index else first_bound
+        upper = bounds[regime_index + 1] if regime_index < 3 else None
+        return PowerTerm(coefficient * np.exp(-exponent * edge), exponent, lower, upper)
+
+    load = [
+        regime(f_ec, 1.5, 0),
+        *(regime(f_ec * st.load_factor, st.load_exponent, i + 1) for i, st in enumerate(stages)),
+    ]
     normal = [regime(1.5 * k_ec, 0.5, 0, 0.0)]
-    normal += [regime(k_ec * st.B, st.q, i + 1) for i, st in enumerate(stages)]
+    normal += [
+        regime(k_ec * st.stiffness_factor, st.stiffness_exponent, i + 1) for i, st in enumerate(stages)
+    ]
     normal = [replace(t, lower=np.maximum(t.lower, 0.0), upper=np.maximum(t.upper, 0.0)) for t in normal]
     terms: dict[str, tuple[RegimeTerm, ...]] = {
         "load": (*load, regime(H * s_ec, 1.0, 3)),
@@ -177,11 +204,18 @@ def corrected_spots(law: Hu2023) -> SpotDistribution:
     }
     D = law.surface.D
     weight = domain_extension_fit(D) ** (1.5 - 0.5 * D)
-    return SpotDistribution(reference=s_min, m=0.5 * D - 0.5, weight=weight, terms=terms)
+    return SpotDistribution(
+        reference_area=s_min, size_exponent=0.5 * D - 0.5, size_prefactor=weight, regime_terms=terms
+    )
 
 
-def _tangential_terms(law: Hu2023, load: list[PowerTerm], bounds: list[Number]) -> tuple[RegimeTerm, ...]:
+def _tangential_terms(
+    law: Hu2023, load_terms: list[PowerTerm], regime_bounds: list[Number]
+) -> tuple[RegimeTerm, ...]:
     """Tangential stiffness k_t = 8 G' r (1 - t/(mu f))^(1/3) of the three regimes that are not fully plastic.
+
+    load_terms    : load of a spot in each of these regimes
+    regime_bounds : log-areas of the ends of the regimes
 
     Eqs. 39, 41-43. The shear force t of a spot depends on the choice `traction`:
 
@@ -192,15 +226,15 @@ def _tangential_terms(law: Hu2023, load: list[PowerTerm], bounds: list[Number]) 
     full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * np.sqrt(law.surface.s_min / np.pi)
     if law.traction == "ratio":
         stick, _ = mindlin.stick_radius_ratio(law.traction_ratio)
-        return (PowerTerm(full_stick * stick, 0.5, 0.0, np.maximum(bounds[3], 0.0)),)
+        return (PowerTerm(full_stick * stick, 0.5, 0.0, np.maximum(regime_bounds[3], 0.0)),)
     return tuple(
         SlipTerm(
-            c=full_stick,
-            p=0.5,
-            h=law.shear_traction * law.surface.s_min / (law.mu * term.c),
-            q=term.p - 1.0,
+            coefficient=full_stick,
+            exponent=0.5,
+            slip_coefficient=law.shear_traction * law.surface.s_min / (law.mu * term.coefficient),
+            slip_exponent=term.exponent - 1.0,
             lower=0.0 if term.lower is None else np.maximum(term.lower, 0.0),
             upper=np.maximum(term.upper, 0.0),
         )
-        for term in load
+        for term in load_terms
     )

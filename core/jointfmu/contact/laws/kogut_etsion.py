@@ -8,39 +8,48 @@ from typing import NamedTuple
 
 
 class PlasticStage(NamedTuple):
-    """One stage of the fit: area factor m and exponent n, load factor c and exponent d [1]."""
+    """One stage of the fit: factor m and exponent n of the area, factor c and exponent d of the load [1]."""
 
-    m: float
-    n: float
-    c: float
-    d: float
+    area_factor: float
+    area_exponent: float
+    load_factor: float
+    load_exponent: float
 
 
-FIRST_STAGE = PlasticStage(m=0.93, n=1.136, c=1.03, d=1.425)
-SECOND_STAGE = PlasticStage(m=0.94, n=1.146, c=1.40, d=1.263)
-SECOND_STAGE_ONSET = 6.0
+FIRST_STAGE = PlasticStage(area_factor=0.93, area_exponent=1.136, load_factor=1.03, load_exponent=1.425)
+SECOND_STAGE = PlasticStage(area_factor=0.94, area_exponent=1.146, load_factor=1.40, load_exponent=1.263)
+SECOND_STAGE_DEFORMATION_RATIO = 6.0
 """Deformation w/w_c [1] at the start of the second stage."""
-PLASTIC_ONSET = 110.0
+PLASTIC_DEFORMATION_RATIO = 110.0
 """Deformation w/w_c [1] from which on the spot is fully plastic."""
 
 
 @dataclass(frozen=True, slots=True)
 class AreaPowers:
-    """One stage over the spot area a: `load = f_c A (a/a_c)^p`, `stiffness = (f_c/w_c) B (a/a_c)^q`."""
+    """Load and stiffness of one stage as powers of the spot area a.
 
-    A: float
-    p: float
-    B: float
-    q: float
+    load = f_c load_factor (a/a_c)^load_exponent,
+    stiffness = (f_c/w_c) stiffness_factor (a/a_c)^stiffness_exponent
+    """
+
+    load_factor: float
+    load_exponent: float
+    stiffness_factor: float
+    stiffness_exponent: float
 
 
 def eliminate_deformation(stage: PlasticStage) -> AreaPowers:
-    """Convert a stage to powers of the area: p = d/n, q = (d - 1)/n [1], from area/a_c = m (w/w_c)^n."""
-    p, q = stage.d / stage.n, (stage.d - 1.0) / stage.n
-    return AreaPowers(stage.c * stage.m**-p, p, stage.c * stage.d * stage.m**-q, q)
+    """Load and stiffness of a stage as powers of the area, with exponents d/n and (d - 1)/n [1]."""
+    p, q = stage.load_exponent / stage.area_exponent, (stage.load_exponent - 1.0) / stage.area_exponent
+    return AreaPowers(
+        stage.load_factor * stage.area_factor**-p,
+        p,
+        stage.load_factor * stage.load_exponent * stage.area_factor**-q,
+        q,
+    )
 
 
-SECOND_STAGE_AREA = FIRST_STAGE.m * SECOND_STAGE_ONSET**FIRST_STAGE.n
+SECOND_STAGE_AREA_RATIO = FIRST_STAGE.area_factor * SECOND_STAGE_DEFORMATION_RATIO**FIRST_STAGE.area_exponent
 """Area a/a_c = 7.1197 [1] at the start of the second stage."""
-PLASTIC_AREA = SECOND_STAGE.m * PLASTIC_ONSET**SECOND_STAGE.n
+PLASTIC_AREA_RATIO = SECOND_STAGE.area_factor * PLASTIC_DEFORMATION_RATIO**SECOND_STAGE.area_exponent
 """Area a/a_c = 205.38 [1] from which on the spot is fully plastic."""

@@ -1,4 +1,6 @@
-"""Partial slip of a single contact spot under a shear force (Mindlin and Deresiewicz). `x = T/(mu P)` [1].
+"""Partial slip of a single contact spot under a shear force (Mindlin and Deresiewicz).
+
+Formulas write x for the traction ratio T/(mu P) [1].
 
 The loop energies of Zhao 2018 are differences of powers of v = (1 - x)^(1/3) that cancel for small x. In the
 form factored by `(1 - v)` used here they keep full precision down to x = 0 (derivation in docs/errata.md).
@@ -9,39 +11,39 @@ import numpy as np
 from ...quantity import Number
 
 
-def stick_radius_ratio(x: Number) -> tuple[Number, Number]:
+def stick_radius_ratio(traction_ratio: Number) -> tuple[Number, Number]:
     """Stick radius ratio v = (1 - x)^(1/3) [1] and 1 - v [1], without cancellation; 0 <= x < 1."""
-    log = np.log1p(-x) / 3.0
+    log = np.log1p(-traction_ratio) / 3.0
     return np.exp(log), -np.expm1(log)
 
 
-def dissipation_function(x: Number) -> Number:
+def dissipation_function(traction_ratio: Number) -> Number:
     """Function H1 [1] of the dissipated energy, Zhao 2018, Eq. 23.
 
     H1 = 1 - v^5 - (5x/6)(1 + v^2) = (1 - v)^3 (1 + 3v + v^2)/6.
     """
-    v, slip = stick_radius_ratio(x)
+    v, slip = stick_radius_ratio(traction_ratio)
     return slip**3 * (1.0 + 3.0 * v + v**2) / 6.0
 
 
-def storage_function(x: Number) -> Number:
+def storage_function(traction_ratio: Number) -> Number:
     """Function H2 [1] of the stored energy, Zhao 2018, Eq. 25.
 
     H2 = 3/5 + (2/5) v^5 - v^2 = (1 - v)^2 (3 + 6v + 4v^2 + 2v^3)/5.
     """
-    v, slip = stick_radius_ratio(x)
+    v, slip = stick_radius_ratio(traction_ratio)
     return slip**2 * (3.0 + 6.0 * v + 4.0 * v**2 + 2.0 * v**3) / 5.0
 
 
-def loss_ratio(x: Number) -> Number:
+def loss_ratio(traction_ratio: Number) -> Number:
     """Ratio W_d/W [1]: dissipated energy of a cycle over 2 pi times the stored energy, 12 H1/(5 pi H2)."""
-    v, slip = stick_radius_ratio(x)
+    v, slip = stick_radius_ratio(traction_ratio)
     return 2.0 / np.pi * slip * (1.0 + 3.0 * v + v**2) / (3.0 + 6.0 * v + 4.0 * v**2 + 2.0 * v**3)
 
 
-def loss_factor(x: Number) -> Number:
+def loss_factor(traction_ratio: Number) -> Number:
     """Loss factor eta_t = W_d/(W - W_d) [1], Zhao 2018, Eqs. 27-29 with 5 pi/12 for the printed 5 pi/24."""
-    ratio = loss_ratio(x)
+    ratio = loss_ratio(traction_ratio)
     return ratio / (1.0 - ratio)
 
 

@@ -12,53 +12,58 @@ import numpy as np
 from ...quantity import Number, erf, select
 
 _MAX_IMAGE_VARIANCE = 0.2
-"""Variance over squared hardness [1] up to which the series of images converges faster than that of modes."""
+"""Variance of the pressure over squared hardness [1] up to which the series of images converges faster."""
 
 
-def contact_shares(pressure: Number, hardness: Number, deviation: Number) -> tuple[Number, Number]:
+def contact_area_shares(
+    pressure: Number, hardness: Number, pressure_standard_deviation: Number
+) -> tuple[Number, Number]:
     """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa].
 
-    hardness  : [Pa], above the pressure
-    deviation : E* slope/2 [Pa], standard deviation of the local pressure over all wavelengths
+    hardness                    : [Pa], above the pressure
+    pressure_standard_deviation : E* slope/2 [Pa], of the local pressure with all wavelengths
 
-    Without plastic contact the elastic share is erf(p/(sqrt(2) deviation)). The plastic share carries the
-    load that the elastic one does not.
+    Without plastic contact the elastic share is erf(p/(sqrt(2) standard deviation)). The plastic share
+    carries the load that the elastic one does not.
     """
     x = np.minimum(pressure / hardness, 1.0)
-    t = (deviation / hardness) ** 2
-    image_series, mode_series = (
-        _image_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE)),
-        _mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE)),
-    )
+    t = (pressure_standard_deviation / hardness) ** 2
+    image_series = _image_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE))
+    mode_series = _mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE))
     elastic, load = (
         select(t < _MAX_IMAGE_VARIANCE, a, b) for a, b in zip(image_series, mode_series, strict=True)
     )
     return elastic, np.maximum(x - load, 0.0)
 
 
-def _mode_series(x: Number, t: Number) -> tuple[Number, Number]:
-    """Elastic share and its load over the hardness [1]: series of diffusion modes between both boundaries.
+def _mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
+    """Area share in elastic contact, and its load over the hardness [1]: series of diffusion modes.
 
-    x : pressure over hardness [1]
-    t : variance over squared hardness [1]
+    pressure_ratio : pressure over hardness [1]
+    variance_ratio : variance over squared hardness [1]
     """
     share: Number = 0.0
     load: Number = 0.0
     for n in range(1, 7):
-        mode = 2.0 / (n * np.pi) * np.sin(n * np.pi * x) * np.exp(-0.5 * (n * np.pi) ** 2 * t)
+        mode = (
+            2.0
+            / (n * np.pi)
+            * np.sin(n * np.pi * pressure_ratio)
+            * np.exp(-0.5 * (n * np.pi) ** 2 * variance_ratio)
+        )
         share = share + (1.0 - (-1.0) ** n) * mode
         load = load - (-1.0) ** n * mode
     return share, load
 
 
-def _image_series(x: Number, t: Number) -> tuple[Number, Number]:
-    """Elastic share and its load over the hardness [1]: series of images, see `_mode_series`."""
-    spread = np.sqrt(2.0 * t)
+def _image_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
+    """Area share in elastic contact, and its load over the hardness [1]: series of images."""
+    spread = np.sqrt(2.0 * variance_ratio)
     share: Number = 0.0
     load: Number = 0.0
     for k in range(-2, 3):
         for sign in (1.0, -1.0):
-            start = 2.0 * k + sign * x
+            start = 2.0 * k + sign * pressure_ratio
             to_zero, to_hardness = (0.0 - start) / spread, (1.0 - start) / spread
             weight = 0.5 * (erf(to_hardness) - erf(to_zero))
             tails = spread / (2.0 * np.sqrt(np.pi)) * (np.exp(-(to_zero**2)) - np.exp(-(to_hardness**2)))
@@ -67,12 +72,12 @@ def _image_series(x: Number, t: Number) -> tuple[Number, Number]:
     return share, load
 
 
-def bearing_curve(share: Number) -> Number:
+def bearing_curve_log_slope(area_share: Number) -> Number:
     """Derivative [1] of ln(share) with respect to the approach over the rms height, for a Gaussian surface.
 
-    share : [1] part of the surface above a cutting plane (bearing curve, Abbott and Firestone 1933). The
+    area_share : [1] part of the surface above a cutting plane (bearing curve, Abbott and Firestone 1933). The
         derivative is phi(z)/Phi(-z). The contact area of a perfectly plastic surface follows this curve.
     """
-    inside = np.minimum(np.maximum(share, 1e-300), 1.0 - 1e-12)
+    inside = np.minimum(np.maximum(area_share, 1e-300), 1.0 - 1e-12)
     z = -np.vectorize(NormalDist().inv_cdf, otypes=[float])(inside)
     return np.exp(-0.5 * z**2) / np.sqrt(2.0 * np.pi) / inside

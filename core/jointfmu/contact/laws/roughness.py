@@ -14,11 +14,11 @@ import numpy as np
 from ...quantity import CheckedParameters, Number, group_field, quantity_field
 from ..powerlaw import PowerTerm, SpotDistribution
 from ..roughness import MAX_HEIGHT
-from ..surface import Elastic, contact_modulus, contact_shear_modulus
-from .persson import bearing_curve, contact_shares
+from ..surface import ElasticConstants, contact_modulus, contact_shear_modulus
+from .persson import bearing_curve_log_slope, contact_area_shares
 
 FEW_SPOTS_FACTOR = 0.3
-"""Factor C [1] of the stiffness at small load, see `Roughness.spots`; fitted to boundary elements
+"""Factor C [1] of the stiffness at small load, see `RoughnessLaw.spots`; fitted to boundary elements
 (benchmarks/roughness_law.py)."""
 ONSET_LOAD_RATIO = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
@@ -53,8 +53,8 @@ class RoughSurfaces:
 class RoughnessLaw(RoughSurfaces, CheckedParameters):
     """Parameters of the interface law `roughness`."""
 
-    side1: Elastic = group_field("first body")
-    side2: Elastic = group_field("second body")
+    side1: ElasticConstants = group_field("first body")
+    side2: ElasticConstants = group_field("second body")
     H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
     mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
@@ -74,15 +74,15 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         elastic_work : [J] gamma h p A_0, the energy of p ~ exp(approach/(gamma h))
         plastic_work : [J] 0: the surfaces have carried the load before
         """
-        p, A, rho = onset_pressure(self), self.A_0, self.shear_ratio()
+        p, A, rho = onset_pressure(self), self.A_0, self.shear_stiffness_ratio()
         many_spots = p * A / (self.gamma * self.h)
         few_spots = FEW_SPOTS_FACTOR * p * A / self.h * ONSET_LOAD_RATIO ** (-self.hurst / (1.0 + self.hurst))
         power = 1.0 / (1.0 + self.hurst)
         return SpotDistribution(
-            reference=A,
-            m=_SIZE_EXPONENT,
-            weight=1.0 / _SIZE_EXPONENT,
-            terms={
+            reference_area=A,
+            size_exponent=_SIZE_EXPONENT,
+            size_prefactor=1.0 / _SIZE_EXPONENT,
+            regime_terms={
                 "load": (_sum_term(p * A, 1.0),),
                 "normal": (_sum_term(many_spots, 1.0), _sum_term(few_spots, power)),
                 "tangential": (_sum_term(rho * many_spots, 1.0), _sum_term(rho * few_spots, power)),
@@ -96,33 +96,32 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
     def real_area(self, pressure: Number) -> tuple[Number, Number]:
         """Real area (...) [m2] and its elastic fraction [1] at pressures (...) [Pa] (Persson 2001)."""
         deviation = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
-        elastic, plastic = contact_shares(pressure, self.H, deviation)
+        elastic, plastic = contact_area_shares(pressure, self.H, deviation)
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
 
-    def find_range_violations(self, lowest: float, highest: float) -> list[str]:
-        """Messages if pressures from `lowest` to `highest` [Pa] leave the validated range, one line each."""
+    def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
+        """Messages, one line each, if an interval of pressures [Pa] leaves the validated range."""
         scale = contact_modulus(self.side1, self.side2) * self.h
-        min_pressure, max_pressure = (
-            MIN_LOAD_RATIO * scale * self.longest_wave / self.A_0,
-            MAX_PRESSURE_RATIO * scale / self.longest_wave,
-        )
+        min_pressure = MIN_LOAD_RATIO * scale * self.longest_wave / self.A_0
+        max_pressure = MAX_PRESSURE_RATIO * scale / self.longest_wave
         messages = []
-        if lowest < min_pressure:
+        if lowest_pressure < min_pressure:
             messages.append(
-                f"a pressure of {lowest:.4g} Pa is below {min_pressure:.3g} Pa, from where the law roughness "
+                f"a pressure of {lowest_pressure:.4g} Pa is below {min_pressure:.3g} Pa, from where "
+                "the law roughness "
                 "is proven: one hill carries, and surfaces of the same roughness differ by half and more "
                 "(docs/validity.md)"
             )
-        if highest > max_pressure:
+        if highest_pressure > max_pressure:
             messages.append(
-                f"a pressure of {highest:.4g} Pa is above {max_pressure:.3g} Pa, up to which the "
+                f"a pressure of {highest_pressure:.4g} Pa is above {max_pressure:.3g} Pa, up to which the "
                 "law roughness "
                 "is proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
                 "(docs/validity.md)"
             )
         return messages
 
-    def shear_ratio(self) -> Number:
+    def shear_stiffness_ratio(self) -> Number:
         """Stiffness ratio rho = K_T/K_N = 4 G'/E* [1] without slip.
 
         For equal materials it is 2 (1 - nu)/(2 - nu) (Mindlin 1949).
@@ -133,7 +132,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         """Loss factor eta_t [1] of tangential motion at the traction ratio."""
         return loss_factor(self.traction_ratio)
 
-    def state(self, u: Number) -> dict[str, Number]:
+    def state(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities of the nominal area A_0 at the log-pressure u [1]; p = p_1 exp(u).
 
         F [N] load, approach [m]; K_N, K_T [N/m] stiffness for small motions, also on unloading of a plastic
@@ -142,15 +141,15 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         elastic_fraction [1]; eta_n = 0 and eta_t [1] loss factors; friction_limit = mu F [N]; slip_length
         s_0 = mu gamma h/rho [m] of the contact of many spots.
         """
-        s, p = self.spots(), onset_pressure(self) * np.exp(u)
-        F, K_N = s.total("load", u), s.total("normal", u)
+        s, p = self.spots(), onset_pressure(self) * np.exp(largest_log_area)
+        F, K_N = s.total("load", largest_log_area), s.total("normal", largest_log_area)
         A_r, elastic = self.real_area(p)
         flowing = np.minimum((1.0 - elastic) * A_r * self.H / F, 1.0)
-        loading = 1.0 / (1.0 / K_N + flowing * self.h / (F * bearing_curve(p / self.H)))
+        loading = 1.0 / (1.0 / K_N + flowing * self.h / (F * bearing_curve_log_slope(p / self.H)))
         return {
             "F": F,
             "K_N": K_N,
-            "K_T": s.total("tangential", u),
+            "K_T": s.total("tangential", largest_log_area),
             "A_r": A_r,
             "eta_n": 0.0 * F,
             "eta_t": self.loss_factor() + 0.0 * F,
@@ -158,37 +157,45 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
             "approach": approach(self, p),
             "elastic_fraction": elastic,
             "friction_limit": self.mu * F,
-            "slip_length": self.mu * self.gamma * self.h / self.shear_ratio() + 0.0 * F,
+            "slip_length": self.mu * self.gamma * self.h / self.shear_stiffness_ratio() + 0.0 * F,
         }
 
 
 def onset_pressure(law: RoughnessLaw) -> Number:
-    """Pressure p_1 [Pa] at u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
+    """Pressure p_1 [Pa] at which the stiffness begins, u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
     return ONSET_LOAD_RATIO * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
 
 
-def _sum_term(c: Number, power: Number) -> PowerTerm:
-    """Term of a spot law whose sum over all spots is c exp(power u)."""
-    return PowerTerm(c * (power - _SIZE_EXPONENT), power)
+def _sum_term(coefficient: Number, exponent: Number) -> PowerTerm:
+    """Power law of a spot whose sum over all spots is coefficient exp(exponent u)."""
+    return PowerTerm(coefficient * (exponent - _SIZE_EXPONENT), exponent)
 
 
-def loss_factor(x: Number) -> Number:
+def loss_factor(traction_ratio: Number) -> Number:
     """Loss factor eta_t [1] of a shear cycle with the force amplitude T = x mu F: W/(2 pi U), U = T s/2.
 
-    W is the loss of a cycle and U the energy at its ends. With p ~ exp(approach/(gamma h)) the spots slip one
-    after the other: T = mu F (1 - exp(-s/s_0)). By Masing's rule W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x), so
-    eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x)). Below x = 0.01, where this form cancels, its power series
-    2x/(3 pi) + ... is used.
+    x is the traction ratio, W the loss of a cycle and U the energy at its ends. With
+    p ~ exp(approach/(gamma h)) the spots slip one after the other: T = mu F (1 - exp(-s/s_0)). By Masing's
+    rule W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x), so eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x)). Below x = 0.01,
+    where this form cancels, its power series 2x/(3 pi) + ... is used.
     """
-    series = x * (1.0 / 6.0 + x * (1.0 / 12.0 + x * (19.0 / 360.0 + x * (3.0 / 80.0 + x * 863.0 / 30240.0))))
-    small = x < 0.01
-    safe = np.where(small, 0.01, x)
+    series = traction_ratio * (
+        1.0 / 6.0
+        + traction_ratio
+        * (
+            1.0 / 12.0
+            + traction_ratio
+            * (19.0 / 360.0 + traction_ratio * (3.0 / 80.0 + traction_ratio * 863.0 / 30240.0))
+        )
+    )
+    small = traction_ratio < 0.01
+    safe = np.where(small, 0.01, traction_ratio)
     closed_form = 2.0 / safe - 1.0 + 2.0 / np.log1p(-safe)
     return 4.0 / np.pi * np.where(small, series, closed_form)
 
 
-def approach(law: RoughnessLaw, p: Number) -> Number:
-    """Approach [m] of the two bodies from zero pressure to p [Pa]: integral of dp/k."""
-    x = p * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
+def approach(law: RoughnessLaw, pressure: Number) -> Number:
+    """Approach [m] of the two bodies from zero pressure to a pressure p [Pa]: integral of dp/k."""
+    x = pressure * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
     bend = law.hurst / (1.0 + law.hurst)
     return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS_FACTOR))

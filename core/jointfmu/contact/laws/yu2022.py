@@ -13,7 +13,7 @@ import numpy as np
 from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field, select
 from ..powerlaw import PowerTerm, SmoothTerm, SpotDistribution
 from ..surface import (
-    Elastic,
+    ElasticConstants,
     FlankSurface,
     Spectrum,
     complete_elliptic,
@@ -22,11 +22,11 @@ from ..surface import (
 )
 from .kogut_etsion import (
     FIRST_STAGE,
-    PLASTIC_AREA,
-    PLASTIC_ONSET,
+    PLASTIC_AREA_RATIO,
+    PLASTIC_DEFORMATION_RATIO,
     SECOND_STAGE,
-    SECOND_STAGE_AREA,
-    SECOND_STAGE_ONSET,
+    SECOND_STAGE_AREA_RATIO,
+    SECOND_STAGE_DEFORMATION_RATIO,
     PlasticStage,
 )
 
@@ -40,8 +40,8 @@ class Yu2022(CheckedParameters):
     surface: Spectrum = group_field("frequency ratio of both directions")
     e: float = quantity_field("1", "eccentricity of the contact ellipses", ge=0.0, lt=1.0)
     lambda_: float = quantity_field("1", "contact coefficient of the curved flanks", gt=0.0, le=1.0)
-    side1: Elastic = group_field("first body")
-    side2: Elastic = group_field("second body")
+    side1: ElasticConstants = group_field("first body")
+    side2: ElasticConstants = group_field("second body")
     sigma_y: float = quantity_field("Pa", "yield strength of the softer body", gt=0.0)
     mu: float = quantity_field("1", "coefficient of static friction; does not enter this law", gt=0.0)
     traction_ratio: float = quantity_field(
@@ -68,7 +68,7 @@ class Yu2022(CheckedParameters):
 
     @cached_property
     def _spots(self) -> SpotDistribution:
-        """Size distribution (lambda times Eq. 44) and four regimes of a spot, cached.
+        """Size distribution (lambda times Eq. 44) and the four regimes of a spot, cached.
 
         Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
         """
@@ -76,41 +76,47 @@ class Yu2022(CheckedParameters):
         log_nec = critical_log_area(self, 1.0)
         plastic, middle = (critical_log_area(self, area) - log_nec for area in areas)
         a = np.exp(log_nec)
-        f1, f2 = shape_factors(self.e)
+        f1, f2 = ellipse_factors(self.e)
         E = effective_modulus(self)
         (b1, p1), (b2, p2) = curvature_terms(self)
         c1, c2 = b1 * np.exp(-p1 * log_nec), b2 * np.exp(-p2 * log_nec)
         elastic = 2.0 * f2 * E / 3.0 * (a / (np.pi * f1)) ** 1.5
         hertz = 2.0 * f2 * E * np.sqrt(a / (np.pi * f1))
 
-        def sharpness(t: Number) -> Number:
-            """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1], at the log-area t."""
-            return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
+        def curvature_ratio(log_area: Number) -> Number:
+            """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1]; log-area relative to a_nec."""
+            return (c1 * np.exp(-p1 * log_area) + c2 * np.exp(-p2 * log_area)) / (c1 + c2)
 
         def stage_load(stage: PlasticStage, lower: Number, upper: Number) -> SmoothTerm:
-            def load(t: Number) -> Number:
-                sharp = sharpness(t)
-                ratio = np.exp(t) * sharp**2  # a/a_nec of this spot's own curvature
-                return elastic * (c1 + c2) * stage.c * (ratio / stage.m) ** (stage.d / stage.n) / sharp**2
+            def load(log_area: Number) -> Number:
+                sharp = curvature_ratio(log_area)
+                ratio = np.exp(log_area) * sharp**2  # a/a_nec of this spot's own curvature
+                return (
+                    elastic
+                    * (c1 + c2)
+                    * stage.load_factor
+                    * (ratio / stage.area_factor) ** (stage.load_exponent / stage.area_exponent)
+                    / sharp**2
+                )
 
             return SmoothTerm(load, lower, upper)
 
         def stage_stiffness(stage: PlasticStage, lower: Number, upper: Number) -> SmoothTerm:
-            def stiffness(t: Number) -> Number:
-                sharp = sharpness(t)
-                ratio = np.exp(t) * sharp**2
-                power = (ratio / stage.m) ** ((stage.d - 1.0) / stage.n)
-                return hertz / 1.5 * stage.c * stage.d * power / sharp
+            def stiffness(log_area: Number) -> Number:
+                sharp = curvature_ratio(log_area)
+                ratio = np.exp(log_area) * sharp**2
+                power = (ratio / stage.area_factor) ** ((stage.load_exponent - 1.0) / stage.area_exponent)
+                return hertz / 1.5 * stage.load_factor * stage.load_exponent * power / sharp
 
             return SmoothTerm(stiffness, lower, upper)
 
         first, second = stages
         H = self.hardness
         return SpotDistribution(
-            reference=a,
-            m=size_exponent(self),
-            weight=self.lambda_,
-            terms={
+            reference_area=a,
+            size_exponent=size_exponent(self),
+            size_prefactor=self.lambda_,
+            regime_terms={
                 "load": (
                     PowerTerm(H * a, 1.0, upper=plastic),
                     stage_load(second, plastic, middle),
@@ -128,25 +134,25 @@ class Yu2022(CheckedParameters):
             },
         )
 
-    def state(self, u: Number) -> dict[str, Number]:
+    def state(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities at the log-area u [1] of the largest spot.
 
         F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1].
         """
         s = self.spots()
-        area, elastic = real_area(s, u)
+        area, elastic = real_area(s, largest_log_area)
         return {
-            "F": s.total("load", u),
-            "K_N": s.total("normal", u),
+            "F": s.total("load", largest_log_area),
+            "K_N": s.total("normal", largest_log_area),
             "A_r": area,
             "elastic_fraction": elastic,
         }
 
 
-def real_area(spots: SpotDistribution, u: Number) -> tuple[Number, Number]:
+def real_area(spots: SpotDistribution, largest_log_area: Number) -> tuple[Number, Number]:
     """Real area [m2], Eq. 54, and its elastic fraction [1]."""
-    area = spots.total("area", u)
-    return area, spots.total("elastic_area", u) / area
+    area = spots.total("area", largest_log_area)
+    return area, spots.total("elastic_area", largest_log_area) / area
 
 
 def effective_modulus(law: Yu2022) -> Number:
@@ -155,10 +161,10 @@ def effective_modulus(law: Yu2022) -> Number:
     return select(law.rigid_flat, single_body, contact_modulus(law.side1, law.side2))
 
 
-def shape_factors(e: Number) -> tuple[Number, Number]:
-    """Factors f1, f2 [1] of an elliptical elastic contact, Eqs. 22-23; both are 1 at e = 0."""
-    K, E = complete_elliptic(e)
-    slender = np.sqrt((1.0 - e) * (1.0 + e))
+def ellipse_factors(eccentricity: Number) -> tuple[Number, Number]:
+    """Factors f1, f2 [1] of an elliptical elastic contact, Eqs. 22-23; both are 1 for a circle (e = 0)."""
+    K, E = complete_elliptic(eccentricity)
+    slender = np.sqrt((1.0 - eccentricity) * (1.0 + eccentricity))
     f1 = E / (K * slender)
     return f1, 0.5 * np.pi * np.sqrt(E) / (K**1.5 * slender)
 
@@ -177,29 +183,31 @@ def curvature_terms(law: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, N
     root = np.sqrt(np.log(law.surface.gamma))
     log_axes = 0.25 * np.log1p(-(law.e**2))
 
-    def term(s: FlankSurface, sign: float) -> tuple[Number, Number]:
-        b = 2.0 ** (4.0 - s.D) * np.pi ** (0.5 * s.D) * s.G ** (s.D - 1.0) * root
-        return b * np.exp(sign * s.D * log_axes), 0.5 * s.D
+    def term(surface: FlankSurface, exponent_sign: float) -> tuple[Number, Number]:
+        b = 2.0 ** (4.0 - surface.D) * np.pi ** (0.5 * surface.D) * surface.G ** (surface.D - 1.0) * root
+        return b * np.exp(exponent_sign * surface.D * log_axes), 0.5 * surface.D
 
     return term(law.surface1, 1.0), term(law.surface2, -1.0)
 
 
-def yield_scale(law: Yu2022) -> Number:
+def yield_onset_parameter(law: Yu2022) -> Number:
     """Value of a (1/R_x + 1/R_y)^2 [1] at the onset of yield: 4 pi f1 K(e) E(e) (K H/E')^2, Eq. 28."""
     K, E = complete_elliptic(law.e)
-    f1, _ = shape_factors(law.e)
+    f1, _ = ellipse_factors(law.e)
     strain = hardness_coefficient(law.side1.nu) * law.hardness / effective_modulus(law)
     return 4.0 * np.pi * f1 * K * E * strain**2
 
 
-def critical_log_area(law: Yu2022, onset_ratio: float) -> Number:
-    """Log-area ln a [ln m2] of the spot with a (1/R_x + 1/R_y)^2 = onset_ratio yield_scale, Eqs. 28, 31, 32.
+def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
+    """Log-area ln a [ln m2] of the spot with a given value of a (1/R_x + 1/R_y)^2, Eqs. 28, 31, 32.
+
+    yield_onset_ratio : this value over that at the onset of yield [1], see `yield_onset_parameter`
 
     Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D) and
     1 - min(D), so twelve steps reach round-off.
     """
     (b1, p1), (b2, p2) = curvature_terms(law)
-    target = np.log(onset_ratio * yield_scale(law))
+    target = np.log(yield_onset_ratio * yield_onset_parameter(law))
     mean = 0.5 * (p1 + p2)
     t = (target - 2.0 * np.log(b1 + b2)) / (1.0 - 2.0 * mean)
     for _ in range(12):
@@ -219,6 +227,9 @@ def _plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tup
     kogut_etsion : a = a_nec(R_m) m (w/w_nec)^n as in Eqs. 33 and 35; limits 7.1197 and 205.38
     """
     if law.plastic_area == "kogut_etsion":
-        return (FIRST_STAGE, SECOND_STAGE), (PLASTIC_AREA, SECOND_STAGE_AREA)
-    plain = (FIRST_STAGE._replace(m=1.0, n=1.0), SECOND_STAGE._replace(m=1.0, n=1.0))
-    return plain, (PLASTIC_ONSET, SECOND_STAGE_ONSET)
+        return (FIRST_STAGE, SECOND_STAGE), (PLASTIC_AREA_RATIO, SECOND_STAGE_AREA_RATIO)
+    plain = (
+        FIRST_STAGE._replace(area_factor=1.0, area_exponent=1.0),
+        SECOND_STAGE._replace(area_factor=1.0, area_exponent=1.0),
+    )
+    return plain, (PLASTIC_DEFORMATION_RATIO, SECOND_STAGE_DEFORMATION_RATIO)

@@ -11,7 +11,7 @@ import numpy as np
 from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field
 from ..powerlaw import PowerTerm, SpotDistribution
 from ..surface import (
-    Elastic,
+    ElasticConstants,
     ProfileSurface,
     contact_modulus,
     contact_shear_modulus,
@@ -26,8 +26,8 @@ class Zhao2018(CheckedParameters):
     """Parameters of the interface law of Zhao 2018."""
 
     surface: ProfileSurface = group_field("equivalent rough surface")
-    side1: Elastic = group_field("first body")
-    side2: Elastic = group_field("second body")
+    side1: ElasticConstants = group_field("first body")
+    side2: ElasticConstants = group_field("second body")
     H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
     mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
@@ -55,7 +55,7 @@ class Zhao2018(CheckedParameters):
         """
         D = self.surface.D
         a = critical_area(self)
-        delta, radius = deformation(self, a), curvature_radius(self, a)
+        delta, radius = spot_deformation(self, a), curvature_radius(self, a)
         modulus = contact_modulus(self.side1, self.side2)
         work = 8.0 / 15.0 * modulus * np.sqrt(radius) * delta**2.5
         terms = {
@@ -71,9 +71,11 @@ class Zhao2018(CheckedParameters):
             "loop_area": (PowerTerm(a**1.5, 1.5, 0.0),),
         }
         weight = domain_extension(D) ** (1.0 - 0.5 * D)
-        return SpotDistribution(reference=a, m=0.5 * D, weight=weight, terms=terms)
+        return SpotDistribution(
+            reference_area=a, size_exponent=0.5 * D, size_prefactor=weight, regime_terms=terms
+        )
 
-    def shear_ratio(self) -> Number:
+    def shear_stiffness_ratio(self) -> Number:
         """Stiffness ratio K_T/K_N [1], independent of pressure: both sum sqrt(a') over elastic spots."""
         return tangential_stiffness(self, 1.0) / normal_stiffness(self, 1.0)
 
@@ -81,7 +83,7 @@ class Zhao2018(CheckedParameters):
         """Loss factor eta_t [1] of tangential motion at the traction ratio, Eqs. 27-29."""
         return mindlin.loss_factor(self.traction_ratio)
 
-    def state(self, u: Number) -> dict[str, Number]:
+    def state(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities of the nominal area A_0 for a largest spot of log-area u [1], relative to a'_c.
 
         F [N] Eqs. 9-10; K_N [N/m] Eq. 14; K_T [N/m] Eq. 22; A_r [m2] Eq. 11; W_NP, W_NE [J] Eqs. 16, 18;
@@ -90,12 +92,15 @@ class Zhao2018(CheckedParameters):
         eta_n infinite.
         """
         s = self.spots()
-        F, A_r, K_N, K_T = (s.total(name, u) for name in ("load", "area", "normal", "tangential"))
-        plastic, elastic = s.total("plastic_work", u), s.total("elastic_work", u)
+        F, A_r, K_N, K_T = (
+            s.total(name, largest_log_area) for name in ("load", "area", "normal", "tangential")
+        )
+        plastic = s.total("plastic_work", largest_log_area)
+        elastic = s.total("elastic_work", largest_log_area)
         with np.errstate(divide="ignore", invalid="ignore"):
             eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
             C_N = np.where(K_N > 0.0, mindlin.equivalent_damping(eta_n, self.mass, K_N), 0.0)
-        W_d, W = shear_energies(self, F, A_r, s.total("loop_area", u))
+        W_d, W = shear_energies(self, F, A_r, s.total("loop_area", largest_log_area))
         eta_t = self.loss_factor()
         return {
             "F": F,
@@ -135,53 +140,63 @@ def critical_area(law: Zhao2018) -> Number:
     return root ** (1.0 / (D - 1.0)) * G**2
 
 
-def deformation(law: Zhao2018, a: Number) -> Number:
+def spot_deformation(law: Zhao2018, truncated_area: Number) -> Number:
     """Deformation delta [m] of a spot of truncated area a' [m2], Eq. 5."""
     D, G = law.surface.D, law.surface.G
     root = np.sqrt(np.log(law.surface.gamma))
     factor = 2.0 ** (3.0 - D) * G ** (D - 1.0) * root * np.pi ** (0.5 * D - 1.0)
-    return factor * a ** (1.0 - 0.5 * D)
+    return factor * truncated_area ** (1.0 - 0.5 * D)
 
 
-def curvature_radius(law: Zhao2018, a: Number) -> Number:
+def curvature_radius(law: Zhao2018, truncated_area: Number) -> Number:
     """Radius of curvature R [m] of a spot of truncated area a' [m2], Eq. 6."""
     D, G = law.surface.D, law.surface.G
     root = np.sqrt(np.log(law.surface.gamma))
-    return a ** (0.5 * D) / (2.0 ** (4.0 - D) * np.pi ** (0.5 * D) * G ** (D - 1.0) * root)
+    return truncated_area ** (0.5 * D) / (2.0 ** (4.0 - D) * np.pi ** (0.5 * D) * G ** (D - 1.0) * root)
 
 
-def elastic_load(law: Zhao2018, a: Number) -> Number:
+def elastic_load(law: Zhao2018, truncated_area: Number) -> Number:
     """Load f_e [N] of an elastic spot of truncated area a' [m2], Eq. 7."""
     modulus = contact_modulus(law.side1, law.side2)
-    return 4.0 / 3.0 * modulus * np.sqrt(curvature_radius(law, a)) * deformation(law, a) ** 1.5
+    return (
+        4.0
+        / 3.0
+        * modulus
+        * np.sqrt(curvature_radius(law, truncated_area))
+        * spot_deformation(law, truncated_area) ** 1.5
+    )
 
 
-def normal_stiffness(law: Zhao2018, a: Number) -> Number:
+def normal_stiffness(law: Zhao2018, truncated_area: Number) -> Number:
     """Normal stiffness k_n [N/m] of an elastic spot of truncated area a' [m2].
 
     family : (df/da')/(d delta/da'), Eq. 13
     hertz  : 2 E* r at fixed R; `family` is 2(3-D)/(3(2-D)) times this
     """
-    hertz = 2.0 * contact_modulus(law.side1, law.side2) * np.sqrt(a / (2.0 * np.pi))
+    hertz = 2.0 * contact_modulus(law.side1, law.side2) * np.sqrt(truncated_area / (2.0 * np.pi))
     if law.spot_stiffness == "hertz":
         return hertz
     return 2.0 * (3.0 - law.surface.D) / (3.0 * (2.0 - law.surface.D)) * hertz
 
 
-def tangential_stiffness(law: Zhao2018, a: Number) -> Number:
+def tangential_stiffness(law: Zhao2018, truncated_area: Number) -> Number:
     """Tangential stiffness k_t = 8 G' r (1 - x)^(1/3) [N/m] of an elastic spot of area a', Eqs. 21-22."""
     modulus = contact_shear_modulus(law.side1, law.side2)
     stick, _ = mindlin.stick_radius_ratio(law.traction_ratio)
-    return 8.0 * modulus * np.sqrt(a / (2.0 * np.pi)) * stick
+    return 8.0 * modulus * np.sqrt(truncated_area / (2.0 * np.pi)) * stick
 
 
-def shear_energies(law: Zhao2018, F: Number, A_r: Number, loop_area: Number) -> tuple[Number, Number]:
+def shear_energies(
+    law: Zhao2018, F: Number, A_r: Number, spot_area_power_sum: Number
+) -> tuple[Number, Number]:
     """Dissipated energy W_d and 2 pi times stored energy W [J] of a shear cycle, Eqs. 24 and 26.
 
-    loop_area : [m3] sum of a'^(3/2) over elastic spots; Eq. 24 has the factor 9 sqrt(2 pi)/40
+    spot_area_power_sum : [m3] sum of a'^(3/2) over elastic spots; Eq. 24 has the factor 9 sqrt(2 pi)/40
     """
     traction = law.mu * F / A_r
-    common = traction**2 * np.sqrt(np.pi / 8.0) / contact_shear_modulus(law.side1, law.side2) * loop_area
+    common = (
+        traction**2 * np.sqrt(np.pi / 8.0) / contact_shear_modulus(law.side1, law.side2) * spot_area_power_sum
+    )
     dissipated = 0.9 * common * mindlin.dissipation_function(law.traction_ratio)
     stored = 0.375 * np.pi * common * mindlin.storage_function(law.traction_ratio)
     return dissipated, stored

@@ -13,10 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ...mechanics.footprint.shape import NodalField
+from ...mechanics.footprint.distribution import NodalField
 from ...quantity import Array
-from .bodies import ElasticBodies
-from .law import Bolted, working_preload
+from .law import Bolted, ElasticBodies, working_preload
 
 LIFT_OFF_RATIO = 1e-9
 """Force over the load at which the contact closes [1] up to which a bolt stands at lift-off: its stiffness is
@@ -45,7 +44,7 @@ class BoltSprings:
 
     @classmethod
     def of(cls, joint: Bolted, closure_pressure: float) -> "BoltSprings":
-        """The bolts of a joint; closed [Pa]: pressure at which its contact closes."""
+        """Bolt springs of a joint; closure_pressure: [Pa] at which its contact closes."""
         position = bolt_positions(joint)
         count = float(joint.n_bolts) / len(position)
         return cls(
@@ -56,12 +55,6 @@ class BoltSprings:
     def lever(self) -> Array:
         """(b) [1/m] force that a moment adds to each bolt over the moment, see `moment_lever`."""
         return moment_lever(self.position) / self.count
-
-    @cached_property
-    def elongation(self) -> Array:
-        """(b, 3) elongation of the bolts by s_z, theta_x, theta_y of rigid sides."""
-        x, y = self.position.T
-        return np.stack([np.ones_like(x), y, -x], axis=-1)
 
     def preload_force(self, joint: Bolted, preload: float, moment: float) -> Array:
         """Force (b) [N] of each bolt at tightening: working preload and share of the moment, at least 0."""
@@ -92,14 +85,15 @@ def bolt_positions(joint: Bolted) -> Array:
     if isinstance(joint.bodies, ElasticBodies):
         return np.stack([joint.bodies.bolt_x, joint.bodies.bolt_y], axis=-1)
     if isinstance(joint.pattern, NodalField) and not joint.pattern.each_bolt_x:
-        return _rectangle(*joint.pattern.bolt_means)
+        return _rectangle(*joint.pattern.bolt_position_means)
     return joint.pattern.bolt_positions
 
 
 def moment_lever(position: Array) -> Array:
-    """Force that a moment about x adds to each bolt over the moment (b) [1/m], as in `BoltedPlate.shape`.
+    """Force that a moment about x adds to each bolt over the moment (b) [1/m].
 
-    Bolts of one row along x cannot carry a moment by their forces: 0.
+    It is that of `BoltedPlate.pressure_distribution`. Bolts of one row along x cannot carry a moment by their
+    forces: 0.
     """
     x, y = position.T
     if np.ptp(y) <= ONE_ROW * max(float(np.ptp(x)), float(np.max(np.abs(y)))):

@@ -1,102 +1,100 @@
-"""Who gives way in a tightened bolted joint: interface, members and bolts under small loads of the whole."""
+"""Shares of interface, members and bolts in the compliance of a tightened joint."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ...quantity import Array
-
-if TYPE_CHECKING:
-    from .spring import BoltedJointSpring
-
+from .equilibrium import JointAssembly, condense_stiffness
 
 DIRECTIONS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
 """{force along or moment about an axis: unit of its stiffness}."""
 COMPONENTS = ("interface", "members", "bolts")
 MIN_INTERFACE_SHARE = 0.1
-"""Part of the whole's compliance [1] from which on the interface is worth a law of its own."""
+"""Share of the interface in the compliance of the joint [1] from which its law matters."""
 RELATIVE_ROUND_OFF = 1e-9
-"""Stiffness of bolts over that of the whole [1] up to which it is that of places rounded off an axis."""
+"""Stiffness of the bolts over that of the joint [1] up to which it is round-off of their positions."""
 
 
 class Compliances(NamedTuple):
-    """Of a tightened joint that moves along x, y, z or turns about them, the other five motions held, as K_xx
-    to K_rz of the FMU are.
+    """Compliances of a tightened joint along and about x, y, z, each with the other five motions held.
 
-    parts      : (3, 6) [m/N, rad/(N.m)] twice the energy that interface, members and bolts store at a unit
-                 force or moment
-    rigid      : (6) of the interface alone between rigid sides, without bolts
-    bolts      : (6) [N/m, N.m/rad] stiffness of the bolts alone between rigid sides
-    bolt_force : (bolts, 6) [N per N, N per N.m] what each bolt gets of a force or moment that leaves the
-                 other motions free
+    components           : (3, 6) [m/N, rad/(N.m)] twice the energy in interface, members and bolts at a unit
+                           force or moment
+    interface_compliance : (6) [m/N, rad/(N.m)] of the interface alone between rigid members, without bolts
+    bolt_stiffness       : (6) [N/m, N.m/rad] of the bolts alone between rigid members
+    bolt_force           : (b, 6) [1, 1/m] force of each bolt at a unit force or moment, other motions free
     """
 
     components: Array
-    interface_stiffness: Array
+    interface_compliance: Array
     bolt_stiffness: Array
     bolt_force: Array
 
     @classmethod
-    def of(cls, spring: "BoltedJointSpring", preload: float, moment: float = 0.0) -> "Compliances":
-        """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
-        whole, modes = spring.assembly, spring.modes
-        bolt_force = spring.bolts.preload_force(spring.joint, preload, moment)
-        bolt = spring.bolts.tangent(bolt_force, np.zeros_like(bolt_force))[:, None]
-        H = spring.tangent_stiffness(preload, moment)
-        K, follow = whole.condense(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
-        stretch = modes.bolt_elongation @ follow
-        stretch[:, 2:5] += whole.bolt_elongation
-        members, bolts = modes.stiffness @ follow**2, np.sum(bolt * stretch**2, axis=0)
-        held, shanks = np.diag(K), np.zeros(6)
-        shanks[2:5] = np.sum(bolt * whole.bolt_elongation**2, axis=0)
+    def of(cls, assembly: JointAssembly, H: Array, bolt_tangent: Array) -> "Compliances":
+        """Compliances of a tightened joint.
+
+        H            : tangent stiffness (6 + k, 6 + k) of the assembly, see `JointAssembly.tangent_stiffness`
+        bolt_tangent : (b) [N/m] of the bolts, part of H
+        """
+        K, follow = condense_stiffness(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
+        rigid, bolt = assembly.elongation_jacobian[:, :6], bolt_tangent[:, None]
+        elongation = rigid + assembly.modes.bolt_elongation @ follow
+        members = assembly.modes.stiffness @ follow**2
+        bolts, rigid_bolts = (np.sum(bolt * each**2, axis=0) for each in (elongation, rigid))
+        held = np.diag(K)
         parts = np.stack([held - members - bolts, members, bolts]) / held**2
-        return cls(parts, 1.0 / (np.diag(H)[:6] - shanks), shanks, bolt * stretch @ np.linalg.inv(K))
+        interface = 1.0 / (np.diag(H)[:6] - rigid_bolts)
+        return cls(parts, interface, rigid_bolts, bolt * elongation @ np.linalg.inv(K))
 
     @property
     def total(self) -> Array:
-        """(6) of the joint."""
+        """Compliance (6) [m/N, rad/(N.m)] of the joint."""
         return np.asarray(self.components.sum(axis=0))
 
     @property
     def shares(self) -> Array:
-        """(3, 6) [1] of interface, members and bolts in the compliance."""
+        """Shares (3, 6) [1] of interface, members and bolts in the compliance of the joint."""
         return self.components / self.total
 
     @property
     def member_stiffness(self) -> Array:
-        """Stiffness (6) [N/m, N.m/rad] of the members: springs in series with the rest."""
+        """Stiffness (6) [N/m, N.m/rad] of the members as springs in series with interface and bolts."""
         return np.asarray(1.0 / self.components[1])
 
     def rows(self) -> list[tuple[str, str, list[float], list[float]]]:
-        """Each direction's name and unit, stiffness of the whole, interface, members and bolts (0: none),
-        and their shares [1] in the compliance."""
-        whole = 1.0 / self.total
-        bolts = np.where(self.bolt_stiffness > RELATIVE_ROUND_OFF * whole, self.bolt_stiffness, 0.0)
-        each = np.stack([whole, 1.0 / self.interface_stiffness, self.member_stiffness, bolts])
+        """Row of a table for each direction: name, unit, stiffness of joint, interface, members and bolts (0:
+        none), and the shares [1] of the last three in the compliance."""
+        joint = 1.0 / self.total
+        bolts = np.where(self.bolt_stiffness > RELATIVE_ROUND_OFF * joint, self.bolt_stiffness, 0.0)
+        each = np.stack([joint, 1.0 / self.interface_compliance, self.member_stiffness, bolts])
         return [
             (_stiffness_name(name), unit, each[:, i].tolist(), self.shares[:, i].tolist())
             for i, (name, unit) in enumerate(DIRECTIONS.items())
         ]
 
     @property
-    def matters(self) -> bool:
-        """Whether the interface has a say in the stiffness along or about any axis."""
+    def interface_matters(self) -> bool:
+        """Whether the share of the interface reaches MIN_INTERFACE_SHARE in any direction."""
         return bool(np.max(self.shares[0]) >= MIN_INTERFACE_SHARE)
 
     @property
     def load_factor(self) -> float:
-        """Part [1] that the bolts take of a force along z: n Phi_K of VDI 2230."""
+        """Share of all bolts in a force along z [1]: n Phi_K of VDI 2230."""
         return float(self.bolt_force[:, 2].sum())
 
     def opening_load(self, tension: float) -> float:
-        """Force [N] along z that takes the pressure off around the bolt that gets most, linearly: its place
-        has the part of the force that it has of what all bolts get; tension [N] of a bolt.
+        """Force [N] along z at which the contact around the most loaded bolt opens, by linear theory.
+
+        tension : [N] of a bolt at tightening. The share of this contact in the force on the interface is that
+                  of its bolt in the force on all bolts.
         """
         force = self.bolt_force[:, 2]
-        part = force.max() / force.sum() if np.any(force) else 1.0 / len(force)
-        return tension / float(part * (1.0 - self.load_factor))
+        share = force.max() / force.sum() if np.any(force) else 1.0 / len(force)
+        return tension / float(share * (1.0 - self.load_factor))
 
 
 def _stiffness_name(direction: str) -> str:
-    """A direction as its stiffness is called: K_zz, K_rx."""
+    """Name of the stiffness in a direction: K_zz, K_rx."""
     return f"K_{direction if direction.startswith('r') else 2 * direction}"

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.zhao2018 import Zhao2018
 from ...mechanics.footprint.bolts import BoltedFrame, PressureSource
+from ...mechanics.footprint.distribution import MergedDistribution, NodalField, PressureDistribution
 from ...mechanics.footprint.plate import BoltedPlate
-from ...mechanics.footprint.shape import MergedDistribution, NodalField, PressureDistribution
 from ...quantity import (
     Array,
     Interval,
@@ -23,18 +23,92 @@ from ...quantity import (
     group_field,
     quantity_field,
     select,
+    series_field,
 )
-from .bodies import ElasticBodies, RigidBodies
 
+MAX_MODES = 16
+"""Largest number of modes of the members [1]."""
+MODAL_SERIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
+"""Entries of [bodies] with the displacements by the modes."""
 ELASTIC_NEEDS = {
     "memory": "elastic sides go with friction that remembers",
     "damping": "the dashpots stand between rigid sides",
 }
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigidBodies:
+    """Rigid members: the joint is the interface alone."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElasticBodies:
+    """Modes of the members, computed for the points, patches and bolts of one contact.
+
+    Raises ValueError if the lengths of the lists contradict each other.
+    """
+
+    stiffness: tuple[float, ...] = series_field("N/m", "stiffness of each mode", gt=0.0)
+    opening: tuple[float, ...] = series_field(
+        "1", "opening of the points by the modes: all modes of a point, then of the next", ge=-1.0, le=1.0
+    )
+    patch_x: tuple[float, ...] = series_field(
+        "1", "displacement of the patches along x by the modes, in the same order", ge=-1.0, le=1.0
+    )
+    patch_y: tuple[float, ...] = series_field(
+        "1", "displacement of the patches along y by the modes", ge=-1.0, le=1.0
+    )
+    patch_around: tuple[float, ...] = series_field(
+        "1",
+        "displacement of the patches around their centres by the modes, on the circles of their sliders",
+        ge=-1.0,
+        le=1.0,
+    )
+    stretch: tuple[float, ...] = series_field(
+        "1", "elongation of the bolts by the modes: all modes of a bolt, then of the next", ge=-1.0, le=1.0
+    )
+    x: tuple[float, ...] = series_field("m", "position of the patches along the rows, from the centroid")
+    y: tuple[float, ...] = series_field("m", "position of the patches across the rows, from the centroid")
+    bolt_x: tuple[float, ...] = series_field("m", "position of the bolts along the rows, from the centroid")
+    bolt_y: tuple[float, ...] = series_field("m", "position of the bolts across the rows, from the centroid")
+    attached: str = choice_field(
+        "unstated",
+        "faces",
+        "edge",
+        "heads",
+        doc="part of the members that is attached to the connected bodies",
+    )
+    thickness: tuple[float, ...] = series_field(
+        "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
+    )
+    outline: tuple[float, ...] = series_field(
+        "m", "lowest x and y, highest x and y of the contact, from its centroid, for pictures", optional=True
+    )
+    hole_diameter: float = quantity_field("m", "clearance hole, for pictures", ge=0.0, default=0.0)
+    head_diameter: float = quantity_field(
+        "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
+    )
+    thread_depth: float = quantity_field(
+        "m", "depth of the threads in side 2, for pictures; 0: bolts go through", ge=0.0, default=0.0
+    )
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        modes, patches, bolts = len(self.stiffness), len(self.x), len(self.bolt_x)
+        if modes > MAX_MODES:
+            raise ValueError(f"bodies.stiffness has {modes} numbers, expected at most {MAX_MODES}")
+        counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
+        counts |= {name: patches * modes for name in MODAL_SERIES if name.startswith("patch_")}
+        counts["opening"] = modes * max(len(self.opening) // modes, 1)
+        counts |= {name: n for name, n in (("thickness", 2), ("outline", 4)) if getattr(self, name)}
+        for name, count in counts.items():
+            if (given := len(getattr(self, name))) != count:
+                raise ValueError(f"bodies.{name} has {given} numbers, expected {count} with {modes} modes")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Bolts:
-    """The bolts of a joint and how they spread their force."""
+    """Parameters of the bolts, of the pressure under them, and of the members."""
 
     n_bolts: float = quantity_field("1", "number of bolts", ge=1.0, is_integer=True)
     row_bolts: float = quantity_field(
@@ -73,7 +147,7 @@ class Bolts:
 
     @property
     def elastic(self) -> bool:
-        """Whether the whole joint is meant, not its interface alone."""
+        """Whether the joint has elastic members, not the interface alone."""
         return self.sides == "elastic"
 
     def _check_elastic(self) -> None:
@@ -89,7 +163,7 @@ class Bolts:
                 )
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals that other parameters decide."""
+        """Intervals that depend on other parameters."""
         why = "two rows hold at most half of n_bolts each; set row_bolts = 1 where all bolts make one row"
         rows = ParameterLimit(
             "row_bolts", Interval.from_bounds(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why
@@ -128,12 +202,12 @@ Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint
 
 
 def interface_alone(joint: Bolted) -> Bolted:
-    """The joint with rigid sides."""
+    """The joint with rigid members: its interface and bolts."""
     return replace(joint, sides="rigid") if joint.elastic else joint
 
 
 def bolt_pattern(joint: Bolted) -> BoltedFrame:
-    """The frame of a joint whose pressure is that of a pattern of bolts.
+    """Frame of a joint with the pressure of a pattern of bolts.
 
     Raises ValueError if the joint has a plate or a nodal field instead.
     """
@@ -153,11 +227,11 @@ ROW_DISTANCE_TOLERANCE = 1e-3
 
 
 def contradictions(joint: Bolted) -> Iterator[str]:
-    """One line for each parameter that the bolts of a parameter file contradict."""
+    """Yield one line for each parameter that contradicts the bolts of a parameter file."""
     if isinstance(joint.pattern, NodalField):
         return
     section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
-    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.equivalent_rows
+    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.equivalent_bolt_rows
     if joint.n_bolts != count:
         yield f"n_bolts = {joint.n_bolts:g} contradicts [{section}], which has {count} bolts"
     if abs(joint.A_0 / pattern.area - 1.0) > AREA_TOLERANCE:
@@ -178,8 +252,8 @@ def preload_pressure(
     """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
 
     The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row
-    y < 0 (Zhao 2018, section 3); of other layouts see BoltedPlate.shape. Where the sum would be negative the
-    node is open.
+    y < 0 (Zhao 2018, section 3); for other layouts see
+    `BoltedPlate.pressure_distribution`. Nodes with a negative sum are open.
     """
     force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
     return np.asarray(node_pressure(joint, shape.preload_shape, shape.moment_shape, force, bending))
@@ -188,32 +262,32 @@ def preload_pressure(
 def node_pressure(
     joint: Bolted, preload_shape: Number, moment_shape: Number, preload: Number, moment: Number
 ) -> Number:
-    """Pressure [Pa] of a node of the pressure shape."""
+    """Pressure [Pa] of a node under a preload [N] of each bolt and a moment [N.m]."""
     return shaped_pressure(preload_shape, moment_shape, *bolt_pressures(joint, preload, moment))
 
 
 def working_preload(joint: Bolted, preload: Number) -> Number:
-    """Force [N] that embedding leaves of a bolt's preload (...) [N]: none of one that is no larger."""
+    """Working force (...) [N] of a bolt: preload (...) [N] minus the loss by embedding, at least 0."""
     return select(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
 
 
 def slip_force(joint: Bolted, working_force: Number) -> Number:
-    """Shear [N] at which all of the interface slips, mu n F, under bolt forces left (...) [N]."""
+    """Shear force (...) [N] of gross slip, mu n F, under working forces (...) [N] of each bolt."""
     return joint.mu * joint.n_bolts * working_force
 
 
 def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Number, Number]:
-    """What `equal` and `tilt` of the pressure shape stand for [Pa]."""
+    """Pressures [Pa] for which preload_shape and moment_shape of a node are 1."""
     left = working_preload(joint, preload)
     return left * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
 
 
 def shaped_pressure(preload_shape: Number, moment_shape: Number, mean: Number, shift: Number) -> Number:
-    """Pressure [Pa] of a node of the pressure shape, given `bolt_pressures`; none where it is open."""
+    """Pressure [Pa] of a node by `bolt_pressures`; 0 where it is open."""
     return np.maximum(mean * preload_shape + shift * moment_shape, 0.0)
 
 
 def row_forces(joint: Bolted, preload: float, moment: float) -> tuple[float, float]:
-    """Bolt forces [N] of the two rows under a moment."""
+    """Force [N] of a bolt in the row y > 0 and in the row y < 0, under a preload [N] and a moment [N.m]."""
     shift, left = moment / (joint.row_distance * joint.row_bolts), float(working_preload(joint, preload))
     return left + shift, left - shift

@@ -1,12 +1,17 @@
-"""What the bolted joint exports, from sums over its contact."""
+"""Outputs of the bolted joint, from sums over points, patches and bolts."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ...contact.laws import mindlin
-from ...mechanics.steps import STABLE_STEP_OUTPUTS, largest_stable_steps
-from ...quantity import Number, select
+from ...mechanics.footprint.distribution import FrictionPatches, PressureDistribution
+from ...mechanics.sliders import Foundation
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS, largest_stable_steps
+from ...quantity import Array, Number, select
+from .bolts import BoltSprings
+from .equilibrium import JointAssembly, TrialState, condense_stiffness
+from .friction import directional_stiffness, unit_displacements
 from .law import Bolted
 
 SUMS = (
@@ -20,24 +25,133 @@ SUMS = (
     "loss", "loop_work", "loop_energy",
     "stretch", "stretch_x", "stretch_y",
 )  # fmt: skip
-"""Sums over the contact, times shares of the area.
+"""Names of the sums over the contact, weighted with the shares in the area.
 
 tightened                  : [Pa] pressure at tightening; _x, _y: times x and y [N/m]
-normal                     : [Pa] normal traction now, with what shear adds; _x, _y: times x and y
-normal_stiffness           : [Pa/m] its derivative in the approach; _about_x, _about_y: times y^2 and x^2
-pressure, stiffness        : [Pa, Pa/m] of the normal law; _x, _y, about_*: times x, y, y^2, x^2, x y
-plastic, elastic           : [J] works of first loading of the whole area
-traction_x, _y, torsion    : [Pa] shear traction against the shift, and its moment [N/m] about the normal
-tangent_x, _y, _z          : [Pa/m] derivatives of these in the shift along x, along y and the turn
-loss                       : [J/m2] turned into heat by friction so far
-loop_work, loop_energy     : [J/m2] loss of a cycle at the present amplitude, and elastic energy at its end
-stretch                    : [m] elongation of all bolts by the modes of elastic sides, and the gaps under
-                             their heads; _x, _y: times x and y
+normal                     : [Pa] normal traction, with the term by shear; _x, _y: times x and y [N/m]
+normal_stiffness           : [Pa/m] its derivative with respect to the approach; _about_x, _about_y: times y^2
+                             and x^2 [N/m]
+pressure, stiffness        : [Pa], [Pa/m] of the normal law; _x, _y, about_*: times x, y, y^2, x^2, x y
+plastic, elastic           : [J] work of first loading of the whole area
+traction_x, _y, torsion    : [Pa] shear traction against the displacement; its moment [N/m] about the normal
+tangent_x, _y, _z          : [Pa/m], [N/m] derivatives of these with respect to s_x, s_y and theta_z
+loss                       : [J/m2] energy dissipated by friction
+loop_work, loop_energy     : [J/m2] loss of a cycle with the present amplitude, and elastic energy at its end
+stretch                    : [m] elongation of all bolts by the modes, plus gaps under their heads; _x, _y:
+                             times x and y [m2]
 
-normal_stiffness and normal_about_* lack what bolts that lifted off have between rigid sides. With elastic
-sides they and tangent_* are those of the whole joint, less what all bolts have between rigid sides.
+Rigid members: normal_stiffness and normal_about_* are without the stiffness of bolts that have lifted off.
+Elastic members: they and tangent_* are for the whole joint, without the stiffness of all bolts between rigid
+members.
 """
-STRETCHES = SUMS[-3:]
+_TRACTIONS, _TANGENTS = ("traction_x", "traction_y", "torsion"), ("tangent_x", "tangent_y", "tangent_z")
+_STRETCHES = SUMS[-3:]
+
+
+def first_moments(points: PressureDistribution, name: str, value: Array) -> dict[str, Number]:
+    """Sums of values (n) times share, and times x and y."""
+    each = points.area_share * value
+    return {
+        name: np.sum(each),
+        f"{name}_x": each @ points.position[:, 0],
+        f"{name}_y": each @ points.position[:, 1],
+    }
+
+
+def second_moments(points: PressureDistribution, prefix: str, value: Array) -> dict[str, Number]:
+    """Sums of values (n) times share, times y^2 and x^2."""
+    each = points.area_share * value
+    x, y = points.position.T
+    return {f"{prefix}about_x": each @ y**2, f"{prefix}about_y": each @ x**2}
+
+
+def normal_sums(
+    points: PressureDistribution,
+    pressure: Array,
+    stiffness: Array,
+    added_pressure: Number = 0.0,
+    added_stiffness: Number = 0.0,
+) -> dict[str, Number]:
+    """Sums of pressure (n) [Pa] and stiffness (n) [Pa/m], and of what shear adds to both."""
+    p, k = pressure, stiffness
+    x, y = points.position.T
+    return {
+        **first_moments(points, "normal", p + added_pressure),
+        "normal_stiffness": points.area_share @ (k + added_stiffness),
+        **second_moments(points, "normal_", k + added_stiffness),
+        "pressure": points.area_share @ p,
+        **first_moments(points, "stiffness", k),
+        **second_moments(points, "", k),
+        "about_xy": (points.area_share * k) @ (x * y),
+    }
+
+
+def friction_sums(
+    patches: FrictionPatches, traction: Array, tangent: Sequence[Number], loss: Number
+) -> dict[str, Number]:
+    """Sums of the traction (m, 3) [Pa]; tangent (3) [Pa/m] and loss [J/m2] are sums already."""
+    sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
+    named = [*zip(_TRACTIONS, sums, strict=True), *zip(_TANGENTS, tangent, strict=True)]
+    return {**dict(named), "loss": loss}
+
+
+def tangent_sums(patches: FrictionPatches, tangent: Array) -> list[Number]:
+    """Stiffness per area [Pa/m] by tangents (m, 6) [Pa/m] against s_x, s_y and theta_z [Pa.m]."""
+    return [patches.area_share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
+
+
+def cycle_sums(foundation: Foundation, share: Array, approach: Array, amplitude: Array) -> dict[str, Number]:
+    """Sums of `Foundation.cycle_energies` of patches at approaches (m) [m], with amplitudes (m) [m]."""
+    loss, stored = foundation.cycle_energies(approach, amplitude)
+    return {"loop_work": share @ loss, "loop_energy": share @ stored}
+
+
+def bolt_gap_sums(
+    bolts: BoltSprings, area: float, elongation: Array, bolt_force: Array, sums: Mapping[str, Number]
+) -> dict[str, Number]:
+    """Sums of rigid members that the gaps under the heads of the bolts change.
+
+    elongation : (b) [m] since tightening
+    bolt_force : (b) [N] at tightening
+    """
+    gap = bolts.count * bolts.gap(bolt_force, elongation)
+    missing = bolts.count * (bolts.stiffness - bolts.tangent(bolt_force, elongation))
+    x, y = bolts.position.T
+    return {
+        **dict(zip(_STRETCHES, [np.sum(gap), gap @ x, gap @ y], strict=True)),
+        "normal_stiffness": sums["normal_stiffness"] - np.sum(missing) / area,
+        "normal_about_x": sums["normal_about_x"] - (missing @ y**2) / area,
+        "normal_about_y": sums["normal_about_y"] - (missing @ x**2) / area,
+    }
+
+
+def assembly_sums(
+    joint: Bolted, assembly: JointAssembly, state: TrialState, bolt_force: Array, loop_energy: Number
+) -> dict[str, Number]:
+    """Sums that elastic members change: stiffness of the whole joint, elongation by the modes, energy.
+
+    bolt_force  : (b) [N] at tightening
+    loop_energy : [J/m2] of the friction patches
+    """
+    area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, state.elongation
+    bolt_stiffness = joint.n_bolts * joint.bolt_stiffness
+    _, _, x2, y2, _ = joint.pattern.bolt_position_means
+    gap, bolt_tangent = bolts.gap(bolt_force, elongation), bolts.tangent(bolt_force, elongation)
+    H = assembly.tangent_stiffness(state.normal.stiffness, state.friction.slider_update.tangent, bolt_tangent)
+    K = np.maximum(np.diag(condense_stiffness(H)), 0.0)
+    stretch = modes.bolt_elongation @ state.modal_coordinates + gap
+    elastic = joint.bolt_stiffness * (elongation @ elongation) - joint.bolt_stiffness * (gap @ gap)
+    energy = 0.5 * (modes.stiffness @ state.modal_coordinates**2 + elastic)
+    return {
+        **dict(zip(_STRETCHES, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
+        "tangent_x": K[0] / area,
+        "tangent_y": K[1] / area,
+        "normal_stiffness": (K[2] - bolt_stiffness) / area,
+        "normal_about_x": (K[3] - bolt_stiffness * y2) / area,
+        "normal_about_y": (K[4] - bolt_stiffness * x2) / area,
+        "tangent_z": K[5] / area,
+        "loop_energy": loop_energy + energy / area,
+    }
 
 
 def bolt_force_name(bolt: int) -> str:
@@ -53,22 +167,27 @@ def joint_outputs(
     rates: Sequence[Number],
     p_max: Number,
 ) -> dict[str, Number]:
-    """Outputs from the SUMS at a shift s_rel [m] and small turn theta [rad] with rates v_rel and omega.
+    """Outputs {name: value} from the SUMS.
 
-    A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
-    plane: Hu 2023, Eq. 45, corrected. The bolts act beside the interface, each at its place, and only pull:
-    see `BoltSprings`.
+    displacement, rotation : s_rel (3) [m] and theta (3) [rad] of side 2
+    rates                  : v_rel and omega (6) [m/s, rad/s]
+    p_max                  : largest pressure [Pa]
+
+    A rotation about an in-plane axis moves a point along the normal, a rotation about the normal moves it in
+    the plane: Hu 2023, Eq. 45, corrected. The bolts act in parallel with the interface and only pull, see
+    `BoltSprings`.
     """
-    area, rho = joint.A_0, joint.shear_ratio()
-    bolts, (_, _, bolt_x2, bolt_y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
+    area, rho = joint.A_0, joint.shear_stiffness_ratio()
+    bolts = joint.n_bolts * joint.bolt_stiffness
+    _, _, bolt_x2, bolt_y2, _ = joint.pattern.bolt_position_means
     K_n = area * sums["stiffness"]
     eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()
     first_loading = mindlin.equivalent_damping(eta_n, joint.mass, K_n)
     C_n = select(joint.plastic_damping, first_loading, 0.0 * K_n)
     C_t = mindlin.equivalent_damping(eta_t, joint.mass, rho * K_n)
     viscous = [select(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
-    tension = _tension(bolts, joint.pattern.bolt_means, displacement[2], rotation)
-    pulled = [joint.bolt_stiffness * sums[name] for name in STRETCHES]
+    tension = _tension(bolts, joint.pattern.bolt_position_means, displacement[2], rotation)
+    stretch_force = [joint.bolt_stiffness * sums[name] for name in _STRETCHES]
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
     K_zz = np.maximum(area * sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off
@@ -82,9 +201,9 @@ def joint_outputs(
     return {
         "f_x": f_x + viscous[0],
         "f_y": f_y + viscous[1],
-        "f_z": area * (sums["normal"] - sums["tightened"]) + tension[0] + viscous[2] - pulled[0],
-        "m_x": area * (sums["normal_y"] - sums["tightened_y"]) + tension[1] + viscous[3] - pulled[2],
-        "m_y": -area * (sums["normal_x"] - sums["tightened_x"]) + tension[2] + viscous[4] + pulled[1],
+        "f_z": area * (sums["normal"] - sums["tightened"]) + tension[0] + viscous[2] - stretch_force[0],
+        "m_x": area * (sums["normal_y"] - sums["tightened_y"]) + tension[1] + viscous[3] - stretch_force[2],
+        "m_y": -area * (sums["normal_x"] - sums["tightened_x"]) + tension[2] + viscous[4] + stretch_force[1],
         "m_z": m_z + viscous[5],
         "K_xx": K[0],
         "K_yy": K[1],
@@ -110,9 +229,10 @@ def joint_outputs(
 def _tension(
     stiffness: Number, means: Sequence[Number], s_z: Number, rotation: Sequence[Number]
 ) -> tuple[Number, Number, Number]:
-    """f_z, m_x, m_y [N, N.m] of bolts without gaps, each elongated by s_z + theta_x y - theta_y x.
+    """Forces f_z, m_x, m_y [N, N.m] of bolts without gaps, each elongated by s_z + theta_x y - theta_y x.
 
-    stiffness is the sum of theirs, means those of their x, y, x^2, y^2, x y.
+    stiffness : [N/m] of all bolts
+    means     : means of their x, y [m], x^2, y^2, x y [m2]
     """
     x, y, x2, y2, xy = means
     return (
@@ -123,13 +243,13 @@ def _tension(
 
 
 def _ratio(numerator: Number, denominator: Number) -> Number:
-    """part/whole [1], 0 of nothing."""
+    """Ratio of numerator and denominator; 0 if the denominator is not positive."""
     some = denominator > 0.0
     return select(some, numerator / select(some, denominator, 1.0), 0.0 * numerator)
 
 
 def _slip(sums: Mapping[str, Number], mu: Number) -> Number:
-    """Shear force over its limit [1]."""
+    """Shear force over the friction limit [1]."""
     square = sums["traction_x"] ** 2 + sums["traction_y"] ** 2
     shears = square > 0.0
     return _ratio(select(shears, np.sqrt(select(shears, square, 1.0)), 0.0 * square), mu * sums["pressure"])
@@ -138,7 +258,7 @@ def _slip(sums: Mapping[str, Number], mu: Number) -> Number:
 def _viscous(
     area: Number, sums: Mapping[str, Number], C_t: Number, C_n: Number, rates: Sequence[Number]
 ) -> list[Number]:
-    """Forces and moments [N, N.m] of dashpots that are shared out over the contact as the stiffness is."""
+    """Forces and moments (6) [N, N.m] of dashpots, distributed over the contact like its stiffness."""
     v_x, v_y, v_z, w_x, w_y, w_z = rates
     K, K_x, K_y = (sums[name] for name in ("stiffness", "stiffness_x", "stiffness_y"))
     K_yy, K_xx, K_xy = (sums[name] for name in ("about_x", "about_y", "about_xy"))

@@ -7,39 +7,38 @@ from typing import Any
 
 import numpy as np
 
-from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
-from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Values, Variable
-from .contact import RelativeDisplacement
+from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
+from .joint import BoltedJointSpring, JointInputs
 from .law import Bolted, BoltedJoint, working_preload
 from .outputs import bolt_force_name
-from .spring import BoltedJointSpring
 
 LINEAR = 0.5**0.5
-"""Friction force used [1] without memory, where the linear shear force would be the limit."""
+"""Used share of the friction limit [1] without memory, at which the linear shear force reaches the limit."""
 _PRELOAD = 30e3
-"""Least end of the ramp [N] where no preload is stated: bolts are tightened near to yield."""
+"""Smallest end of the ramp [N] without a stated preload: bolts are tightened close to yield."""
 _LOOP_PRELOAD = 9e3
-"""Least preload [N] of loops where none is stated: that of the published pressures."""
+"""Smallest preload [N] of loops without a stated preload: that of the published pressures."""
 _NORMAL_INPUTS = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
 _INTERFACE = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
 
 
-def _three(v: Values, name: str) -> tuple[float, float, float]:
+def _three(v: VariableValues, name: str) -> tuple[float, float, float]:
     return v[f"{name}_x"], v[f"{name}_y"], v[f"{name}_z"]
 
 
-def _evolve(spring: BoltedJointSpring, v: Values, memory: Any) -> tuple[Mapping[str, float], Any]:
-    place = RelativeDisplacement(np.array([*_three(v, "s_rel"), *_three(v, "theta")]))
+def _advance(spring: BoltedJointSpring, v: VariableValues, history: Any) -> tuple[Mapping[str, float], Any]:
+    q = np.array([*_three(v, "s_rel"), *_three(v, "theta")])
     rates = (*_three(v, "v_rel"), *_three(v, "omega"))
-    return spring.advance(v["preload"], v["moment"], place, rates, memory)
+    return spring.advance(JointInputs(v["preload"], v["moment"], q, rates), history)
 
 
-def _reach(spring: BoltedJointSpring, v: Values) -> tuple[float, float]:
-    """Ends of the ramp [N]: to the stated preload.
+def _find_ramp(spring: BoltedJointSpring, v: VariableValues) -> tuple[float, float]:
+    """Start and end of the ramp of the preload [N]; it ends at the stated preload.
 
-    Raises ValueError if one is stated of which embedding leaves nothing.
+    Raises ValueError if the stated preload is not larger than its loss by embedding.
     """
     preload, embedding = v["preload"], spring.joint.embedding
     if 0.0 < preload <= embedding:
@@ -51,22 +50,21 @@ def _reach(spring: BoltedJointSpring, v: Values) -> tuple[float, float]:
 
 
 def _row_moment(joint: Any, preload: Number) -> Number:
-    """The largest moment [N.m] that both bolt rows carry without a negative bolt force."""
+    """Largest moment [N.m] at which no bolt force of the two rows is negative."""
     return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
 
 
 def _variant(model: Model, joint: Bolted) -> Model:
-    """With a loop under a preload of which embedding leaves some, where none is stated; with elastic sides
-    as `_whole`.
-    """
-    assert model.loop
-    loop = replace(model.loop, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
-    return _with_bolt_forces(replace(model, loop=loop), joint)
+    """Model of a joint: its loop has a preload above the loss by embedding; see also `_with_bolt_forces`."""
+    assert model.load_cycle
+    loop = replace(model.load_cycle, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
+    return _with_bolt_forces(replace(model, load_cycle=loop), joint)
 
 
 def _with_bolt_forces(model: Model, joint: Bolted) -> Model:
-    """With the forces of the bolts where the sides are elastic; then all outputs follow all motions, but
-    eta and C of a vibration, which are those of the interface.
+    """Model with the bolt forces as outputs, if the members are elastic.
+
+    Then all outputs depend on all motions, except the viscous damping of the interface.
     """
     if not joint.elastic:
         return model
@@ -150,9 +148,9 @@ MODELS = (
                 for name, doc in STABLE_STEP_OUTPUTS
             ),
         ),
-        evaluate=lambda s, v: _evolve(s, v, s.initial_history())[0],
+        evaluate=lambda s, v: _advance(s, v, s.initial_history())[0],
         initial_history=BoltedJointSpring.initial_history,
-        advance=_evolve,
+        advance=_advance,
         validity_limits=(
             ValidityLimit(
                 "moment",
@@ -166,8 +164,8 @@ MODELS = (
                 "the shear is beyond what friction holds: none if open; without memory the joint would slip",
             ),
         ),
-        ramp=LoadRamp("preload", _PRELOAD, 100.0, find_range=_reach),
-        loop=LoadCycle("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
+        ramp=LoadRamp("preload", _PRELOAD, 100.0, find_range=_find_ramp),
+        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
         dependencies={
             "f_x": (*_MOTION_INPUTS, "v_rel_x", "omega_z"),
             "f_y": (*_MOTION_INPUTS, "v_rel_y", "omega_z"),

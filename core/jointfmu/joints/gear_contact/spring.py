@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...contact.interface import at_pressure
+from ...contact.interface import evaluate_at_pressure
 from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, tabulate_approach
@@ -44,17 +44,17 @@ class GearContactSpring:
         """Force at the end of the table [N]: the hardness on the whole nominal area."""
         return self.joint.A_0 * self.curve.end[1]
 
-    def evaluate(self, f: ArrayLike) -> dict[str, Array]:
+    def evaluate(self, normal_force: ArrayLike) -> dict[str, Array]:
         """Outputs at normal forces f (...) [N].
 
         s_rel [m] approach from first contact, K_N [N/m], A_r [m2], elastic_fraction [1]. For a tensile force
         the flanks are separated: all outputs are zero.
         """
-        force = np.maximum(np.asarray(f, dtype=np.float64), 0.0)
+        force = np.maximum(np.asarray(normal_force, dtype=np.float64), 0.0)
         delta = self.curve.inverse(force / self.joint.A_0)
         stiffness = self.curve.derivatives(delta, 1)[1]
         contact_force = np.where(force > 0.0, force, self.max_force)  # any force that the law accepts
-        state = at_pressure(self.joint, contact_force / self.joint.A_0)
+        state = evaluate_at_pressure(self.joint, contact_force / self.joint.A_0)
         first = self.curve.displacement[0]
         return contact_outputs(
             self.joint, force, delta - first, stiffness, state["A_r"], state["elastic_fraction"]
@@ -63,22 +63,22 @@ class GearContactSpring:
 
 def contact_outputs(
     joint: ContactParameters,
-    f: Number,
+    normal_force: Number,
     approach: Number,
     stiffness: Number,
-    area: Number,
+    real_area: Number,
     elastic_fraction: Number,
 ) -> dict[str, Number]:
     """Outputs of the gear contact at a normal force f [N].
 
     approach  : [m] from first contact
     stiffness : [N/m3] per nominal area, of the curve
-    area      : [m2] real contact area of the law
+    real_area : [m2] real contact area of the law
     elastic_fraction : [1] elastic fraction of the real area
     """
     return {
         "s_rel": approach,
         "K_N": joint.A_0 * stiffness,
-        "A_r": np.where(f > 0.0, area, 0.0),
-        "elastic_fraction": np.where(f > 0.0, elastic_fraction, 0.0),
+        "A_r": np.where(normal_force > 0.0, real_area, 0.0),
+        "elastic_fraction": np.where(normal_force > 0.0, elastic_fraction, 0.0),
     }

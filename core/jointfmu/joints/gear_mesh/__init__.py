@@ -1,19 +1,19 @@
 """Gear mesh: tooth pairs with rough flanks (Yu 2022) and bending teeth between two wheels."""
 
-from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ..kind import JointKind, RoughSurface
-from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Values, Variable
+from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .spring import GearMesh, GearMeshSpring, RoughGearMesh
 
-_ANGLES = ("phi1", "phi2")
+_ANGLE_INPUTS = ("phi1", "phi2")
 _RAMP_DEFLECTION_RATIO = 0.3
-"""Deflection at the end of the load ramp over that at the end of the table [1]: gears are loaded less."""
+"""Deflection at the end of the load ramp over deflection at the end of the table [1]."""
 
 
-def _ramp_range(spring: GearMeshSpring, v: Values) -> tuple[float, float]:
+def _find_ramp_range(spring: GearMeshSpring, inputs: VariableValues) -> tuple[float, float]:
     """Angles phi1 [rad] at which the driving flanks touch, and at which the load ramp ends."""
     mesh = spring.joint
-    touch = 0.5 * mesh.backlash - mesh.r_b2 * v["phi2"]
+    touch = 0.5 * mesh.backlash - mesh.r_b2 * inputs["phi2"]
     return touch / mesh.r_b1, (touch + _RAMP_DEFLECTION_RATIO * spring.curve.end[0]) / mesh.r_b1
 
 
@@ -47,9 +47,9 @@ MODELS = (
         ),
         evaluate=lambda s, v: s.evaluate(v["phi1"], v["w1"], v["phi2"], v["w2"]),
         validity_limits=(ValidityLimit("s_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),),
-        ramp=LoadRamp("phi1", 1.5e-3, 5e-6, find_range=_ramp_range),
+        ramp=LoadRamp("phi1", 1.5e-3, 5e-6, find_range=_find_ramp_range),
         dependencies=dict.fromkeys(
-            ("s_rel", "K", "pairs", "E", *(name for name, _ in STABLE_STEP_OUTPUTS)), _ANGLES
+            ("s_rel", "K", "pairs", "E", *(name for name, _ in STABLE_STEP_OUTPUTS)), _ANGLE_INPUTS
         ),
         fixed_parameters=("mu", "traction_ratio"),
     ),

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, assemble_curve, refine_curve, tabulate_approach
-from ...mechanics.steps import largest_stable_steps, mobility
+from ...mechanics.stable_steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, quantity_field, smooth_step, smooth_step_integral, smooth_step_slopes
 
 CLOSING_STEPS = 96
-"""Steps of a tooth pair's table over the closing of the contact [1]; doubled until the table is accurate."""
+"""Steps [1] of a tooth pair's table while the contact closes; doubled until the table is accurate."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,7 @@ def tabulate_pair(mesh: MeshParameters) -> tuple[Curve, float]:
     contact. The nodes are those of the flanks' curve, where load, stiffness and its derivative are exact; the
     steps of the closing shrink towards first contact.
 
-    Raises ValueError and RuntimeError as `curve.approach_curve` and `curve.refine_curve` do.
+    Raises ValueError and RuntimeError as `curve.tabulate_approach` and `curve.refine_curve` do.
     """
     flanks = tabulate_approach(mesh)
     length = -flanks.displacement[0]
@@ -125,7 +125,7 @@ def _tabulate_pair(mesh: MeshParameters, flanks: Curve, divisions: int) -> Curve
     nodes = flanks.displacement
     closing_index = int(np.searchsorted(nodes, 0.0))
     t = np.linspace(0.0, 1.0, CLOSING_STEPS * divisions + 1)
-    kinks = 1 + np.flatnonzero(flanks.slope_end[:-1] != flanks.slope_start[1:])
+    kinks = 1 + np.flatnonzero(flanks.stiffness_slope_end[:-1] != flanks.stiffness_slope_start[1:])
     ends = [closing_index, *(int(i) for i in kinks if i > closing_index), nodes.size - 1]
     abscissas = [(t**2 - 1.0) * -nodes[0]]
     for first, end in pairwise(ends):
@@ -134,9 +134,9 @@ def _tabulate_pair(mesh: MeshParameters, flanks: Curve, divisions: int) -> Curve
     pieces = []
     for x, end in zip(abscissas, ends, strict=True):
         pressure, stiffness, bend = flanks.derivatives(x, 2)
-        bend[-1] = flanks.slope_end[end - 1]  # from below: the derivative jumps where a regime ends
+        bend[-1] = flanks.stiffness_slope_end[end - 1]  # from below: the derivative jumps where a regime ends
         pieces.append(combine_in_series(mesh, x - nodes[0], pressure, stiffness, bend))
-    return assemble_curve(pieces, flanks.error)
+    return assemble_curve(pieces, flanks.interpolation_error)
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,7 +235,7 @@ def pairs_in_contact(
 
 
 def _section_pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number, Number]:
-    """Number N of tooth pairs in a transverse section [1], dN/d(phase), integral of N - contact_ratio.
+    """Number N of tooth pairs in a transverse section [1], dN/d(phase), and integral of N - contact_ratio.
 
     floor(contact_ratio) pairs are always in contact. One more pair is in contact during the fractional part
     of the cycle, centred at integer phases. It engages and disengages by `smooth_step`, over `engagement`

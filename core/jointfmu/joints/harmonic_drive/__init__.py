@@ -1,8 +1,8 @@
 """Harmonic drive: torsional stiffness, hysteresis, friction, lost motion and kinematic error."""
 
 from ..kind import JointKind, RoughSurface
-from .given import CatalogueDrive, TableDrive
 from .law import HarmonicDrive, RoughHarmonicDrive
+from .prescribed_midline import CatalogueDrive, TableDrive
 from .variables import MODELS
 
 KIND = JointKind(
@@ -17,5 +17,5 @@ KIND = JointKind(
     },
     extract_law=lambda drive: drive.law,
     models=MODELS,
-    surfaces=(RoughSurface("surface", areal=True),),
+    surfaces=(RoughSurface("surface", is_areal=True),),
 )

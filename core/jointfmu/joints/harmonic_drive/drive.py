@@ -168,7 +168,7 @@ class Drive(ABC):
         return [ParameterLimit("ratio", any_sign, "allowed are (-inf, 0) and (0, inf)")]
 
     def find_table_limits(self) -> list[ParameterLimit]:
-        """Additional intervals that a table up to its last torque requires."""
+        """Intervals of parameters that a table up to its last torque requires, besides `find_limits`."""
         return []
 
 
@@ -178,7 +178,7 @@ def error_amplitudes(drive: Drive) -> list[Number]:
 
 
 def kinematic_error(drive: Drive, phi1: Number) -> tuple[Number, Number, Number]:
-    """phi_error (...) [rad] at angles phi1 (...) [rad], and its first [1] and second derivative [1/rad]."""
+    """Kinematic error (...) [rad] at angles phi1 (...) [rad]; its first [1] and second derivative [1/rad]."""
     error = slope = bend = 0.0
     for n, amplitude in zip(HARMONICS, error_amplitudes(drive), strict=True):
         angle = n * phi1 + getattr(drive, f"error_{n}_phase")
@@ -188,7 +188,10 @@ def kinematic_error(drive: Drive, phi1: Number) -> tuple[Number, Number, Number]
 
 
 def lost_motion_angle(drive: Drive, torque: Number) -> tuple[Number, Number, Number]:
-    """phi_p (...) [rad] at torques (...) [N.m], its first [rad/(N.m)] and second derivative [rad/(N.m)2]."""
+    """Angle phi_p (...) [rad] of the lost motion at torques (...) [N.m].
+
+    Returns also its first [rad/(N.m)] and second derivative [rad/(N.m)2].
+    """
     width, half = PLAY_WIDTH_RATIO * drive.rated_torque, 0.5 * drive.lost_motion
     share = np.tanh(torque / width)
     slope = half * (1.0 - share * share) / width

@@ -26,8 +26,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
-from ...mechanics.memory import HistoryLayout
 from ...quantity import Array, Number
 from .drive import PLAY_WIDTH_RATIO, Drive
 from .hysteresis import slider_shares
@@ -36,10 +36,11 @@ FRICTION_SLIDERS = 8
 """Number of sliders: friction from the virgin state is then within 1 % of M of Dahl's curve."""
 HISTORY_LAYOUT = HistoryLayout({"brake": (FRICTION_SLIDERS,), "angle": (), "limit": (2,), "begun": ()})
 """History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
-_REMAINING_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
-_SLIDER_SHARES = slider_shares(1.0, _REMAINING_SHARES)
-STIFFNESS_SHARES, LIMIT_SHARES = np.array(_SLIDER_SHARES[0]), np.array(_SLIDER_SHARES[1])
-"""Shares [1] of the sliders in the total spring stiffness M/presliding and in the total limit M."""
+_REMAINING_FRICTION_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
+_SLIDER_STIFFNESS_AND_LIMIT_SHARES = slider_shares(1.0, _REMAINING_FRICTION_SHARES)
+STIFFNESS_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[0])
+LIMIT_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[1])
+"""Shares [1] of each slider in the total spring stiffness M/presliding and in the total limit M."""
 REFERENCE_TEMPERATURE = 293.15
 """Temperature [K] at which the friction parameters hold: 20 degrees C, as in the catalogues."""
 PRIOR_ROTATION_TIME = 0.1
@@ -47,7 +48,7 @@ PRIOR_ROTATION_TIME = 0.1
 
 
 def dry_friction_factor(drive: Drive, temperature: Number) -> Number:
-    """Factor (...) [1] on the limit of dry friction at temperatures (...) [K]."""
+    """Factor (...) [1] by which temperatures (...) [K] change the limit of dry friction."""
     return drive.temperature_factor * _temperature_factor(drive.dry_temperature_coefficient, temperature)
 
 
@@ -105,19 +106,19 @@ class FrictionSliders(Sliders):
         return cls(float(sticking_stiffness(drive)) * STIFFNESS_SHARES)
 
     def advance(
-        self, history: Array, phi1: ArrayLike, w1: ArrayLike, limits: Sequence[ArrayLike]
+        self, history: Array, phi1: ArrayLike, w1: ArrayLike, end_limits: Sequence[ArrayLike]
     ) -> SliderUpdate:
         """Advance the sliders on a straight path to phi1.
 
-        history : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
-        phi1    : (...) [rad] angle of the wave generator at the end
-        w1      : (...) [rad/s] speed there, used only in the first step
-        limits  : limits of positive and of negative friction (...) [N.m] there, see `friction_limits`
+        history    : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
+        phi1       : (...) [rad] angle of the wave generator at the end
+        w1         : (...) [rad/s] speed there, used only in the first step
+        end_limits : limits of positive and of negative friction (...) [N.m] there, see `friction_limits`
 
         The sign of the elastic predictor of a slider selects the limit that holds for it. The first step
         initializes the sliders: they advance by PRIOR_ROTATION_TIME w1, whatever phi1 is, without loss.
         """
-        start, now = HISTORY_LAYOUT.split(history), np.stack(np.broadcast_arrays(*limits), axis=-1)
+        start, now = HISTORY_LAYOUT.split(history), np.stack(np.broadcast_arrays(*end_limits), axis=-1)
         if not self.is_active:
             none = np.zeros(now.shape[:-1])
             return SliderUpdate(np.zeros((*none.shape, self.stiffness.size)), none, none)
@@ -129,14 +130,14 @@ class FrictionSliders(Sliders):
             for ends in (start["limit"], now)
         )
         moved = self.advance_1d(force, way, before, after)
-        return replace(moved, loss=np.where(begun, moved.loss, 0.0))
+        return replace(moved, dissipated_energy=np.where(begun, moved.dissipated_energy, 0.0))
 
-    def pack_history(self, update: SliderUpdate, phi1: ArrayLike, limits: Sequence[ArrayLike]) -> Array:
+    def pack_history(self, update: SliderUpdate, phi1: ArrayLike, end_limits: Sequence[ArrayLike]) -> Array:
         """New history variables (..., n) after the path; all zero without dry friction."""
-        shape = update.loss.shape
+        shape = update.dissipated_energy.shape
         if not self.is_active:
             return np.zeros((*shape, HISTORY_LAYOUT.size))
-        limit = np.stack(np.broadcast_arrays(*limits), axis=-1)
+        limit = np.stack(np.broadcast_arrays(*end_limits), axis=-1)
         return HISTORY_LAYOUT.join(
             {"brake": update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
         )

@@ -9,8 +9,8 @@ curve over the wind-up phi is
 with the limit torque M_f, the initial stiffness K_h and the share s of friction that is not yet mobilised.
 After a reversal it follows Masing's rule. Jenkins sliders in parallel, with spring K_i and limit M_i,
 reproduce this for any path. Each slider here has the summed stiffness and limit of all sliders whose s lies
-between two values of REMAINING_SHARES. So torque and stiffness of the virgin curve are exact at these values
-and at full slip.
+between two values of REMAINING_FRICTION_SHARES. So torque and stiffness of the virgin curve are exact at
+these values and at full slip.
 """
 
 from collections.abc import Sequence
@@ -23,20 +23,22 @@ from numpy.typing import ArrayLike
 from ...contact.interface import MAX_ITERATIONS
 from ...contact.powerlaw import exprel
 from ...mechanics.curve import Curve
+from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
-from ...mechanics.memory import HistoryLayout
 from ...quantity import Array, Number
 from .drive import Drive
-from .law import ContactPairDrive, pair_argument
+from .law import ContactPairDrive, pair_log_area
 
 HYSTERESIS_SLIDERS = 44
 """Number of sliders: virgin curve within 0.2 % of M_f, loop area within 1 % for amplitudes above 0.1 M_f."""
 _GRADING, _GRADING_POWER = 3.5, 2.5
-"""Grading of REMAINING_SHARES [1]: fine where the first sliders slip, coarse where the last ones do."""
-_USED_SHARES = np.expm1(_GRADING * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS) / np.expm1(_GRADING)
+"""Grading of REMAINING_FRICTION_SHARES [1]: fine where the first sliders slip, coarse where the last do."""
+_MOBILISED_FRICTION_SHARES = np.expm1(
+    _GRADING * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS
+) / np.expm1(_GRADING)
 HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDERS,), "wind_up": (), "loss": ()})
 """History variables of the hysteresis: slider torques [N.m], wind-up [rad], loss [J]."""
-REMAINING_SHARES = (*((1.0 - _USED_SHARES) ** _GRADING_POWER).tolist(), 0.0)
+REMAINING_FRICTION_SHARES = (*((1.0 - _MOBILISED_FRICTION_SHARES) ** _GRADING_POWER).tolist(), 0.0)
 """Values of s [1], from 1 down to 0, that separate the sliders."""
 WIND_UP_TOLERANCE = 4e-16
 """Change of the wind-up [1], over the sum of wind-up and M_f/K_h, below which its iteration stops."""
@@ -56,42 +58,42 @@ def stiffness_exponent(drive: Drive) -> Number:
     """
     if not isinstance(drive, ContactPairDrive):
         return 1.0
-    spots, u = drive.pair_law.spots(), pair_argument(drive, 0.0)
+    spots, u = drive.pair_law.spots(), pair_log_area(drive, 0.0)
     power = spots.log_total("load", 0.0)[1]
     return spots.total_derivative("normal", u) / (spots.total("normal", u) * power)
 
 
 def slider_shares(
-    m: Number, remaining_shares: Sequence[float] = REMAINING_SHARES
+    exponent: Number, remaining_shares: Sequence[float] = REMAINING_FRICTION_SHARES
 ) -> tuple[list[Number], list[Number]]:
-    """Shares of the sliders in K_h and in M_f [1], each with the sum 1.
+    """Share of each slider in the stiffness K_h and in the friction limit M_f [1]; the sum of each is 1.
 
-    m                : exponent of K_N ~ P^m
+    exponent         : exponent m of K_N ~ P^m
     remaining_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
     """
-    rate = [remaining**m if remaining else 0.0 for remaining in remaining_shares]
+    rate = [remaining**exponent if remaining else 0.0 for remaining in remaining_shares]
     used_shares = [
-        1.0 - remaining - _relative_wind_up(remaining, m) * r if remaining else 1.0
+        1.0 - remaining - _relative_wind_up(remaining, exponent) * r if remaining else 1.0
         for remaining, r in zip(remaining_shares, rate, strict=True)
     ]
     return [a - b for a, b in pairwise(rate)], [b - a for a, b in pairwise(used_shares)]
 
 
-def _relative_wind_up(remaining_share: float, m: Number) -> Number:
+def _relative_wind_up(remaining_share: float, exponent: Number) -> Number:
     """K_h phi/M_f [1] on the virgin curve at the remaining share s [1]: (1 - s^(1 - m))/(1 - m)."""
     logarithm = float(np.log(remaining_share))
-    return -logarithm * exprel((1.0 - m) * logarithm)
+    return -logarithm * exprel((1.0 - exponent) * logarithm)
 
 
 @dataclass(frozen=True, slots=True)
 class HysteresisSliders(Sliders):
     """Sliders of the hysteresis of a drive.
 
-    stiffness : (n) [N.m/rad] of the springs
-    limit     : (n) [N.m] of the friction torques; all zero without hysteresis
+    stiffness      : (n) [N.m/rad] of the springs
+    friction_limit : (n) [N.m] of the friction torques; all zero without hysteresis
     """
 
-    limit: Array
+    friction_limit: Array
 
     @classmethod
     def for_drive(cls, drive: Drive, curve: Curve) -> "HysteresisSliders":
@@ -110,29 +112,30 @@ class HysteresisSliders(Sliders):
             np.array(share, dtype=np.float64) for share in slider_shares(stiffness_exponent(drive))
         )
         unit_sliders = cls(_initial_stiffness(drive, curve, half_loop_torque) * springs, friction)
-        return replace(
-            unit_sliders, limit=_find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
-        )
+        limit = _find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
+        return replace(unit_sliders, friction_limit=limit)
 
     @property
     def is_active(self) -> bool:
         """Whether the drive has hysteresis."""
-        return bool(self.limit[-1] > 0.0)
+        return bool(self.friction_limit[-1] > 0.0)
 
     @property
     def characteristic_wind_up(self) -> float:
         """Characteristic wind-up M_f/K_h [rad] of the hysteresis."""
-        return float(np.sum(self.limit) / np.sum(self.stiffness))
+        return float(np.sum(self.friction_limit) / np.sum(self.stiffness))
 
-    def unloading_friction(self, curve: Curve, torque: float, half_opening: float) -> float:
-        """Negative friction torque [N.m] on unloading from a torque [N.m], at the wind-up half_opening [rad].
+    def unloading_friction(self, curve: Curve, torque: float, half_opening_angle: float) -> float:
+        """Negative friction torque [N.m] on unloading from a torque to the wind-up half_opening_angle.
 
-        By Masing's rule. If it equals the torque of the midline at half_opening, the total torque is zero
-        there: the branches of the loop are then 2 half_opening apart at zero torque.
+        torque, half_opening_angle : [N.m], [rad]
+
+        By Masing's rule. If the friction equals the torque of the midline at half_opening_angle, the total
+        torque is zero there: the branches of the loop are then 2 half_opening_angle apart at zero torque.
         """
         turn_wind_up = float(self.solve_wind_up(curve, HISTORY_LAYOUT.virgin_history(), torque))
         friction_back, friction_at_turn = self.advance(
-            HISTORY_LAYOUT.virgin_history(), [0.5 * (turn_wind_up - half_opening), turn_wind_up]
+            HISTORY_LAYOUT.virgin_history(), [0.5 * (turn_wind_up - half_opening_angle), turn_wind_up]
         ).traction
         return float(2.0 * friction_back - friction_at_turn)
 
@@ -140,11 +143,13 @@ class HysteresisSliders(Sliders):
         """Advance the sliders from history variables (..., n) on a path to wind-ups phi (...) [rad]."""
         variables = HISTORY_LAYOUT.split(history)
         increment = np.asarray(phi, dtype=np.float64) - variables["wind_up"]
-        return self.advance_1d(variables["force"], increment, self.limit, self.limit)
+        return self.advance_1d(variables["force"], increment, self.friction_limit, self.friction_limit)
 
-    def pack_history(self, update: SliderUpdate, phi: ArrayLike, loss: Array) -> Array:
+    def pack_history(self, update: SliderUpdate, phi: ArrayLike, total_loss: Array) -> Array:
         """New history variables (..., n) after the path to phi (...) [rad]; loss (...) [J] is the total."""
-        return HISTORY_LAYOUT.join({"force": update.force, "wind_up": phi, "loss": loss}, *loss.shape)
+        return HISTORY_LAYOUT.join(
+            {"force": update.force, "wind_up": phi, "loss": total_loss}, *total_loss.shape
+        )
 
     def solve_wind_up(self, curve: Curve, history: Array, torque: ArrayLike) -> Array:
         """Wind-up (...) [rad] at torques (...) [N.m] of midline plus friction, from a history (..., n).
@@ -152,7 +157,7 @@ class HysteresisSliders(Sliders):
         Safeguarded Newton iteration: the total torque increases monotonically with the wind-up. The iteration
         starts at the present wind-up, limited to the range in which not all sliders slip.
         """
-        tau, friction_sum = np.asarray(torque, dtype=np.float64), float(np.sum(self.limit))
+        tau, friction_sum = np.asarray(torque, dtype=np.float64), float(np.sum(self.friction_limit))
         slipping = curve.odd_inverse(np.stack([tau - friction_sum, tau + friction_sum]))
         phi = np.clip(HISTORY_LAYOUT.split(history)["wind_up"], *slipping)
         low, high = np.full(tau.shape, -np.inf), np.full(tau.shape, np.inf)
@@ -171,7 +176,10 @@ class HysteresisSliders(Sliders):
 
 
 def _initial_stiffness(drive: Drive, curve: Curve, half_loop_torque: float) -> float:
-    """K_h [N.m/rad]; half_loop_torque [N.m] is the midline's torque at half of hysteresis_loss."""
+    """Initial stiffness K_h [N.m/rad] of the hysteresis.
+
+    half_loop_torque : [N.m] torque of the midline at half of hysteresis_loss
+    """
     if drive.hysteresis_stiffness > 0.0:
         return drive.hysteresis_stiffness
     back = float(curve.inverse(drive.rated_torque - half_loop_torque)) - 0.5 * drive.hysteresis_loss
@@ -181,7 +189,9 @@ def _initial_stiffness(drive: Drive, curve: Curve, half_loop_torque: float) -> f
 def _find_limit_torque(
     drive: Drive, curve: Curve, unit_sliders: HysteresisSliders, half_loop_torque: float
 ) -> float:
-    """M_f [N.m] for which the loop through rated torque opens by hysteresis_loss, by fixed-point iteration.
+    """Friction limit M_f [N.m] for which the loop through rated torque opens by hysteresis_loss.
+
+    Found by fixed-point iteration.
 
     unit_sliders     : sliders with the sum of limits 1 N.m
     half_loop_torque : [N.m] midline torque at half of hysteresis_loss. At zero total torque the friction
@@ -193,11 +203,9 @@ def _find_limit_torque(
     for _ in range(MAX_LIMIT_ITERATIONS):
         if limit == 0.0:
             return limit
-        sliders = replace(unit_sliders, limit=limit * unit_sliders.limit)
-        previous, opening = (
-            limit,
-            sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss),
-        )
+        sliders = replace(unit_sliders, friction_limit=limit * unit_sliders.friction_limit)
+        previous = limit
+        opening = sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss)
         limit *= half_loop_torque / opening if opening > 0.0 else np.inf
         if not limit < drive.rated_torque:
             break

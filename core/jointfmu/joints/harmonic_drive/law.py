@@ -7,7 +7,7 @@ import numpy as np
 
 from ...contact.laws.hu2023 import Hu2023, elastic_pressure
 from ...contact.laws.roughness import RoughnessLaw, RoughSurfaces
-from ...contact.surface import ArealSurface, Elastic, ElasticPlastic
+from ...contact.surface import ArealSurface, ElasticConstants, ElasticPlasticConstants
 from ...quantity import Interval, Number, ParameterLimit, choice_field, group_field, quantity_field, select
 from .drive import Drive, lost_motion_angle
 
@@ -58,7 +58,7 @@ class ContactPairDrive(Drive):
     @property
     @abstractmethod
     def pair_law(self) -> Hu2023 | RoughnessLaw:
-        """Interface law of the contact pair, whose load is a power of exp(u)."""
+        """Interface law of the contact pair; its load is a power of the area of the largest spot."""
 
     @property
     @abstractmethod
@@ -85,7 +85,9 @@ class ContactPairDrive(Drive):
         zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
         with np.errstate(over="ignore"):
             reach = np.sqrt(zero / np.maximum(loss, 1e-290))
-            reserve = (zero - self._deformation_pressure_loss) / np.maximum(self.eccentricity_loss, 1e-290)
+            reserve = (zero - self._deformation_pressure_reduction) / np.maximum(
+                self.eccentricity_loss, 1e-290
+            )
         return [
             *super().find_limits(),
             ParameterLimit(
@@ -98,13 +100,13 @@ class ContactPairDrive(Drive):
         ]
 
     @property
-    def _deformation_pressure_loss(self) -> float:
+    def _deformation_pressure_reduction(self) -> float:
         return self.deformation_loss * (self.radial_deformation - self.optimum_deformation) ** 2
 
     @property
-    def pressure_loss(self) -> float:
+    def peak_pressure_reduction(self) -> float:
         """Reduction of the peak pressure [Pa] by non-optimal radial deformation and by eccentricity."""
-        return self._deformation_pressure_loss + self.eccentricity_loss * self.eccentricity
+        return self._deformation_pressure_reduction + self.eccentricity_loss * self.eccentricity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,8 +114,8 @@ class HarmonicDrive(ContactPairDrive):
     """Parameters of the harmonic drive with the law of Hu 2023, read as printed."""
 
     surface: ArealSurface = group_field("equivalent rough surface of the contact pair")
-    flexspline: ElasticPlastic = group_field("flexspline")
-    bearing: ElasticPlastic = group_field("outer ring of the flexible bearing")
+    flexspline: ElasticPlasticConstants = group_field("flexspline")
+    bearing: ElasticPlasticConstants = group_field("outer ring of the flexible bearing")
     shear_traction: float = quantity_field(
         "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
     )
@@ -133,8 +135,8 @@ class HarmonicDrive(ContactPairDrive):
         E, nu = select(swap, ring.E, cup.E), select(swap, ring.nu, cup.nu)
         return Hu2023(
             surface=self.surface,
-            side1=Elastic(E=E, nu=nu),
-            side2=Elastic(E=select(swap, cup.E, ring.E), nu=select(swap, cup.nu, ring.nu)),
+            side1=ElasticConstants(E=E, nu=nu),
+            side2=ElasticConstants(E=select(swap, cup.E, ring.E), nu=select(swap, cup.nu, ring.nu)),
             sigma_y=np.minimum(cup.sigma_y, ring.sigma_y),
             mu=self.mu,
             traction_ratio=self.traction_ratio,
@@ -183,8 +185,8 @@ class RoughHarmonicDrive(RoughSurfaces, ContactPairDrive):
     """Parameters of the harmonic drive with the law `roughness`; K_TS has no fitted scale factor."""
 
     H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
-    flexspline: Elastic = group_field("flexspline")
-    bearing: Elastic = group_field("outer ring of the flexible bearing")
+    flexspline: ElasticConstants = group_field("flexspline")
+    bearing: ElasticConstants = group_field("outer ring of the flexible bearing")
 
     @property
     def pair_law(self) -> RoughnessLaw:
@@ -223,28 +225,30 @@ def peak_pressure(drive: ContactPairDrive, torque: Number) -> tuple[Number, Numb
     """
     smoothing, saturation = drive.torque_smoothing, SATURATION_TORQUE_RATIO * drive.rated_torque
 
-    def saturate(T: Number) -> tuple[Number, Number]:
+    def saturate_torque(torque: Number) -> tuple[Number, Number]:
         """Squared saturated torque t^2 [(N.m)^2], and t dt/dT [N.m]."""
-        x = np.minimum(np.maximum(T / saturation, -1e3), 1e3)
+        x = np.minimum(np.maximum(torque / saturation, -1e3), 1e3)
         bend = 1.0 + x**4
         root = np.sqrt(bend)
         return (saturation * x) ** 2 / root, saturation * x / (bend * root)
 
-    def distance(square: Number) -> Number:
-        return np.maximum(np.sqrt(square + smoothing**2), smoothing)  # if smoothing**2 underflows
+    def smoothed_torque(squared_torque: Number) -> Number:
+        return np.maximum(np.sqrt(squared_torque + smoothing**2), smoothing)  # if smoothing**2 underflows
 
-    def growth(square: Number) -> Number:
-        return square / (distance(square) + smoothing)
+    def smoothed_torque_growth(squared_torque: Number) -> Number:
+        return squared_torque / (smoothed_torque(squared_torque) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
-    factor = (rated**2 - zero**2) / growth(saturate(drive.rated_torque)[0])
-    square, square_slope = saturate(torque)
-    unreduced = np.sqrt(zero**2 + factor * growth(square))
-    return unreduced - drive.pressure_loss, 0.5 * factor * square_slope / distance(square) / unreduced
+    factor = (rated**2 - zero**2) / smoothed_torque_growth(saturate_torque(drive.rated_torque)[0])
+    square, square_slope = saturate_torque(torque)
+    unreduced = np.sqrt(zero**2 + factor * smoothed_torque_growth(square))
+    return unreduced - drive.peak_pressure_reduction, 0.5 * factor * square_slope / smoothed_torque(
+        square
+    ) / unreduced
 
 
-def pair_argument(drive: ContactPairDrive, torque: Number) -> Number:
-    """Argument u (...) [1] of the pair's law at the mean pressure under torques (...) [N.m]."""
+def pair_log_area(drive: ContactPairDrive, torque: Number) -> Number:
+    """Log-area u (...) [1] of the largest spot, at the mean pressure of the pair at torques (...) [N.m]."""
     law = drive.pair_law
     start, power = law.spots().log_total("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
@@ -257,7 +261,7 @@ def pair_stiffness(drive: ContactPairDrive, torque: Number) -> tuple[Number, Num
     pressure.
     """
     peak, pressure_slope = peak_pressure(drive, torque)
-    spots, u = drive.pair_law.spots(), pair_argument(drive, torque)
+    spots, u = drive.pair_law.spots(), pair_log_area(drive, torque)
     power = spots.log_total("load", 0.0)[1]
     slope = spots.total_derivative("tangential", u) / (power * peak)
     return drive.pair_stiffness_factor * spots.total(

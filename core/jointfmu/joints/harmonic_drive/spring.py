@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...mechanics.curve import Curve, assemble_curve, refine_curve
-from ...mechanics.steps import largest_stable_steps, mobility
+from ...mechanics.stable_steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, check_limits
 from . import friction, hysteresis
 from .drive import Drive, kinematic_error
 from .friction import REFERENCE_TEMPERATURE, FrictionSliders, friction_limits, viscous_torque
-from .given import PrescribedDrive
 from .hysteresis import HysteresisSliders
 from .law import ContactPairDrive, stiffness_with_play
+from .prescribed_midline import PrescribedDrive
 
 MIN_TABLE_STEPS = 160
 """Initial number of steps of the midline's table [1]; doubled until the table is accurate."""
@@ -40,13 +40,13 @@ def torque_curve(drive: Drive) -> Curve:
     if isinstance(drive, PrescribedDrive):
         x, y, s, slope_before, slope_after = np.array(drive.make_nodes(), dtype=np.float64).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
-    raise TypeError(f"{type(drive).__name__} is no PairDrive and not Given")
+    raise TypeError(f"{type(drive).__name__} is no ContactPairDrive and no PrescribedDrive")
 
 
-def _tabulate_midline(drive: ContactPairDrive, steps: int) -> Curve:
-    """Table of the midline with `steps` steps, see `torque_curve`."""
+def _tabulate_midline(drive: ContactPairDrive, step_count: int) -> Curve:
+    """Tabulate the midline, torque over wind-up, with a number of steps; see `torque_curve`."""
     smoothing = drive.torque_smoothing
-    xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
+    xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), step_count + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     with np.errstate(all="ignore"):
         K, growth = stiffness_with_play(drive, T)
@@ -81,7 +81,7 @@ class HarmonicDriveSpring:
     def tabulate(cls, drive: Drive) -> "HarmonicDriveSpring":
         """Tabulate a parameter set.
 
-        Raises ValueError as `torque_curve` and `Hysteresis.for_drive` do.
+        Raises ValueError as `torque_curve` and `HysteresisSliders.for_drive` do.
         """
         curve = torque_curve(drive)
         return cls(drive, curve, HysteresisSliders.for_drive(drive, curve), FrictionSliders.for_drive(drive))
@@ -94,13 +94,14 @@ class HarmonicDriveSpring:
         w2: ArrayLike,
         temperature: ArrayLike = REFERENCE_TEMPERATURE,
     ) -> dict[str, Array]:
-        """Outputs at flange angles [rad], speeds [rad/s] and temperatures [K] (...), after a straight path
-        from the virgin state.
+        """Outputs after a straight path from the virgin state to a motion and temperatures (...) [K].
+
+        phi1, w1, phi2, w2 : (...) [rad], [rad/s] angles and speeds of the flanges
         """
         return self.advance_motion((phi1, w1, phi2, w2), self.initial_history(), temperature)[0]
 
     def evaluate_torque(self, tau: ArrayLike) -> dict[str, Array]:
-        """Outputs at torques (...) [N.m] after a path from the virgin state, wave generator locked."""
+        """Outputs after a path from the virgin state to torques (...) [N.m], wave generator locked."""
         return self.advance_torque(tau, self.initial_history())[0]
 
     def initial_history(self) -> Array:
@@ -131,8 +132,8 @@ class HarmonicDriveSpring:
         friction_update = self.friction.advance(friction_history, motion[0], motion[1], friction_limits_)
         loss = (
             hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"]
-            + hysteresis_update.loss
-            + friction_update.loss
+            + hysteresis_update.dissipated_energy
+            + friction_update.dissipated_energy
         )
         out = motion_outputs(self.joint, motion, kelvin, state, friction_update.traction) | {"E_loss": loss}
         new_friction = self.friction.pack_history(friction_update, motion[0], friction_limits_)
@@ -141,7 +142,7 @@ class HarmonicDriveSpring:
         )
 
     def advance_torque(self, tau: ArrayLike, history: Array) -> tuple[dict[str, Array], Array]:
-        """Outputs and new history variables after a path to torques tau (...) [N.m], phi1 locked."""
+        """Outputs and new history variables after a path to torques (...) [N.m], wave generator locked."""
         hysteresis_history, friction_history = _split_history(history)
         if self.hysteresis.is_active:
             phi = self.hysteresis.solve_wind_up(self.curve, hysteresis_history, tau)
@@ -149,7 +150,7 @@ class HarmonicDriveSpring:
             phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         update = self.hysteresis.advance(hysteresis_history, phi)
-        loss = hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"] + update.loss
+        loss = hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"] + update.dissipated_energy
         new = self.hysteresis.pack_history(update, phi, loss)
         locked = np.broadcast_to(friction_history, (*new.shape[:-1], friction_history.shape[-1]))
         out = {"phi_rel": phi, **stiffness_outputs(self.joint, load, stiffness), "E_loss": loss}
@@ -157,7 +158,7 @@ class HarmonicDriveSpring:
 
 
 def _split_history(history: Array) -> tuple[Array, Array]:
-    """History variables (..., n) of the hysteresis and of the friction."""
+    """Split history variables (..., n) into those of the hysteresis and those of the friction."""
     return history[..., : hysteresis.HISTORY_LAYOUT.size], history[..., hysteresis.HISTORY_LAYOUT.size :]
 
 
@@ -165,72 +166,78 @@ def _split_history(history: Array) -> tuple[Array, Array]:
 class SpringState:
     """State of the spring at a motion: numbers, arrays or symbols.
 
-    phi_rel   : [rad] wind-up
-    load      : [N.m] torque of the midline
-    stiffness : [N.m/rad] of the midline
-    friction  : [N.m] torque of the hysteresis
-    error     : [rad] kinematic error
-    slope     : [1] derivative of the kinematic error with respect to phi1
+    phi_rel           : [rad] wind-up
+    midline_torque    : [N.m] torque of the midline
+    midline_stiffness : [N.m/rad] of the midline
+    hysteresis_torque : [N.m] torque of the hysteresis
+    phi_error         : [rad] kinematic error
+    phi_error_slope   : [1] derivative of the kinematic error with respect to phi1
     """
 
     phi_rel: Number
-    load: Number
-    stiffness: Number
-    friction: Number
-    error: Number
-    slope: Number
+    midline_torque: Number
+    midline_stiffness: Number
+    hysteresis_torque: Number
+    phi_error: Number
+    phi_error_slope: Number
 
 
-def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
+def wind_up(drive: Drive, motion: Sequence[Number], phi_error: Number) -> Number:
     """Wind-up phi_rel [rad] at the output, for (phi1, w1, phi2, w2) and the kinematic error [rad]."""
     phi1, _, phi2, _ = motion
-    return phi2 - phi1 / drive.ratio - error
+    return phi2 - phi1 / drive.ratio - phi_error
 
 
 def motion_outputs(
-    drive: Drive, motion: Sequence[Number], temperature: Number, state: SpringState, dry_friction: Number
+    drive: Drive,
+    motion: Sequence[Number],
+    temperature: Number,
+    spring_state: SpringState,
+    dry_friction_torque: Number,
 ) -> dict[str, Number]:
     """Outputs of the spring except E_loss, at a motion (phi1, w1, phi2, w2).
 
-    temperature  : [K] of the lubricant
-    state        : state of the spring at this motion
-    dry_friction : [N.m] at the wave generator
+    temperature         : [K] of the lubricant
+    spring_state        : state of the spring at this motion
+    dry_friction_torque : [N.m] at the wave generator
     """
-    tau, friction = (
-        transmitted_torque(drive, motion, state),
-        dry_friction + viscous_torque(drive, motion[1], temperature),
-    )
+    tau = transmitted_torque(drive, motion, spring_state)
+    friction = dry_friction_torque + viscous_torque(drive, motion[1], temperature)
     w = mobility(drive.inertia1, 1.0 / drive.ratio) + mobility(drive.inertia2)
-    at_once, side_by_side = largest_stable_steps(state.stiffness, drive.d, w)
+    at_once, side_by_side = largest_stable_steps(spring_state.midline_stiffness, drive.d, w)
     return {
-        "tau1": tau / drive.ratio + state.slope * tau - friction,
+        "tau1": tau / drive.ratio + spring_state.phi_error_slope * tau - friction,
         "tau2": -tau,
-        "phi_rel": state.phi_rel,
+        "phi_rel": spring_state.phi_rel,
         "tau": tau,
-        **stiffness_outputs(drive, state.load, state.stiffness),
+        **stiffness_outputs(drive, spring_state.midline_torque, spring_state.midline_stiffness),
         "tau_friction": friction,
-        "phi_error": state.error,
+        "phi_error": spring_state.phi_error,
         "step_at_once": at_once,
         "step_side_by_side": side_by_side,
     }
 
 
-def transmitted_torque(drive: Drive, motion: Sequence[Number], state: SpringState) -> Number:
+def transmitted_torque(drive: Drive, motion: Sequence[Number], spring_state: SpringState) -> Number:
     """Torque tau [N.m] at the output: sum of midline, hysteresis and damping."""
     _, w1, _, w2 = motion
-    return state.load + state.friction + drive.d * (w2 - w1 / drive.ratio - state.slope * w1)
+    return (
+        spring_state.midline_torque
+        + spring_state.hysteresis_torque
+        + drive.d * (w2 - w1 / drive.ratio - spring_state.phi_error_slope * w1)
+    )
 
 
-def stiffness_outputs(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
-    """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque `load` of the midline.
+def stiffness_outputs(drive: Drive, midline_torque: Number, midline_stiffness: Number) -> dict[str, Number]:
+    """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque [N.m] of the midline.
 
     K_TS includes the lost motion; K_TS_pair is K_TS on the scale of Fig. 11 of Hu 2023.
     """
-    K_TS = stiffness * drive.K_FTS / (drive.K_FTS - stiffness)
+    K_TS = midline_stiffness * drive.K_FTS / (drive.K_FTS - midline_stiffness)
     return {
-        "K_WTS": stiffness,
+        "K_WTS": midline_stiffness,
         "K_TS": K_TS,
-        "K_FTS": drive.K_FTS + 0.0 * stiffness,
+        "K_FTS": drive.K_FTS + 0.0 * midline_stiffness,
         "K_TS_pair": K_TS / drive.pair_scale,
-        "p_max": drive.pressure(load),
+        "p_max": drive.pressure(midline_torque),
     }

@@ -1,8 +1,8 @@
 """Models of the harmonic drive that are exported as FMUs, with their inputs and outputs."""
 
-from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity.units import LUBRICANT_TEMPERATURES
-from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Values, Variable
+from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .drive import HARMONICS
 from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDrive
@@ -19,12 +19,12 @@ _STIFFNESS_OUTPUTS = (
     ),
 )
 
-_ANGLES = ("phi1", "phi2")
-_FLANGE_MOTION = ("phi1", "w1", "phi2", "w2")
+_ANGLE_INPUTS = ("phi1", "phi2")
+_FLANGE_MOTION_INPUTS = ("phi1", "w1", "phi2", "w2")
 _FIXED_PARAMETERS = ("max_torque", "shear_traction", "table")
-_LOOP_SETTINGS = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
+_LOAD_CYCLE_SETTINGS = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """Parameters of the load cycle: hysteresis of one arcmin; the default drive has no hysteresis."""
-_LINEAR_IN_SPEED = {"w2": "parameters"}
+_SPEED_FACTOR_KINDS = {"w2": "parameters"}
 _ERROR_PARAMETERS = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
 _FRICTION_PARAMETERS = (
     "friction_coulomb",
@@ -49,9 +49,9 @@ _SPRING_PARAMETERS = (
 )
 
 
-def _flange_motion(v: Values) -> tuple[float, ...]:
+def _flange_motion(inputs: VariableValues) -> tuple[float, ...]:
     """Motion of both flanges: phi1, w1, phi2, w2."""
-    return tuple(v[name] for name in _FLANGE_MOTION)
+    return tuple(inputs[name] for name in _FLANGE_MOTION_INPUTS)
 
 
 MODELS = (
@@ -111,23 +111,23 @@ MODELS = (
         ramp=LoadRamp(
             "phi2", 1.5e-3, 3e-6, find_range=lambda s, v: (0.0, s.curve.inverse(s.joint.ramp_torque))
         ),
-        loop=LoadCycle("phi2", 1e-3, _LOOP_SETTINGS),
+        load_cycle=LoadCycle("phi2", 1e-3, _LOAD_CYCLE_SETTINGS),
         dependencies={
-            "tau2": _FLANGE_MOTION,
-            "phi_rel": _ANGLES,
-            "tau": _FLANGE_MOTION,
-            "K_WTS": _ANGLES,
-            "K_TS": _ANGLES,
+            "tau2": _FLANGE_MOTION_INPUTS,
+            "phi_rel": _ANGLE_INPUTS,
+            "tau": _FLANGE_MOTION_INPUTS,
+            "K_WTS": _ANGLE_INPUTS,
+            "K_TS": _ANGLE_INPUTS,
             "K_FTS": (),
-            "K_TS_pair": _ANGLES,
-            "p_max": _ANGLES,
-            **{name: _ANGLES for name, _ in STABLE_STEP_OUTPUTS},
+            "K_TS_pair": _ANGLE_INPUTS,
+            "p_max": _ANGLE_INPUTS,
+            **{name: _ANGLE_INPUTS for name, _ in STABLE_STEP_OUTPUTS},
             "phi_error": ("phi1",),
         },
         linear_factors={
             "phi_rel": {"phi2": "constant"},
-            "tau2": _LINEAR_IN_SPEED,
-            "tau": _LINEAR_IN_SPEED,
+            "tau2": _SPEED_FACTOR_KINDS,
+            "tau": _SPEED_FACTOR_KINDS,
         },
         fixed_parameters=_FIXED_PARAMETERS,
     ),
@@ -147,7 +147,7 @@ MODELS = (
         advance=lambda s, v, memory: s.advance_torque(v["tau"], memory),
         validity_limits=(ValidityLimit("tau", lambda j, end, v: (-end[1], end[1]), EXTRAPOLATION_WARNING),),
         ramp=LoadRamp("tau", 5.0, 0.01, find_range=lambda s, v: (0.0, s.joint.ramp_torque)),
-        loop=LoadCycle("tau", 5.0, _LOOP_SETTINGS),
+        load_cycle=LoadCycle("tau", 5.0, _LOAD_CYCLE_SETTINGS),
         dependencies={"K_FTS": ()},
         fixed_parameters=(*_FIXED_PARAMETERS, *_SPRING_PARAMETERS),
     ),

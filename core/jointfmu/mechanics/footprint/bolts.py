@@ -7,10 +7,10 @@ from typing import TypeAlias
 import numpy as np
 
 from ...quantity import Array, check_fields, quantity_field
+from .distribution import NodalField, PositionMeans, PressureDistribution, position_means
 from .plate import EDGE_FACTOR, BoltedPlate
-from .shape import NodalField, PositionMeans, PressureDistribution, position_means
 
-CELLS_ACROSS = 7
+CELLS_ACROSS_FLANGE = 7
 """Number of cells across the flange [1]: 1000 nodes for the default frame; Zhao's mesh has 1019."""
 _CELL_SUBDIVISIONS = 8
 
@@ -45,18 +45,18 @@ class BoltedFrame:
 
     @property
     def area(self) -> float:
-        """Area [m2] of the frame without its holes."""
+        """Area [m2] of the contact: the frame without its holes."""
         frame = 2.0 * self.flange_width * (self.column_spacing + self.row_spacing)
         return frame - 0.25 * np.pi * len(self.bolts) * self.hole_diameter**2
 
     @property
-    def equivalent_rows(self) -> tuple[float, float]:
+    def equivalent_bolt_rows(self) -> tuple[float, float]:
         """Bolts per row N_b [1] and distance L_a [m] of the two rows that carry a moment."""
         return 3.0, self.row_spacing
 
     @property
-    def bolt_means(self) -> PositionMeans:
-        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+    def bolt_position_means(self) -> PositionMeans:
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolt positions, from the centroid of the contact."""
         return position_means(self.bolt_positions)
 
     @property
@@ -77,37 +77,39 @@ class BoltedFrame:
         unit = bolt_pressures(self, areas, points, points) * areas.sum()
         centroid = np.average(points, axis=0, weights=areas)
         return PressureDistribution(
-            share=areas / areas.sum(),
+            area_share=areas / areas.sum(),
             position=points - centroid,
             preload_shape=unit.mean(axis=0),
             moment_shape=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
         )
 
 
-def frame_cells(pattern: BoltedFrame) -> tuple[Array, Array]:
+def frame_cells(bolted_frame: BoltedFrame) -> tuple[Array, Array]:
     """Areas (n) [m2] and centroids (n, 2) [m] of square cells of the frame, without the holes."""
-    size = pattern.flange_width / CELLS_ACROSS
-    half = 0.5 * np.array([pattern.column_spacing, pattern.row_spacing])
-    outer, inner = half + 0.5 * pattern.flange_width, half - 0.5 * pattern.flange_width
+    size = bolted_frame.flange_width / CELLS_ACROSS_FLANGE
+    half = 0.5 * np.array([bolted_frame.column_spacing, bolted_frame.row_spacing])
+    outer, inner = half + 0.5 * bolted_frame.flange_width, half - 0.5 * bolted_frame.flange_width
     count = np.maximum(np.round(2.0 * outer / size).astype(int), 1)
     sub = [(np.arange(n * _CELL_SUBDIVISIONS) + 0.5) / (n * _CELL_SUBDIVISIONS) for n in count]
     x, y = np.meshgrid(*(o * (2.0 * s - 1.0) for o, s in zip(outer, sub, strict=True)), indexing="ij")
     solid = (np.abs(x) > inner[0] * EDGE_FACTOR) | (np.abs(y) > inner[1] * EDGE_FACTOR)
-    for bx, by in pattern.bolts:
-        solid &= np.hypot(x - bx, y - by) > 0.5 * pattern.hole_diameter * EDGE_FACTOR
+    for bx, by in bolted_frame.bolts:
+        solid &= np.hypot(x - bx, y - by) > 0.5 * bolted_frame.hole_diameter * EDGE_FACTOR
     area = 4.0 * outer[0] * outer[1] / solid.size
 
-    def total(values: Array) -> Array:
+    def sum_cell_values(values: Array) -> Array:
         blocks = (values * solid).reshape(count[0], _CELL_SUBDIVISIONS, count[1], _CELL_SUBDIVISIONS)
         return np.asarray(blocks.sum(axis=(1, 3)).ravel())
 
-    points = total(np.ones_like(x))
+    points = sum_cell_values(np.ones_like(x))
     keep = points > 0
-    centroids = np.stack([total(x)[keep], total(y)[keep]], axis=1) / points[keep, None]
+    centroids = np.stack([sum_cell_values(x)[keep], sum_cell_values(y)[keep]], axis=1) / points[keep, None]
     return points[keep] * area, centroids
 
 
-def bolt_pressures(pattern: BoltedFrame, areas: Array, cell_points: Array, evaluation_points: Array) -> Array:
+def bolt_pressures(
+    bolted_frame: BoltedFrame, areas: Array, cell_points: Array, evaluation_points: Array
+) -> Array:
     """Pressure (8, k) [Pa] by 1 N in each of the eight bolts.
 
     areas, cell_points : (n) [m2], (n, 2) [m] of the cells; the pressure of each bolt sums to 1 N over them
@@ -115,8 +117,8 @@ def bolt_pressures(pattern: BoltedFrame, areas: Array, cell_points: Array, evalu
     """
 
     def decay(positions: Array) -> Array:
-        offset = positions[None, :, :] - pattern.bolts[:, None, :]
-        return pattern.pressure_decay(np.hypot(offset[..., 0], offset[..., 1]))
+        offset = positions[None, :, :] - bolted_frame.bolts[:, None, :]
+        return bolted_frame.pressure_decay(np.hypot(offset[..., 0], offset[..., 1]))
 
     return np.asarray(decay(evaluation_points) / np.sum(areas * decay(cell_points), axis=1)[:, None])
 
@@ -126,6 +128,6 @@ PressureSource: TypeAlias = BoltedFrame | BoltedPlate | NodalField
 
 
 @lru_cache(maxsize=8)
-def pressure_distribution(source: PressureSource) -> PressureDistribution:
+def pressure_distribution(pressure_source: PressureSource) -> PressureDistribution:
     """Pressure distribution of a source, cached."""
-    return source.pressure_distribution()
+    return pressure_source.pressure_distribution()

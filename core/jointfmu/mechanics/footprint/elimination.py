@@ -20,16 +20,16 @@ CORRECTION_TOLERANCE = 1e-7
 """Norm over the largest norm [1] for linear dependence in the correction of sums; far above round-off."""
 
 
-def reduce_weights(values: Array, weights: Array) -> Array:
+def reduce_weights(node_values: Array, weights: Array) -> Array:
     """New weights (n), at most d of them nonzero, with the same weighted sums of values (n, d).
 
     weights : (n) >= 0
     """
-    basis, orthonormal = select_independent(values, values.shape[1])
-    rows = matrix_product(values, orthonormal)
+    basis, orthonormal = select_independent(node_values, node_values.shape[1])
+    rows = matrix_product(node_values, orthonormal)
     inverse = _invert_triangle(rows[basis])
     basis_weights, out = weights[basis], np.zeros_like(weights)
-    for node in np.setdiff1d(np.arange(len(values)), basis):
+    for node in np.setdiff1d(np.arange(len(node_values)), basis):
         share = linear_combination(rows[node], inverse)
         leaving, transfer = _find_leaving_node(share, basis_weights, weights[node])
         basis_weights = np.maximum(basis_weights + transfer * share, 0.0)
@@ -78,7 +78,7 @@ def solve_linear(matrix: Array, right_side: Array) -> Array:
 
 
 def weight_changes(weights: Array, functions: Array, residual: Array) -> Array:
-    """Changes (n) of weights (n) that change the weighted sums of functions (m, n) by `residual` (m).
+    """Changes (n) of weights (n) that change the weighted sums of functions (m, n) by amounts `residual` (m).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """
@@ -99,23 +99,28 @@ def _invert_triangle(triangle: Array) -> Array:
     return out
 
 
-def _find_leaving_node(share: Array, basis_weights: Array, weight: float) -> tuple[int | None, float]:
+def _find_leaving_node(
+    weight_change_rates: Array, basis_weights: Array, new_node_weight: float
+) -> tuple[int | None, float]:
     """Ratio test: index of the node that leaves the basis, and weight transferred from the new node.
 
-    share         : change of the basis weights per unit of transferred weight [1]
-    basis_weights : weights of the basis nodes
-    weight        : weight of the new node
+    weight_change_rates : change of the basis weights per unit of transferred weight [1]
+    basis_weights       : weights of the basis nodes
+    new_node_weight     : weight of the new node
 
     The index is None if the basis can take the whole weight. A negative transfer moves weight from the basis
     to the new node.
     """
     ratio = np.divide(
-        basis_weights, np.abs(share), out=np.full_like(basis_weights, np.inf), where=share != 0.0
+        basis_weights,
+        np.abs(weight_change_rates),
+        out=np.full_like(basis_weights, np.inf),
+        where=weight_change_rates != 0.0,
     )
-    decreasing = int(np.argmin(np.where(share < 0.0, ratio, np.inf)))
-    if share[decreasing] >= 0.0 or ratio[decreasing] >= weight:
-        return None, weight
-    increasing = int(np.argmin(np.where(share > 0.0, ratio, np.inf)))
-    if share[increasing] > -share[decreasing]:  # larger pivot: less round-off
+    decreasing = int(np.argmin(np.where(weight_change_rates < 0.0, ratio, np.inf)))
+    if weight_change_rates[decreasing] >= 0.0 or ratio[decreasing] >= new_node_weight:
+        return None, new_node_weight
+    increasing = int(np.argmin(np.where(weight_change_rates > 0.0, ratio, np.inf)))
+    if weight_change_rates[increasing] > -weight_change_rates[decreasing]:  # larger pivot: less round-off
         return increasing, -float(ratio[increasing])
     return decreasing, float(ratio[decreasing])

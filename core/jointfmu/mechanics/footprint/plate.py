@@ -5,19 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...quantity import Array, check_fields, quantity_field, series_field
-from .shape import PositionMeans, PressureDistribution, moment_pressure, position_means
+from .distribution import PositionMeans, PressureDistribution, moment_pressure, position_means
 
 MIN_CELLS_PER_RADIUS = 5
 """Smallest number of cells [1] from the axis of a bolt to the edge R of its pressure."""
-COARSE_CELLS = 8
+COARSE_CELL_COUNT = 8
 """Number of cells [1] along the longer side of the plate where there is no pressure."""
 _HOLE_SUBDIVISIONS = 8
 """Subdivisions of the side of a cell [1] for the area that a hole removes."""
 _ONE_ROW_TOLERANCE = 1e-6
-"""Extent of the bolts along y over the width of the plate [1] below which they count as one row."""
+"""Extent of the bolt positions along y over the width of the plate [1], below which they are one row."""
 EDGE_FACTOR = 1.0 + 1e-9
 """Relative tolerance of comparisons with an edge: points on an edge then do not depend on round-off [1]."""
-_MAX_ITERATIONS, _MOMENT_TOLERANCE = 50, 1e-13
+_MAX_ITERATIONS, _MOMENT_ARM_TOLERANCE = 50, 1e-13
 """Largest number of Newton iterations [1], and tolerance of the moment of a bolt's pressure over R [1]."""
 
 
@@ -90,8 +90,8 @@ class BoltedPlate:
         return np.asarray(-0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolts.sum(axis=0))
 
     @property
-    def bolt_means(self) -> PositionMeans:
-        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+    def bolt_position_means(self) -> PositionMeans:
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolt positions, from the centroid of the contact."""
         return position_means(self.bolt_positions)
 
     @property
@@ -100,21 +100,21 @@ class BoltedPlate:
         return np.asarray(self.bolts - self.centroid)
 
     @property
-    def equivalent_rows(self) -> tuple[float, float]:
+    def equivalent_bolt_rows(self) -> tuple[float, float]:
         """Bolts per row N_b [1] and distance L_a [m] of two rows that are equivalent for a moment about x.
 
-        See `equivalent_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
+        See `equivalent_bolt_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
         moment at which the contact starts to open at its edge.
         """
         if is_one_row(self):
-            return 1.0, _one_row_length(self, *bolt_pressures(self))
-        return equivalent_rows(self.bolts[:, 1])
+            return 1.0, _one_row_equivalent_distance(self, *bolt_pressures(self))
+        return equivalent_bolt_rows(self.bolts[:, 1])
 
     @property
     def coarse_cell_counts(self) -> Array:
         """Number of cells (2) [1] along x and y before refinement."""
         plan = np.array([self.length, self.width])
-        return np.asarray(np.maximum(np.ceil(COARSE_CELLS * plan / np.max(plan)), 2.0))
+        return np.asarray(np.maximum(np.ceil(COARSE_CELL_COUNT * plan / np.max(plan)), 2.0))
 
     def pressure_distribution(self) -> PressureDistribution:
         """Pressure distribution at the cells of the plate.
@@ -126,11 +126,11 @@ class BoltedPlate:
         share, position, unit = bolt_pressures(self)
         equal, y = unit.mean(axis=0), self.bolts[:, 1]
         if is_one_row(self):
-            distance = _one_row_length(self, share, position, unit)
+            distance = _one_row_equivalent_distance(self, share, position, unit)
             return PressureDistribution(
                 share, position, equal, distance * moment_pressure(share, position[:, 1], equal)
             )
-        distances, distance = y - y.mean(), equivalent_rows(y)[1]
+        distances, distance = y - y.mean(), equivalent_bolt_rows(y)[1]
         return PressureDistribution(
             share, position, equal, distance / (distances @ distances) * (distances @ unit)
         )
@@ -160,14 +160,14 @@ def is_one_row(plate: BoltedPlate) -> bool:
     return bool(np.ptp(plate.bolts[:, 1]) <= _ONE_ROW_TOLERANCE * plate.width)
 
 
-def equivalent_rows(y: Array) -> tuple[float, float]:
+def equivalent_bolt_rows(bolt_y: Array) -> tuple[float, float]:
     """Equivalent pair of bolt rows: bolts per row N_b [1] and distance L_a [m], for bolts at y (n) [m].
 
     A moment changes the force of a bolt in the equivalent rows by as much as that of the outermost bolts. N_b
     is the number of outermost bolts, L_a = sum(y^2)/(N_b max|y|), y from the centre. For two equal rows L_a
     is their distance.
     """
-    distances = y - np.mean(y)
+    distances = bolt_y - np.mean(bolt_y)
     max_distance = float(np.max(np.abs(distances)))
     count = min(
         np.sum(np.isclose(side * distances, max_distance, rtol=1e-6)) or np.inf for side in (1.0, -1.0)
@@ -180,11 +180,9 @@ def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
 
     Cells within the disc of a bolt are halved in both directions until they are small compared with R.
     """
-    reach, plan, count = (
-        plate.pressure_radius,
-        np.array([plate.length, plate.width]),
-        plate.coarse_cell_counts,
-    )
+    reach = plate.pressure_radius
+    plan = np.array([plate.length, plate.width])
+    count = plate.coarse_cell_counts
     index = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), -1).reshape(-1, 2)
     side = plan / count
     middle = (index + 0.5) * side - 0.5 * plan
@@ -200,21 +198,21 @@ def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
     return _remove_holes(plate, np.concatenate(done_middle), np.concatenate(done_side))
 
 
-def _bolt_distance(plate: BoltedPlate, centres: Array, side: Array) -> Array:
+def _bolt_distance(plate: BoltedPlate, centres: Array, cell_sides: Array) -> Array:
     """Distance (n) [m] from cells, with centres (n, 2) and sides (2) [m], to the nearest bolt axis."""
-    gap = np.maximum(np.abs(centres[:, None, :] - plate.bolts) - 0.5 * side, 0.0)
+    gap = np.maximum(np.abs(centres[:, None, :] - plate.bolts) - 0.5 * cell_sides, 0.0)
     return np.asarray(np.min(np.hypot(gap[..., 0], gap[..., 1]), axis=1))
 
 
-def _remove_holes(plate: BoltedPlate, centres: Array, side: Array) -> tuple[Array, Array]:
+def _remove_holes(plate: BoltedPlate, centres: Array, cell_sides: Array) -> tuple[Array, Array]:
     """Areas [m2] and centroids [m] of cells without the holes; cells inside a hole are omitted."""
     positions = (np.arange(_HOLE_SUBDIVISIONS) + 0.5) / _HOLE_SUBDIVISIONS - 0.5
     grid = np.stack(np.meshgrid(positions, positions, indexing="ij"), -1).reshape(-1, 2)
-    areas, centroids = np.prod(side, axis=1), centres.copy()
-    reach = 0.5 * np.hypot(*side.T) + 0.5 * plate.hole_diameter
+    areas, centroids = np.prod(cell_sides, axis=1), centres.copy()
+    reach = 0.5 * np.hypot(*cell_sides.T) + 0.5 * plate.hole_diameter
     for bolt in plate.bolts:
         affected = np.flatnonzero(np.hypot(*(centres - bolt).T) < reach)
-        points = centres[affected, None, :] + grid * side[affected, None, :]
+        points = centres[affected, None, :] + grid * cell_sides[affected, None, :]
         solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE_FACTOR
         solid_share = solid.mean(axis=1)
         areas[affected] *= solid_share
@@ -244,29 +242,31 @@ def bolt_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
     return share, points - share @ points, unit * areas.sum()
 
 
-def _one_row_length(plate: BoltedPlate, share: Array, position: Array, unit: Array) -> float:
-    """Length L_a [m] of bolts in one row, see `BoltedPlate.rows`."""
-    equal = unit.mean(axis=0)
-    distances = position[:, 1] - share @ (equal * position[:, 1])
+def _one_row_equivalent_distance(
+    plate: BoltedPlate, area_shares: Array, cell_positions: Array, unit_pressures: Array
+) -> float:
+    """Equivalent distance L_a [m] for bolts in one row, see `BoltedPlate.equivalent_bolt_rows`."""
+    equal = unit_pressures.mean(axis=0)
+    distances = cell_positions[:, 1] - area_shares @ (equal * cell_positions[:, 1])
     reach = np.max(np.abs(distances[equal > 0.0]))
-    return float(len(plate.x) * (share @ (equal * distances**2)) / reach)
+    return float(len(plate.x) * (area_shares @ (equal * distances**2)) / reach)
 
 
-def _balanced_pressure(plate: BoltedPlate, areas: Array, offset: Array) -> Array:
+def _balanced_pressure(plate: BoltedPlate, areas: Array, axis_offsets: Array) -> Array:
     """Pressure (n) [Pa] of a bolt with 1 N at offsets (n, 2) [m] from its axis, without a moment about it.
 
     Newton's method for the two coefficients of the exponential correction; the logarithm of the total force
     is a convex function of them.
     """
-    force = areas * pressure_decay(plate, np.hypot(*offset.T))
+    force = areas * pressure_decay(plate, np.hypot(*axis_offsets.T))
     is_loaded = force > 0.0
-    weight, relative = force[is_loaded], offset[is_loaded] / plate.pressure_radius
+    weight, relative = force[is_loaded], axis_offsets[is_loaded] / plate.pressure_radius
     factor = np.zeros(2)
     for _ in range(_MAX_ITERATIONS):
         share = weight * np.exp(relative @ factor)
         share /= share.sum()
         mean = share @ relative
-        if np.max(np.abs(mean)) < _MOMENT_TOLERANCE:
+        if np.max(np.abs(mean)) < _MOMENT_ARM_TOLERANCE:
             break
         factor -= np.linalg.solve((relative - mean).T @ (share[:, None] * (relative - mean)), mean)
     result = np.zeros_like(areas)

@@ -11,38 +11,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...quantity import Array
-from .shape import PressureDistribution
+from .distribution import PressureDistribution
 
 BINARY_DIGITS = 20
 """Binary digits to which numbers are rounded before comparisons [1]. 2^-20 = 1e-6 is far above differences
 between processors, and far below the accuracy of a choice of points."""
 ROUNDING_OFFSET = 0.5 - 0.01 * np.sqrt(2.0)
 """Number added before truncation to an integer [1]: rounds up slightly above half a step."""
-BLOCK_SIZE = 22
+GRAM_BLOCK_SIZE = 22
 """Block size [1] for symmetric products: nearly half of the matrix is copied instead of computed."""
-ZERO_RATIO = 2.0**-46
+ROUND_OFF_RATIO = 2.0**-46
 """Ratio to the largest number [1] below which a number counts as zero: round-off."""
 
 
-def round_distribution(shape: PressureDistribution, digits: int = BINARY_DIGITS) -> PressureDistribution:
+def round_distribution(
+    distribution: PressureDistribution, binary_digits: int = BINARY_DIGITS
+) -> PressureDistribution:
     """Round a pressure distribution to binary digits: each share to its own, other numbers to the largest's.
 
     Numbers are rounded up from slightly above half a step, where no short fraction lies. Rounding is
     symmetric about zero, so a symmetric distribution stays symmetric.
     """
-    mantissa, exponent = np.frexp(shape.share)
-    share = np.ldexp(_round_to_steps(mantissa, digits), exponent)
+    mantissa, exponent = np.frexp(distribution.area_share)
+    share = np.ldexp(_round_to_steps(mantissa, binary_digits), exponent)
     rounded_values = (
-        round_to_digits(values, digits)
-        for values in (shape.position, shape.preload_shape, shape.moment_shape)
+        round_to_digits(values, binary_digits)
+        for values in (distribution.position, distribution.preload_shape, distribution.moment_shape)
     )
     return PressureDistribution(share, *rounded_values)
 
 
-def round_to_digits(values: Array, digits: int = BINARY_DIGITS) -> Array:
+def round_to_digits(values: Array, binary_digits: int = BINARY_DIGITS) -> Array:
     """Round values to a number of binary digits of the largest one."""
     exponent = np.frexp(np.max(np.abs(values)))[1]
-    return np.asarray(np.ldexp(_round_to_steps(np.ldexp(values, -exponent), digits), exponent))
+    return np.asarray(np.ldexp(_round_to_steps(np.ldexp(values, -exponent), binary_digits), exponent))
 
 
 def rank_descending(values: Array) -> NDArray[np.intp]:
@@ -50,20 +52,25 @@ def rank_descending(values: Array) -> NDArray[np.intp]:
     return np.argsort(np.argsort(-round_to_digits(values), kind="stable"), kind="stable")
 
 
-def _round_to_steps(values: Array, digits: int) -> Array:
+def _round_to_steps(values: Array, binary_digits: int) -> Array:
     """Round values of size up to 1 to multiples of 2^-digits."""
-    sizes = np.floor(np.ldexp(np.abs(values), digits) + ROUNDING_OFFSET)
-    return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -digits))
+    sizes = np.floor(np.ldexp(np.abs(values), binary_digits) + ROUNDING_OFFSET)
+    return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -binary_digits))
 
 
-def clear_round_off(shape: PressureDistribution) -> PressureDistribution:
-    """Replace round-off in a pressure distribution by exact zeros, see ZERO_RATIO."""
+def clear_round_off(distribution: PressureDistribution) -> PressureDistribution:
+    """Replace round-off in a pressure distribution by exact zeros, see ROUND_OFF_RATIO."""
 
-    def zeros(values: Array) -> Array:
-        return np.where(np.abs(values) > ZERO_RATIO * np.max(np.abs(values)), values, 0.0)
+    def clear_small_values(values: Array) -> Array:
+        return np.where(np.abs(values) > ROUND_OFF_RATIO * np.max(np.abs(values)), values, 0.0)
 
-    position = np.column_stack([zeros(values) for values in shape.position.T])
-    return PressureDistribution(shape.share, position, zeros(shape.preload_shape), zeros(shape.moment_shape))
+    position = np.column_stack([clear_small_values(values) for values in distribution.position.T])
+    return PressureDistribution(
+        distribution.area_share,
+        position,
+        clear_small_values(distribution.preload_shape),
+        clear_small_values(distribution.moment_shape),
+    )
 
 
 def weighted_sums(rows: Array, weights: Array) -> Array:
@@ -87,8 +94,8 @@ def matrix_product(a: Array, b: Array) -> Array:
 def gram_matrix(rows: Array) -> Array:
     """Symmetric matrix product a a^T (m, m) of rows a (m, n)."""
     columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
-    for first in range(0, len(rows), BLOCK_SIZE):
-        last = first + BLOCK_SIZE
+    for first in range(0, len(rows), GRAM_BLOCK_SIZE):
+        last = first + GRAM_BLOCK_SIZE
         for out_row, row in zip(out[first:last], rows[first:last], strict=True):
             out_row[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
         out[:first, first:last] = out[first:last, :first].T
@@ -105,19 +112,19 @@ def successive_powers(base: float, count: int) -> Array:
     return np.multiply.accumulate(np.full(count, base))
 
 
-def binary_root(values: Array, power: Array) -> Array:
-    """Roots values^(1/power) (m, n) of values >= 0 (m, n) or (m, 1); power (m, 1) of 2, 4, 8, ... 64."""
-    return _apply_repeatedly(np.sqrt, values, power)
+def binary_root(values: Array, exponent: Array) -> Array:
+    """Roots values^(1/exponent) (m, n) of values >= 0 (m, n) or (m, 1); exponent (m, 1) of 2, 4, ... 64."""
+    return _apply_repeatedly(np.sqrt, values, exponent)
 
 
-def binary_power(values: Array, power: Array) -> Array:
-    """Powers values^power (m, n) of values (m, n); power (m, 1) of 2, 4, 8, ... 64."""
-    return _apply_repeatedly(np.square, values, power)
+def binary_power(values: Array, exponent: Array) -> Array:
+    """Powers values^exponent (m, n) of values (m, n); exponent (m, 1) of 2, 4, 8, ... 64."""
+    return _apply_repeatedly(np.square, values, exponent)
 
 
-def _apply_repeatedly(function: np.ufunc, values: Array, power: Array) -> Array:
-    """Apply a function to values repeatedly: log2(power) times. Returns an array (m, n)."""
-    out = np.broadcast_to(values, np.broadcast_shapes(values.shape, power.shape)).copy()
+def _apply_repeatedly(function: np.ufunc, values: Array, exponent: Array) -> Array:
+    """Apply a function to values log2(exponent) times, one after the other. Returns an array (m, n)."""
+    out = np.broadcast_to(values, np.broadcast_shapes(values.shape, exponent.shape)).copy()
     for k in range(6):
-        function(out, out=out, where=power > 2.0**k)
+        function(out, out=out, where=exponent > 2.0**k)
     return out

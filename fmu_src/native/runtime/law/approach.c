@@ -114,7 +114,7 @@ static bool add_piece(ApproachTable *approach, Curve *curve, const SpotDistribut
 bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c, int steps,
                        Text *reason)
 {
-    const double first = spots->stiffness_onset + portable_log(CLOSING_RATIO);
+    const double first = spots->stiffness_onset + portable_log(CLOSING_AREA_RATIO);
     double last = first, slope, ends[N_LAW_REGIME_ENDS + 2], y[N_LAW_TOTALS], x = 0.0;
     if (!solve_largest_spot(spots, c, spots->hardness, &last, &slope, reason))
         return false;

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from jointfmu_fmu_src.joint_parts import Parts, equations
+from jointfmu_fmu_src.joint_parts import FmuParts, load_equations
 from jointfmu_fmu_src.joint_parts.terminals import TRANSLATIONAL, Terminal
 
 WIRES = {"s": ("s_rel", "signal"), "f": ("f", "outflow")}
 FLANGES = (Terminal("flange", TRANSLATIONAL, "b", "side 2, side 1 fixed", WIRES),)
-PARTS = Parts(folder=Path(__file__).parent, native=equations, terminals={"ToySpring": FLANGES})
+FMU_PARTS = FmuParts(folder=Path(__file__).parent, native=load_equations, terminals={"ToySpring": FLANGES})

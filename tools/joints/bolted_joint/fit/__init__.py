@@ -1,6 +1,6 @@
 """Fit procedures of the bolted joint: stiffness over preload, and loops in shear."""
 
-from ....fitting.procedure import DAMPING_RATIO, Procedure, lazy_fit
+from ....fitting.procedure import DAMPING_RATIO_OPTION, Procedure, lazy_fit
 from ....joint_parts import Option
 
 SERIES_OPTION = Option(
@@ -28,7 +28,7 @@ FITS = (
         name="loop",
         description="loops, decays or responses in shear to the bolted joint",
         takes_file=True,
-        column="displacement",
+        identifying_column="displacement",
         options=(
             Option(
                 "preload", "of each bolt in the test [N] (default: of the start's inputs)", is_number=True
@@ -36,7 +36,7 @@ FITS = (
             Option(
                 "modal_mass", "mass that vibrates on the joint [kg], for decays and responses", is_number=True
             ),
-            DAMPING_RATIO,
+            DAMPING_RATIO_OPTION,
             SERIES_OPTION,
         ),
         run=lazy_fit(f"{__name__}.loop"),

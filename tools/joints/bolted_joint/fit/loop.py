@@ -21,9 +21,8 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.progress import set_step
@@ -31,12 +30,12 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import unit_sizes
 
-from ....fitting import memory
+from ....fitting import hysteresis_fit
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw
-from ....fitting.least_squares import Exchange, Unknown
+from ....fitting.least_squares import Unknown, UnknownExchange
 from ....fitting.measurement import ColumnNames, Measurement, read_measurement
-from ....fitting.outcome import Facts, FitResult, fitted_parameters, unknowns
+from ....fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
 from .preload import FITTED_PARAMETERS as INTERFACE
 from .preload import SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
 
@@ -47,7 +46,7 @@ vibrations, which hardly distinguish it from the level."""
 START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
 """{parameter: further start values of the search}, in addition to the values of the start file. The start
 value of the level follows from the data."""
-EXTRA_UNKNOWNS = (memory.DAMPING, SERIES_STIFFNESS)
+NON_JOINT_UNKNOWNS = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS)
 """Unknowns that are not parameters of the joint."""
 SERIES_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
@@ -73,7 +72,7 @@ def first_loading(
     equilibrium with elastic sides.
     """
     curve, approach, weight = _preloaded_interface(joint, preload)
-    kappa, mu = float(joint.shear_ratio()), joint.mu
+    kappa, mu = float(joint.shear_stiffness_ratio()), joint.mu
     separation = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(
         0.0, 1.0, _TABLE_STEPS + 1
     ) ** 2
@@ -98,11 +97,11 @@ def first_loading(
     def friction(motion: Array) -> Array:
         return np.where(motion < end, table(np.minimum(motion, end)), max_force)
 
-    def work(motion: Array) -> Array:
+    def friction_work(motion: Array) -> Array:
         inside = np.minimum(motion, end)
         return np.asarray(energy(inside) + max_force * (motion - inside))
 
-    return HysteresisLaw(friction, work), {
+    return HysteresisLaw(friction, friction_work), {
         "friction_limit": (limit, "N", "mu times the normal force"),
         "shear_stiffness": (float(tangent_stiffness[0]), "N/m", "K_xx of the joint at rest: the level"),
         "exponent": (
@@ -137,8 +136,8 @@ def _follow_path(
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], and history variables at the end."""
     outputs = np.empty((2, displacement.size))
     for i, x in enumerate(displacement.tolist()):
-        position = RelativeDisplacement(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
-        out, history = spring.advance(preload, 0.0, position, (0.0,) * 6, history)
+        inputs = JointInputs(preload, 0.0, np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        out, history = spring.advance(inputs, history)
         outputs[:, i] = -out["f_x"], out["K_xx"]
     return outputs[0], outputs[1], history
 
@@ -150,19 +149,19 @@ def _masing_deviation(joint: Bolted, preload: float, loops: Loops, law: Hysteres
     loading. After gross slip the deviation is about half a percent of the friction force.
     """
     spring, deviation = BoltedJointSpring.of(joint), np.empty_like(loops.force)
-    for run in range(loops.run[-1] + 1):
-        branches = np.unique(loops.branch[loops.run == run])
-        middle = 0.5 * (np.max(loops.start[branches]) + np.min(loops.start[branches]))
-        first = np.linspace(0.0, loops.start[branches[0]] - middle, _ELASTIC_TABLE_STEPS + 1)
-        memory = _follow_path(spring, preload, first, spring.initial_history())[2]
+    for run in range(loops.run_index[-1] + 1):
+        branches = np.unique(loops.branch_index[loops.run_index == run])
+        middle = 0.5 * (np.max(loops.start_motion[branches]) + np.min(loops.start_motion[branches]))
+        first = np.linspace(0.0, loops.start_motion[branches[0]] - middle, _ELASTIC_TABLE_STEPS + 1)
+        hysteresis_fit = _follow_path(spring, preload, first, spring.initial_history())[2]
         for k in branches:
-            start, motion = loops.start[k], loops.motion[loops.branch == k]
+            start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
             distance = np.abs(motion - start)
             end = motion[np.argmax(distance)]
             path = np.linspace(start, end, _ELASTIC_TABLE_STEPS + 1)
-            force, _, memory = _follow_path(spring, preload, path - middle, memory)
+            force, _, hysteresis_fit = _follow_path(spring, preload, path - middle, hysteresis_fit)
             difference = force - force[0] - law.force_change(path, np.full_like(path, start))
-            deviation[loops.branch == k] = np.interp(distance, np.abs(path - start), difference)
+            deviation[loops.branch_index == k] = np.interp(distance, np.abs(path - start), difference)
     return deviation
 
 
@@ -174,7 +173,7 @@ def rest_stiffness(joint: Bolted, preload: float) -> float:
     curve, approach, weight = _preloaded_interface(joint, preload)
     if joint.elastic:
         return float(joint_stiffness(joint, np.array([preload]), "tangential")[0])
-    return float(joint.shear_ratio() * (curve.derivatives(approach, 1)[1] @ weight))
+    return float(joint.shear_stiffness_ratio() * (curve.derivatives(approach, 1)[1] @ weight))
 
 
 def _preloaded_interface(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
@@ -189,7 +188,7 @@ def _preloaded_interface(joint: Bolted, preload: float) -> tuple[Curve, Array, A
             f"preload = {preload:g} N per bolt presses with {max_pressure:.3g} Pa, allowed is up to "
             f"{curve.end[1]:.3g} Pa"
         )
-    return curve, curve.inverse(pressure), joint.A_0 * shape.share
+    return curve, curve.inverse(pressure), joint.A_0 * shape.area_share
 
 
 def fit(
@@ -243,7 +242,7 @@ def fit(
         set_step("tries " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))
         return first_loading(make_joint(values), force, get_series_stiffness(values), reach)[0]
 
-    model = memory.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
+    model = hysteresis_fit.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
     measured_rest = data.rest_stiffness(modal_mass)
 
     def total_rest_stiffness(values: Mapping[str, float]) -> float:
@@ -253,15 +252,17 @@ def fit(
         )
 
     if data.kind == "loops":
-        COLUMN_NAMES.check_level(data.path, measured_rest / total_rest_stiffness({}), data.units, file)
+        COLUMN_NAMES.check_stiffness_ratio(
+            data.path, measured_rest / total_rest_stiffness({}), data.stated_units, file
+        )
     if series_stiffness is not None and SERIES_STIFFNESS not in names and series_stiffness <= measured_rest:
         raise InputRefusal(
             f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): the data "
             "show joint and structure together as that stiff at rest",
             SERIES_STIFFNESS,
         )
-    unknown_list = unknowns(file, [name for name in names if name not in EXTRA_UNKNOWNS], {})
-    unknown_list += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
+    unknown_list = make_unknowns(file, [name for name in names if name not in NON_JOINT_UNKNOWNS], {})
+    unknown_list += [hysteresis_fit.DAMPING_UNKNOWN] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
         Unknown(SERIES_STIFFNESS, "N/m", SERIES_START_RATIOS[0] * measured_rest, 0.0, np.inf)
     ] * (SERIES_STIFFNESS in names)
@@ -276,7 +277,7 @@ def fit(
         off = _masing_deviation(make_joint(values), force, data.data, make_law(values))
         return replace(data, data=replace(data.data, force=data.data.force - off))
 
-    solution, scale, data = memory.fit_measurement(
+    solution, scale, data = hysteresis_fit.fit_measurement(
         data,
         unknown_list,
         model,
@@ -301,15 +302,15 @@ def fit(
     return FitResult(
         result,
         solution,
-        facts | memory.facts(data, solution, law, scale),
-        memory.pictures(data, model, solution.values, scale),
-        notes=memory.notes(data, solution),
+        facts | hysteresis_fit.summarize_fit(data, solution, law, scale),
+        hysteresis_fit.make_pictures(data, model, solution.values, scale),
+        notes=hysteresis_fit.misfit_notes(data, solution),
     )
 
 
 def _level_exchange(
     file: ParameterFile, names: Sequence[str], compute_rest_stiffness: Callable[[Mapping[str, float]], float]
-) -> Exchange | None:
+) -> UnknownExchange | None:
     """Exchange of unknowns: the stiffness at rest [N/m] for the parameter that sets the level.
 
     compute_rest_stiffness : {name: value} -> stiffness at rest [N/m]
@@ -319,9 +320,9 @@ def _level_exchange(
     _, level, *_ = FITTED_PARAMETERS[file.law]
     if level not in names:
         return None
-    return Exchange(level, compute_rest_stiffness, "N/m", "stiffness at rest")
+    return UnknownExchange(level, compute_rest_stiffness, "N/m", "stiffness at rest")
 
 
 def _joint_parameters(values: Mapping[str, float]) -> dict[str, float]:
     """Select the parameters of the joint: all values except the other unknowns."""
-    return {name: value for name, value in values.items() if name not in EXTRA_UNKNOWNS}
+    return {name: value for name, value in values.items() if name not in NON_JOINT_UNKNOWNS}

@@ -22,18 +22,19 @@ import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
+from jointfmu.joints.bolted_joint.equilibrium import condense_stiffness
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
-from jointfmu.mechanics.footprint.shape import MergedDistribution
+from jointfmu.mechanics.footprint.distribution import MergedDistribution
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
 from .... import columns
 from ....fitting.least_squares import Solution, Unknown, select_start, solve
-from ....fitting.outcome import Facts, FitResult, Picture, correlation_note, fitted_parameters, unknowns
+from ....fitting.outcome import Facts, FitResult, Picture, correlation_note, fitted_parameters, make_unknowns
 
 SERIES_STIFFNESS = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
@@ -65,7 +66,7 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     if joint.elastic:
         spring, axis = BoltedJointSpring.of(joint), 2 if direction == "normal" else 0
         return np.array(
-            [spring.assembly.condense(spring.tangent_stiffness(P))[axis, axis] for P in preload.tolist()]
+            [condense_stiffness(spring.tangent_stiffness(P))[axis, axis] for P in preload.tolist()]
         )
     shape = merged_pressure_shape(joint.pattern)
     p = preload_pressure(joint, shape, preload, 0.0)
@@ -73,17 +74,17 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     k, _ = stiffness_curve(joint, np.maximum(p, curve.closing_end_load))
     closing = p < curve.closing_end_load  # below this pressure the curve, not the law, defines the stiffness
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
-    normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
+    normal = joint.A_0 * np.sum(shape.area_share * k, axis=-1)
     if direction == "normal":
         pulling = np.where(working_preload(joint, preload) > 0.0, 1.0, AT_LIFT_OFF)
         return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness * pulling)
-    return np.asarray(joint.shear_ratio() * normal)
+    return np.asarray(joint.shear_stiffness_ratio() * normal)
 
 
 @cache
 def merged_pressure_shape(pattern: PressureSource) -> MergedDistribution:
     """Pressure shape without a moment, with nodes of equal pressure merged."""
-    return pressure_distribution(pattern).merge_nodes(with_moment=False)
+    return pressure_distribution(pattern).merge_nodes(keeps_moment=False)
 
 
 def fit(
@@ -110,8 +111,8 @@ def fit(
     Raises RuntimeError if the fit does not converge.
     """
     curve = _read_curve(Path(path))
-    file = _with_modal_mass(start or load_default("bolted_joint"), curve, modal_mass, series_stiffness)
-    is_mass_fitted = curve.quantity == "frequency" and modal_mass is None
+    file = _set_modal_mass(start or load_default("bolted_joint"), curve, modal_mass, series_stiffness)
+    is_mass_fitted = curve.quantity_name == "frequency" and modal_mass is None
     level, *exponent = FITTED_PARAMETERS[file.law]
     names = list(
         fitted_names if fitted_names is not None else (*exponent, "mass" if is_mass_fitted else level)
@@ -123,23 +124,25 @@ def fit(
         return curve.predict(joint, values.get(SERIES_STIFFNESS, series_stiffness), direction)
 
     def logarithmic_error(values: Mapping[str, float]) -> Array:
-        return np.log(predict(values) / curve.value)
+        return np.log(predict(values) / curve.measured_values)
 
     solution = solve(_find_start(file, names, curve, logarithmic_error), logarithmic_error)
     own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS}
-    span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.quantity}"
+    span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.quantity_name}"
     result = fitted_parameters(file, own, "calibration", Path(path).name, span)
     stiffness = solution.values.get(SERIES_STIFFNESS, series_stiffness)
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
-    finer = replace(curve, preload=grid, value=np.ones_like(grid))
-    unit, size = ("Hz", 1.0) if curve.quantity == "frequency" else ("N/um", conversion_factor("N/m", "N/um"))
+    finer = replace(curve, preload=grid, measured_values=np.ones_like(grid))
+    unit, size = (
+        ("Hz", 1.0) if curve.quantity_name == "frequency" else ("N/um", conversion_factor("N/m", "N/um"))
+    )
     kN = COLUMN_UNITS["preload"]["kN"]
     picture = Picture(
-        x=curve.preload / kN,
-        y=curve.value * size,
+        data_x=curve.preload / kN,
+        data_y=curve.measured_values * size,
         misfit=100.0 * np.expm1(-solution.residuals),
-        line=(grid / kN, finer.predict(result.values, stiffness, direction) * size),
-        labels=("preload of each bolt [kN]", f"{curve.quantity} [{unit}]", "data / law - 1 [%]"),
+        law_curve=(grid / kN, finer.predict(result.values, stiffness, direction) * size),
+        axis_labels=("preload of each bolt [kN]", f"{curve.quantity_name} [{unit}]", "data / law - 1 [%]"),
     )
     notes = correlation_note(solution.residuals, "curve")
     if is_mass_fitted and "mass" in names and level not in names:
@@ -159,15 +162,15 @@ class PreloadCurve:
     measured_values : (n) measured values
     """
 
-    quantity: str
+    quantity_name: str
     preload: Array
-    value: Array
+    measured_values: Array
 
     def predict(self, joint: Bolted, series_stiffness: float | None, direction: str) -> Array:
         """Predict the quantity (n) for a joint, with an optional stiffness [N/m] in series."""
         K = joint_stiffness(joint, self.preload, direction)
         K = K if series_stiffness is None else 1.0 / (1.0 / K + 1.0 / series_stiffness)
-        return K if self.quantity == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
+        return K if self.quantity_name == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
 
 
 def _read_curve(path: Path) -> PreloadCurve:
@@ -194,7 +197,7 @@ def _read_curve(path: Path) -> PreloadCurve:
     return PreloadCurve(quantities[0], preload, value)
 
 
-def _with_modal_mass(
+def _set_modal_mass(
     start: ParameterFile, curve: PreloadCurve, modal_mass: float | None, series_stiffness: float | None
 ) -> ParameterFile:
     """Start parameters with the modal mass [kg] of the test.
@@ -209,7 +212,7 @@ def _with_modal_mass(
             raise ValueError(f"{name} = {value:g} {unit} is outside (0, inf)")
     if modal_mass is None:
         return start
-    if curve.quantity == "stiffness":
+    if curve.quantity_name == "stiffness":
         raise ValueError(
             f"modal mass = {modal_mass:g} kg is stated, but the file has stiffnesses, no frequencies"
         )
@@ -223,11 +226,11 @@ def _find_start(
     logarithmic_error: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
     """Unknowns with the best of several start values."""
-    parameters = unknowns(file, [name for name in names if name != SERIES_STIFFNESS], {})
+    parameters = make_unknowns(file, [name for name in names if name != SERIES_STIFFNESS], {})
     level = (
-        curve.value[-1]
-        if curve.quantity == "stiffness"
-        else (2.0 * np.pi * curve.value[-1]) ** 2 * file.values.mass
+        curve.measured_values[-1]
+        if curve.quantity_name == "stiffness"
+        else (2.0 * np.pi * curve.measured_values[-1]) ** 2 * file.values.mass
     )
     parameters += [Unknown(SERIES_STIFFNESS, "N/m", 3.0 * float(level), 0.0, np.inf)] * (
         SERIES_STIFFNESS in names
@@ -245,10 +248,10 @@ def _find_start(
 
 
 def _facts(curve: PreloadCurve, solution: Solution) -> Facts:
-    power = float(np.polyfit(np.log(curve.preload), np.log(curve.value), 1)[0])
+    power = float(np.polyfit(np.log(curve.preload), np.log(curve.measured_values), 1)[0])
     return {
         "points": (float(curve.preload.size), "1", "points used"),
-        "power": (power, "1", f"of the preload with which the {curve.quantity} grows"),
+        "power": (power, "1", f"of the preload with which the {curve.quantity_name} grows"),
         "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
         "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
     }

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
-from jointfmu.mechanics.footprint.reproducible import ZERO_RATIO
+from jointfmu.mechanics.footprint.reproducible import ROUND_OFF_RATIO
 from jointfmu.mechanics.sliders import UNIFORM_DEVIATION, Foundation
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
@@ -19,10 +19,10 @@ from ....modelica.records import (
     ModelicaRecord,
     WorkingPoint,
     decimate_curve,
-    format_computed,
-    format_given,
+    format_computed_values,
     format_matrix,
     format_number,
+    format_parameter_values,
     make_identifier,
 )
 
@@ -30,7 +30,7 @@ DAMPING_TOLERANCE = 1e-3
 """Largest relative error [1] of the linearly interpolated dissipation factor."""
 MAX_FORCE_RATIO = 10.0
 """Total contact force at the end of the table over the one at tightening [1]."""
-TIGHTENED_PAIRS, FIRST_SLIP_RATIO = 12, 2e-3
+PRELOADED_PAIR_COUNT, FIRST_SLIP_RATIO = 12, 2e-3
 """Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
 slip [1]. The slip displacements of the pairs form a geometric sequence."""
 COMPRESSION_RATIOS = (2.0, 5.0)
@@ -55,13 +55,13 @@ class CombinedSpring(NamedTuple):
     bolt_forces           : preload force (b) [N] at each bolt position, all bolts of a position together
     """
 
-    table: InterpolationTable
-    damping: Array
+    force_table: InterpolationTable
+    damping_table: Array
     shear_ratio: float
-    force: float
+    preload_contact_force: float
     pair_boundaries: Array
-    sliders: Array
-    bolts: Array
+    slider_properties: Array
+    bolt_forces: Array
 
 
 def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> CombinedSpring:
@@ -72,11 +72,11 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     """
     start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    area, share = spring.joint.A_0, spring.shape.share
+    area, share = spring.joint.A_0, spring.points.area_share
 
-    def total_force(c: Array) -> list[Array]:
-        approach = start + c[:, None]
-        approach[approach - low < ZERO_RATIO * (high - low)] = low  # nodes that just touch have no load
+    def total_force(approach_change: Array) -> list[Array]:
+        approach = start + approach_change[:, None]
+        approach[approach - low < ROUND_OFF_RATIO * (high - low)] = low  # nodes that just touch have no load
         nodal = spring.curve.derivatives(approach, 2)
         return [area * (value @ share) for value in nodal]
 
@@ -95,22 +95,31 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     )
     eta = np.interp(c, coarse, _dissipation_factor(spring, start + coarse[:, None]))
 
-    def is_linear(i: int, j: int) -> bool:
-        line = np.interp(c[i : j + 1], c[[i, j]], eta[[i, j]])
-        return bool(np.all(np.abs(line - eta[i : j + 1]) <= DAMPING_TOLERANCE * eta[i : j + 1]))
+    def is_linear(first_node: int, last_node: int) -> bool:
+        line = np.interp(
+            c[first_node : last_node + 1], c[[first_node, last_node]], eta[[first_node, last_node]]
+        )
+        return bool(
+            np.all(
+                np.abs(line - eta[first_node : last_node + 1])
+                <= DAMPING_TOLERANCE * eta[first_node : last_node + 1]
+            )
+        )
 
     table = decimate_curve(curve, reference_node=zero, fixed_nodes=(zero,), segment_fits=is_linear)
     damping = np.column_stack([table.rows[:, 0], np.interp(table.rows[:, 0], c, eta)])
     table.rows[:, 1] -= load[zero]
     levels = [np.interp(factor * preload_force, load, c) for factor in COMPRESSION_RATIOS]
     heights = np.concatenate(
-        [[first], first * np.geomspace(1.0, FIRST_SLIP_RATIO, TIGHTENED_PAIRS)[1:], [0.0], levels]
+        [[first], first * np.geomspace(1.0, FIRST_SLIP_RATIO, PRELOADED_PAIR_COUNT)[1:], [0.0], levels]
     )
     force, normal, _ = total_force(heights)
     rows = np.column_stack([heights, force, normal])
-    ratio = float(spring.joint.shear_ratio())
+    ratio = float(spring.joint.shear_stiffness_ratio())
     carried = Foundation(curve, ratio, spring.joint.mu, heights).slider_properties(0.0)
-    sliders = np.column_stack([np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.limit)])
+    sliders = np.column_stack(
+        [np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.friction_limit)]
+    )
     bolts = spring.bolts.count * spring.bolts.preload_force(spring.joint, preload, moment)
     return CombinedSpring(table, damping, ratio, preload_force, rows, sliders, bolts)
 
@@ -118,7 +127,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
 def _dissipation_factor(spring: BoltedJointSpring, approach: Array) -> Array:
     """Normal dissipation factor eta_n (m) [1], at nodal approaches (m, n) [m]."""
     plastic, elastic = spring.first_loading_work(spring.curve.derivatives(approach, 0)[0])
-    return np.asarray((plastic @ spring.shape.share) / (elastic @ spring.shape.share))
+    return np.asarray((plastic @ spring.points.area_share) / (elastic @ spring.points.area_share))
 
 
 WORKING_POINTS = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
@@ -133,7 +142,7 @@ def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[M
 def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> ModelicaRecord:
     tight = combine_nodes(spring, preload, moment)
     rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    values = format_given(
+    values = format_parameter_values(
         {
             "preload": preload,
             "moment": moment,
@@ -144,18 +153,22 @@ def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: f
             "damping": spring.joint.damping,
             "mu": spring.joint.mu,
         }
-    ) | format_computed({"tight": tight.force, "shear": tight.shear_ratio, "eta_t": float(rest["eta_t"])})
+    ) | format_computed_values(
+        {"tight": tight.preload_contact_force, "shear": tight.shear_ratio, "eta_t": float(rest["eta_t"])}
+    )
     force = f"{preload / 1e3:g} kN"
     return ModelicaRecord(
         name=make_identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
         title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
-        table=tight.table,
+        table=tight.force_table,
         values=values
         | {
             "heights": format_matrix(tight.pair_boundaries),
-            "sliders": format_matrix(tight.sliders),
-            "eta_n": format_matrix(tight.damping),
-            "bolt_forces": f"{{{', '.join(format_number(force, COMPUTED_DIGITS) for force in tight.bolts)}}}",
+            "sliders": format_matrix(tight.slider_properties),
+            "eta_n": format_matrix(tight.damping_table),
+            "bolt_forces": "{"
+            + ", ".join(format_number(F, COMPUTED_DIGITS) for F in tight.bolt_forces)
+            + "}",
         },
         error_note="; where the force is below the one at tightening, relative to that",
     )
@@ -163,14 +176,14 @@ def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: f
 
 COMPONENT = ModelicaComponent(
     name="BoltedJoint",
-    base="BoltedJoint",
-    points=WORKING_POINTS,
-    records=_make_records,
+    base_record="BoltedJoint",
+    working_points=WORKING_POINTS,
+    make_records=_make_records,
     flanges=("flange_x", "flange_y", "flange_z"),
-    template_texts=lambda joint: {
+    make_template_texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
         "strongest": f"{MAX_FORCE_RATIO:g}",
         "spread": f"{UNIFORM_DEVIATION:.15g}",
-        "sliders": f"{2 * (TIGHTENED_PAIRS + len(COMPRESSION_RATIOS))}",
+        "sliders": f"{2 * (PRELOADED_PAIR_COUNT + len(COMPRESSION_RATIOS))}",
     },
 )

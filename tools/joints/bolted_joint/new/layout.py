@@ -15,23 +15,25 @@ _BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
 _GRID_PATTERN = re.compile(r"(\d+)x(\d+)")
 
 
-def parse_bolts(text: str) -> tuple[int, Thread]:
+def parse_bolts(bolts_text: str) -> tuple[int, Thread]:
     """Parse number and thread of the bolts, as in 4xM12.
 
     Raises ValueError for bad text or an unknown thread.
     """
-    match = _BOLTS_PATTERN.fullmatch(text.strip())
+    match = _BOLTS_PATTERN.fullmatch(bolts_text.strip())
     if not match or match[1] == "0":
-        raise ValueError(f"--bolts = {text!r} are no bolts; expected a number and a thread, as in 4xM12")
+        raise ValueError(
+            f"--bolts = {bolts_text!r} are no bolts; expected a number and a thread, as in 4xM12"
+        )
     name = match[2].upper()
     if name not in read_threads():
         raise ValueError(
-            f"--bolts = {text!r}: thread {name} is unknown, allowed are {', '.join(read_threads())}"
+            f"--bolts = {bolts_text!r}: thread {name} is unknown, allowed are {', '.join(read_threads())}"
         )
     return int(match[1] or 1), read_threads()[name]
 
 
-def bolt_positions(options: DrawingOptions, count: int) -> Array:
+def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:
     """Positions (count, 2) [m] of the bolts relative to the middle of the plate.
 
     Raises ValueError with a one-line message if the options do not give `bolt_count` positions.
@@ -43,48 +45,49 @@ def bolt_positions(options: DrawingOptions, count: int) -> Array:
         raise ValueError(f"--grid = {options['grid']!r} needs the distances of the outermost bolts, --at LxW")
     if circle:
         radius = 0.5 * parse_number("circle", circle, "mm", "m")
-        angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+        angle = 2.0 * np.pi * (np.arange(bolt_count) + 0.5) / bolt_count
         return radius * np.column_stack([np.cos(angle), np.sin(angle)])
     if not texts:
-        if count == 1:
+        if bolt_count == 1:
             return np.zeros((1, 2))
-        raise ValueError(f"the places of {count} bolts are missing; expected --at or --circle")
+        raise ValueError(f"the places of {bolt_count} bolts are missing; expected --at or --circle")
     if "," in texts[0]:
-        return _parse_positions(texts, count)
+        return _parse_positions(texts, bolt_count)
     if len(texts) > 1:
         raise ValueError(f"--at = {texts[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
     spans = parse_numbers("at", texts[0], "mm", "m", separator="x", count=2, lower_bound=None)
-    return _grid_positions(spans, count, options["grid"])
+    return _grid_positions(spans, bolt_count, options["grid"])
 
 
-def _parse_positions(texts: Sequence[str], count: int) -> Array:
+def _parse_positions(position_texts: Sequence[str], bolt_count: int) -> Array:
     places = [
-        parse_numbers("at", text, "mm", "m", separator=",", count=2, lower_bound=None) for text in texts
+        parse_numbers("at", text, "mm", "m", separator=",", count=2, lower_bound=None)
+        for text in position_texts
     ]
-    if len(places) != count:
-        raise ValueError(f"--at has {len(places)} places, expected {count}: one for each of --bolts")
+    if len(places) != bolt_count:
+        raise ValueError(f"--at has {len(places)} places, expected {bolt_count}: one for each of --bolts")
     return np.array(places)
 
 
-def _grid_positions(spans: Sequence[float], count: int, grid: str | None) -> Array:
+def _grid_positions(spans: Sequence[float], bolt_count: int, grid: str | None) -> Array:
     """Positions (count, 2) [m] of bolts on a rectangular grid: on the full grid, or on its rim only."""
     if min(spans) < 0.0:
         raise ValueError(f"--at = {min(spans):g} m is outside [0, inf): distance of the outermost bolts")
-    if count == 1 and max(spans) > 0.0:
+    if bolt_count == 1 and max(spans) > 0.0:
         raise ValueError("--at LxW beside one bolt: expected the number of --bolts, as in 4xM12")
-    columns, rows = _grid_size(spans, count, grid)
+    columns, rows = _grid_size(spans, bolt_count, grid)
     x, y = (
         0.5 * span * (np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1))
         for span, n in zip(spans, (columns, rows), strict=True)
     )
     i, j = (index.ravel() for index in np.meshgrid(np.arange(columns), np.arange(rows)))
-    if count != columns * rows:
+    if bolt_count != columns * rows:
         rim = (i % (columns - 1) == 0) | (j % (rows - 1) == 0)
         i, j = i[rim], j[rim]
     return np.column_stack([x[i], y[j]])
 
 
-def _grid_size(spans: Sequence[float], count: int, grid: str | None) -> tuple[int, int]:
+def _grid_size(spans: Sequence[float], bolt_count: int, grid: str | None) -> tuple[int, int]:
     """Number of bolts along x and along y."""
     if grid:
         match = _GRID_PATTERN.fullmatch(grid)
@@ -92,17 +95,19 @@ def _grid_size(spans: Sequence[float], count: int, grid: str | None) -> tuple[in
             raise ValueError(f"--grid = {grid!r} is no grid; expected the bolts along x and y, as in 3x2")
         columns, rows = sizes
         rim = 2 * (columns + rows) - 4 if min(sizes) > 2 else columns * rows
-        if count not in (columns * rows, rim):
+        if bolt_count not in (columns * rows, rim):
             allowed = f"{columns * rows}" + (f" or, on its rim, {rim}" if rim != columns * rows else "")
-            raise ValueError(f"--grid = {grid} has {allowed} bolts, but --bolts states {count}")
+            raise ValueError(f"--grid = {grid} has {allowed} bolts, but --bolts states {bolt_count}")
     elif spans[1] == 0.0:
-        columns, rows = count, 1
+        columns, rows = bolt_count, 1
     elif spans[0] == 0.0:
-        columns, rows = 1, count
-    elif count == 4:
+        columns, rows = 1, bolt_count
+    elif bolt_count == 4:
         columns, rows = 2, 2
     else:
-        raise ValueError(f"{count} bolts on a rectangle: expected --grid, the bolts along x and y, as in 3x2")
+        raise ValueError(
+            f"{bolt_count} bolts on a rectangle: expected --grid, the bolts along x and y, as in 3x2"
+        )
     for n, span, axis in ((columns, spans[0], "x"), (rows, spans[1], "y")):
         if n > 1 and span == 0.0:
             raise ValueError(f"--at: {n} bolts along {axis} need a distance above 0 there")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
@@ -13,11 +13,11 @@ from jointfmu.quantity import Array
 from ....drawing import faces, vdi2230
 from ....drawing.part import DrawingOptions, NewJoint, ParameterSheet
 from ....drawing.reading import parse_number, parse_numbers
-from ....drawing.tables import Thread, strength, thread_source
+from ....drawing.tables import Thread, property_class_strength, thread_source
 from ....pressure import warn_overload
 from ..report import friction_results
-from . import computed, layout
-from .computed import BoltedPlates, compute_pressure_field
+from . import layout, plate_finite_elements
+from .plate_finite_elements import BoltedPlates, compute_pressure_field
 
 ZERO_MOTION = (0.0, 0.0, 0.0)
 """Zero displacement [m] or rotation [rad] along x, y, z."""
@@ -45,7 +45,7 @@ class ClampedBolt:
     """
 
     grip: float
-    layers: tuple[vdi2230.ClampedPart, ...]
+    clamped_parts: tuple[vdi2230.ClampedPart, ...]
     hole_diameter: float
     bearing_diameter: float
     outer_diameter: float
@@ -83,7 +83,11 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     _add_plate(sheet, plate, bolt, hole_source)
     _add_bolts(sheet, plate, bolt, thread)
     loss = _add_embedding_loss(sheet, options, bolt, heights)
-    mass = plate.area * bolt.layers[0].thickness * faces.read_materials(options)[0].numbers["density"].value
+    mass = (
+        plate.area
+        * bolt.clamped_parts[0].thickness
+        * faces.read_materials(options)[0].numbers["density"].value
+    )
     sheet.add("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
     preload, warnings = _add_preload(sheet, options, thread)
     if not loss < preload:
@@ -96,12 +100,10 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         sheet.add(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
     file = sheet.build_file(f"plate {options['plate']} with {options['bolts']}")
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
-    layers, depth = bolt.layers, 0.0
+    layers, depth = bolt.clamped_parts, 0.0
     if options["tapped"] and options["thickness"] is not None:
-        layers, depth = (
-            (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1])),
-            THREAD_DEPTH_RATIO * thread.d,
-        )
+        layers = (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1]))
+        depth = THREAD_DEPTH_RATIO * thread.d
     plates = BoltedPlates(plate, layers, bolt.bearing_diameter, density, preload, preload - loss, depth)
     shape = None
     if options["field"] == "computed":
@@ -113,7 +115,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
             file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
         )
     attached, sides = options["attached"] or "faces", options["sides"]
-    complete_joint = computed.compute_facts(file, plates, attached, sides, alone, shape)
+    complete_joint = plate_finite_elements.compute_facts(file, plates, attached, sides, alone, shape)
     return NewJoint(
         complete_joint.file, {**facts, **complete_joint.facts}, [*warnings, *complete_joint.warnings]
     )
@@ -128,9 +130,9 @@ def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tupl
 def clamp_bolt(
     options: DrawingOptions,
     thread: Thread,
-    size: tuple[float, float],
+    plate_size: tuple[float, float],
     positions: Array,
-    hole: float,
+    hole_diameter: float,
     moduli: tuple[float, float],
 ) -> ClampedBolt:
     """Compute one bolt with its clamped parts by VDI 2230.
@@ -146,7 +148,7 @@ def clamp_bolt(
     bearing = getattr(thread, head)
     if options["bearing"] is not None:
         bearing = parse_number("bearing", options["bearing"], "mm", "m")
-    for name, value, low in (("hole", hole, thread.d), ("bearing", bearing, hole)):
+    for name, value, low in (("hole", hole_diameter, thread.d), ("bearing", bearing, hole_diameter)):
         if not value > low:
             raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
     thicknesses = _clamped_thicknesses(options)
@@ -165,15 +167,15 @@ def clamp_bolt(
             f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {MAX_GRIP_RATIO} "
             f"times {thread.name}"
         )
-    outer = outer_diameter(size, positions)
+    outer = outer_diameter(plate_size, positions)
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
     if not slope > 0.0:
         raise ValueError(f"--grip = {grip * 1e3:g} mm is too short for a deformation cone of VDI 2230")
     shank = vdi2230.shank_length(thread, grip, head, tapped)
     delta_S = vdi2230.bolt_compliance(thread, grip, shank, head, moduli[1] if tapped else None)
-    delta_P = vdi2230.members_compliance(layers, bearing, hole, outer, slope, tapped)
+    delta_P = vdi2230.members_compliance(layers, bearing, hole_diameter, outer, slope, tapped)
     cone = vdi2230.cone_diameter(min(layer.thickness for layer in layers), bearing, slope)
-    return ClampedBolt(grip, layers, hole, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
+    return ClampedBolt(grip, layers, hole_diameter, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
 
 
 def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
@@ -204,7 +206,7 @@ def _plate_thicknesses(options: DrawingOptions) -> list[float]:
     return thicknesses
 
 
-def outer_diameter(size: tuple[float, float], positions: Array) -> float:
+def outer_diameter(plate_size: tuple[float, float], positions: Array) -> float:
     """Outer diameter D_A [m] of the clamped parts, mean over the bolts.
 
     For each bolt: twice the distance to the nearest edge, or the distance to the next bolt if this is
@@ -212,7 +214,7 @@ def outer_diameter(size: tuple[float, float], positions: Array) -> float:
 
     Raises ValueError for a bolt outside the plate.
     """
-    edge = np.min(np.array(size) - 2.0 * np.abs(positions), axis=1)
+    edge = np.min(np.array(plate_size) - 2.0 * np.abs(positions), axis=1)
     if np.min(edge) <= 0.0:
         i = int(np.argmin(edge))
         x, y = positions[i] * 1e3
@@ -227,11 +229,11 @@ def _add_plate(
     sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, hole_source: tuple[str, str]
 ) -> None:
     for name in ("length", "width", "x", "y"):
-        sheet.add_stated(f"plate.{name}", getattr(plate, name))
+        sheet.add_drawing_value(f"plate.{name}", getattr(plate, name))
     sheet.add("plate.hole_diameter", plate.hole_diameter, *hole_source)
     cone = (
         f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
-        f"{min(layer.thickness for layer in clamped_bolt.layers) * 1e3:g} mm with tan(phi) = "
+        f"{min(layer.thickness for layer in clamped_bolt.clamped_parts) * 1e3:g} mm with tan(phi) = "
         f"{clamped_bolt.cone_slope:.4g}"
     )
     sheet.add("plate.cone_diameter", plate.cone_diameter, "derived", cone)
@@ -239,7 +241,7 @@ def _add_plate(
 
 
 def _add_bolts(sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, thread: Thread) -> None:
-    row_bolts, row_distance = plate.equivalent_rows
+    row_bolts, row_distance = plate.equivalent_bolt_rows
     rows = "the places of the bolts: two rows that would carry a moment about x as they do"
     sheet.add("n_bolts", float(len(plate.x)), "user", "stated on the drawing")
     sheet.add("row_bolts", row_bolts, "derived", rows)
@@ -255,15 +257,15 @@ def _add_preload(sheet: ParameterSheet, options: DrawingOptions, thread: Thread)
     """
     name = options["property_class"] or "8.8"
     if options["preload"] is None:
-        preload = vdi2230.assembly_preload(thread, strength(name, "yield", thread))
+        preload = vdi2230.assembly_preload(thread, property_class_strength(name, "yield", thread))
         text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
         sheet.add("inputs.preload", preload, "estimate", text)
     else:
         preload = parse_number("preload", options["preload"], "N", "N")
-        sheet.add_stated("inputs.preload", preload)
+        sheet.add_drawing_value("inputs.preload", preload)
     if options["property_class"] is None:
         return preload, []
-    proof_load = strength(name, "proof", thread) * vdi2230.stress_area(thread)
+    proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
     return preload, warn_overload(
         "preload", preload, (proof_load, f"the proof load of {thread.name}-{name} (ISO 898-1)")
     )
@@ -275,7 +277,7 @@ def _add_embedding_loss(
     """Add the preload loss [N] by embedding to the sheet, and return it."""
     if options["embedding"] is not None:
         loss = parse_number("embedding", options["embedding"], "N", "N", None)
-        sheet.add_stated("embedding", loss)
+        sheet.add_drawing_value("embedding", loss)
         return loss
     depth = vdi2230.embedding_depth(heights.Rz, 1, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)

@@ -22,14 +22,14 @@ def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[M
     pressure = decimate_curve(contact.curve)
     approach = pressure.rows[:, :1] - contact.curve.displacement[0]
     table = InterpolationTable(
-        np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.error
+        np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.max_error
     )
     return [ModelicaRecord(name=make_identifier(file.name), title=file.name, table=table)]
 
 
 COMPONENT = ModelicaComponent(
     name="GearContact",
-    base="GearContact",
-    records=_make_records,
-    template_texts=lambda contact: {"end": f"{contact.end / 1e3:g} kN"},
+    base_record="GearContact",
+    make_records=_make_records,
+    make_template_texts=lambda contact: {"end": f"{contact.max_load / 1e3:g} kN"},
 )

@@ -11,9 +11,9 @@ from ....modelica.records import (
     ModelicaRecord,
     WorkingPoint,
     decimate_curve,
-    format_computed,
-    format_given,
+    format_computed_values,
     format_number,
+    format_parameter_values,
     make_identifier,
     to_curve,
 )
@@ -23,7 +23,9 @@ def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[M
     spring = GearMeshSpring.tabulate(file.values)
     table = decimate_curve(spring.curve)
     energy = to_curve(table).energy(table.rows[:, 0])
-    values = format_given(_wheel_parameters(spring.joint)) | format_computed({"closing": spring.closing_end})
+    values = format_parameter_values(_wheel_parameters(spring.joint)) | format_computed_values(
+        {"closing": spring.closing_end}
+    )
     nodes = "{\n      " + ",\n      ".join(format_number(x, COMPUTED_DIGITS) for x in energy.tolist()) + "}"
     return [
         ModelicaRecord(
@@ -39,7 +41,7 @@ def _wheel_parameters(mesh: MeshParameters) -> dict[str, float]:
 
 COMPONENT = ModelicaComponent(
     name="GearMesh",
-    base="GearMesh",
-    records=_make_records,
-    template_texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"},
+    base_record="GearMesh",
+    make_records=_make_records,
+    make_template_texts=lambda mesh: {"end": f"{mesh.max_load / 1e3:g} kN"},
 )

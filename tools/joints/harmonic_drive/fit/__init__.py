@@ -27,7 +27,7 @@ FITS = (
         name="loop",
         description="loops, decays or responses to the hysteresis of the harmonic drive",
         takes_file=True,
-        column="angle",
+        identifying_column="angle",
         options=(
             Option(
                 "inertia",

@@ -15,13 +15,13 @@ from itertools import pairwise, product
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.given import DEFAULT_CORNER, CatalogueDrive
+from jointfmu.joints.harmonic_drive.prescribed_midline import DEFAULT_CORNER_RATIO, CatalogueDrive
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
 from ....catalogue import SourcedNumber
 from ....fitting.least_squares import EMPTY_SOLUTION, Solution, solve
-from ....fitting.outcome import Facts, FitResult, fitted_parameters, predictor, unknowns
+from ....fitting.outcome import Facts, FitResult, fitted_parameters, make_predictor, make_unknowns
 from ..catalogue import STIFFNESS_NAMES
 from . import drive
 from .drive import CatalogueRow, angle_picture, stiffness, stiffness_picture
@@ -32,10 +32,10 @@ EXTRA_PARAMETER = "torque_smoothing"
 """Parameter that is fitted too if FITTED_PARAMETERS alone do not meet the wind-up angles."""
 MAX_ANGLE_ERROR = 0.009
 """Largest relative error [1] of the angle at T1, T2 and the rated torque: 1 % with a margin."""
-FITTED_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
+FITTED_ANGLE_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
 """Relative standard deviations [1] of the angle at T1, T2 and the rated torque. They are tried in turn until
 the fitted angles are within MAX_ANGLE_ERROR."""
-OTHER_DEVIATION = 0.2
+OTHER_ANGLE_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
 MAX_TORQUE_RATIO = 4.0
 """max_torque over rated torque [1], about the repeated peak torque of catalogue drives."""
@@ -97,11 +97,9 @@ def fit_pair(
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
     """
     numbers = numbers or source_numbers(row)
-    file, rated, origin = (
-        start or load_default("harmonic_drive"),
-        numbers["rated_torque"],
-        numbers["T1"].source,
-    )
+    file = start or load_default("harmonic_drive")
+    rated = numbers["rated_torque"]
+    origin = numbers["T1"].source
     file = drive.resize_drive(file, row.rated, MAX_TORQUE_RATIO, rated.kind, rated.source)
     if "ratio" in numbers:
         file = file.with_values({"ratio": numbers["ratio"].value}, "catalogue", origin)
@@ -121,7 +119,7 @@ def fit_pair(
     facts["angle_error_largest"] = float(errors[worst]), "1", text
     note = (
         f"standard deviations: the angle known to {100 * deviation:g} % at T1, T2 and rated torque, "
-        f"{100 * OTHER_DEVIATION:g} % elsewhere"
+        f"{100 * OTHER_ANGLE_DEVIATION:g} % elsewhere"
     )
     pictures = (
         angle_picture(row, result.values, {}, torque),
@@ -138,7 +136,7 @@ def comparison_torques(row: CatalogueRow, max_torque: float) -> Array:
 
 
 def _solve_weighted(
-    row: CatalogueRow, file: ParameterFile, choices: Sequence[Sequence[str]], torque: Array
+    row: CatalogueRow, file: ParameterFile, unknown_sets: Sequence[Sequence[str]], torque: Array
 ) -> tuple[Solution, float]:
     """Fit with increasing weight at T1, T2 and the rated torque, until the angles there are met.
 
@@ -148,13 +146,13 @@ def _solve_weighted(
     fit meets them.
     """
     exact, target = np.isin(torque, row.fitted_torques), row.wind_up(torque)
-    angles = predictor(file, lambda joint: drive.wind_up(joint, torque))
+    angles = make_predictor(file, lambda joint: drive.wind_up(joint, torque))
     limits = dict(drive.parameter_bounds(file)) | {"K_FTS0": (row.K2, np.inf)}
     best = np.inf
-    for names, deviation in product(choices, FITTED_DEVIATIONS):
-        scale = np.where(exact, deviation, OTHER_DEVIATION)
+    for names, deviation in product(unknown_sets, FITTED_ANGLE_DEVIATIONS):
+        scale = np.where(exact, deviation, OTHER_ANGLE_DEVIATION)
         solution = solve(
-            unknowns(file, names, limits),
+            make_unknowns(file, names, limits),
             lambda values, scale=scale: (angles(values) / target - 1.0) / scale,  # type: ignore[misc]
             noise=1.0,
             tolerance=1e-5,
@@ -164,15 +162,17 @@ def _solve_weighted(
             return solution, deviation
         best = min(best, worst)
         file = file.with_values(
-            {n: v for n, v in solution.values.items() if n not in solution.at_bound}, "catalogue", "start"
+            {n: v for n, v in solution.values.items() if n not in solution.names_at_bound},
+            "catalogue",
+            "start",
         )
     raise RuntimeError(
-        f"no law with {', '.join(choices[-1])} free keeps the angle of {row} at T1, T2 and rated torque "
+        f"no law with {', '.join(unknown_sets[-1])} free keeps the angle of {row} at T1, T2 and rated torque "
         f"{row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by {100 * best:.2g} %"
     )
 
 
-PAIR_LAW = "law of the contact pair"
+PAIR_LAW_TEXT = "law of the contact pair"
 
 
 def make_line_drive(
@@ -189,8 +189,8 @@ def make_line_drive(
     kept = ["corner"] if isinstance(file.values, CatalogueDrive) else []
     if not (kept or "corner" in numbers):
         text = "default choice: the angle at the corners of catalogue drives within 0.4 %"
-        numbers = {**numbers, "corner": SourcedNumber(DEFAULT_CORNER, "user", text)}
-    return drive.with_law(file, CatalogueDrive, name, numbers, kept)
+        numbers = {**numbers, "corner": SourcedNumber(DEFAULT_CORNER_RATIO, "user", text)}
+    return drive.change_law(file, CatalogueDrive, name, numbers, kept)
 
 
 def make_line_drive_from_row(
@@ -213,7 +213,7 @@ def make_line_drive_from_row(
     facts = _angle_errors(row, file.values, {"max": max_torque}) | _max_torque_fact(row, max_torque)
     also = {}
     if pair is not None:
-        also = {PAIR_LAW: pair}
+        also = {PAIR_LAW_TEXT: pair}
         facts |= _pair_facts(row, pair, max_torque)
     angle = angle_picture(row, file.values, also, comparison_torques(row, max_torque))
     return FitResult(
@@ -230,15 +230,15 @@ def _fit_pair_or_note(row: CatalogueRow, start: ParameterFile | None) -> tuple[D
     try:
         drive: Drive = fit_pair(row, start).parameters.values
     except RuntimeError as error:
-        return None, [f"the {PAIR_LAW} cannot be told beside it: {error}"]
+        return None, [f"the {PAIR_LAW_TEXT} cannot be told beside it: {error}"]
     return drive, []
 
 
-def _angle_errors(row: CatalogueRow, law: Drive, extra_torques: Mapping[str, float]) -> Facts:
+def _angle_errors(row: CatalogueRow, fitted_drive: Drive, extra_torques: Mapping[str, float]) -> Facts:
     """Relative errors of the angle of a law at T1, T2, the rated torque, and extra torques [N.m]."""
     facts = {}
     for name, T in {"T1": row.T1, "T2": row.T2, "rated": row.rated, **extra_torques}.items():
-        error = float(drive.wind_up(law, np.array(T)) / row.wind_up(T)) - 1.0
+        error = float(drive.wind_up(fitted_drive, np.array(T)) / row.wind_up(T)) - 1.0
         facts[f"angle_error_{name}"] = (error, "1", f"law over catalogue - 1 at {T:g} N.m")
     return facts
 
@@ -253,7 +253,7 @@ def _pair_facts(row: CatalogueRow, pair: Drive, max_torque: float) -> Facts:
     torque = np.linspace(0.0, max_torque, 401)[1:]
     angle = drive.wind_up(pair, torque) / row.wind_up(torque) - 1.0
     i = int(np.argmax(np.abs(angle)))
-    text = f"{PAIR_LAW} over catalogue - 1"
+    text = f"{PAIR_LAW_TEXT} over catalogue - 1"
     facts = {"pair_angle_error": (float(angle[i]), "1", f"{text} at {torque[i]:.3g} N.m, the largest")}
     for name, T in (("zero", 0.0), ("rated", row.rated), ("max", max_torque)):
         K, step = float(stiffness(pair, np.array(T))), float(row.stiffness(T))

@@ -51,7 +51,7 @@ def wind_up(drive: Drive, torque: Array) -> Array:
 
 
 def resize_drive(
-    start: ParameterFile, rated_torque: float, max_torque_ratio: float, origin: str, source: str
+    start_file: ParameterFile, rated_torque: float, max_torque_ratio: float, origin: str, source: str
 ) -> ParameterFile:
     """Change the rated torque [N.m]; torque_smoothing changes in proportion.
 
@@ -62,8 +62,8 @@ def resize_drive(
     """
     if not 0.0 < rated_torque < np.inf:
         raise ValueError(f"rated torque = {rated_torque:g} N.m is outside (0, inf): the drive's rated torque")
-    drive = start.values
-    file = start.with_values({"rated_torque": rated_torque}, origin, source)
+    drive = start_file.values
+    file = start_file.with_values({"rated_torque": rated_torque}, origin, source)
     if "max_torque" in file.values_by_name:
         file = file.with_values(
             {"max_torque": max_torque_ratio * rated_torque},
@@ -76,30 +76,30 @@ def resize_drive(
     return file.with_values(
         {"torque_smoothing": smoothing},
         "estimate",
-        f"{smoothing / rated_torque:.2g} of rated_torque, as in {start.name}",
+        f"{smoothing / rated_torque:.2g} of rated_torque, as in {start_file.name}",
     )
 
 
 def scale_stiffness(
-    start: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array
+    start_file: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array
 ) -> ParameterFile:
     """Scale the stiffness of the start parameters to a measured curve, angles (n) [rad] at torques (n) [N.m].
 
     Only if all STIFFNESS_PARAMETERS of the law are among the names to fit; else `start_file` is returned.
     """
-    ratio = float(np.sum(wind_up(start.values, torque) * angle) / np.sum(angle**2))
+    ratio = float(np.sum(wind_up(start_file.values, torque) * angle) / np.sum(angle**2))
     level = {
-        name: start.values_by_name[name] * ratio
-        for name in STIFFNESS_PARAMETERS.get(start.law, ())
+        name: start_file.values_by_name[name] * ratio
+        for name in STIFFNESS_PARAMETERS.get(start_file.law, ())
         if name in names
     }
-    is_complete = level and len(level) == len(STIFFNESS_PARAMETERS[start.law])
-    return start.with_values(level, "calibration", "start") if is_complete else start
+    is_complete = level and len(level) == len(STIFFNESS_PARAMETERS[start_file.law])
+    return start_file.with_values(level, "calibration", "start") if is_complete else start_file
 
 
-def with_law(
-    start: ParameterFile,
-    law: type[Drive],
+def change_law(
+    start_file: ParameterFile,
+    law_class: type[Drive],
     name: str,
     numbers: Mapping[str, SourcedNumber],
     copied_names: Sequence[str] = (),
@@ -111,22 +111,26 @@ def with_law(
     numbers      : {parameter: number with source} of the new law
     copied_names : parameters of the law of `start_file` to copy, in addition to those of all drives
     """
-    shared = [label for label, _ in flat_fields(Drive) if label in start.values_by_name] + [*copied_names]
-    values = {label: start.values_by_name[label] for label in shared} | {
+    shared = [label for label, _ in flat_fields(Drive) if label in start_file.values_by_name] + [
+        *copied_names
+    ]
+    values = {label: start_file.values_by_name[label] for label in shared} | {
         k: p.value for k, p in numbers.items()
     }
-    kinds = {k: v for k, v in start.origins.items() if k in shared} | {k: p.kind for k, p in numbers.items()}
-    sources = {k: v for k, v in start.sources.items() if k in shared}
+    kinds = {k: v for k, v in start_file.origins.items() if k in shared} | {
+        k: p.kind for k, p in numbers.items()
+    }
+    sources = {k: v for k, v in start_file.sources.items() if k in shared}
     sources |= {k: p.source for k, p in numbers.items()}
-    return ParameterFile(start.joint, name, build_parameter_set(law, values), kinds, sources)
+    return ParameterFile(start_file.joint, name, build_parameter_set(law_class, values), kinds, sources)
 
 
-def parameter_bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
+def parameter_bounds(start_file: ParameterFile) -> Mapping[str, tuple[float, float]]:
     """Bounds {parameter: (low, high)} with which the contact pair stays closed at zero torque; else empty."""
-    drive: Any = start.values
+    drive: Any = start_file.values
     if not isinstance(drive, ContactPairDrive):
         return {}
-    rated, loss = drive.rated_pressure, drive.pressure_loss
+    rated, loss = drive.rated_pressure, drive.peak_pressure_reduction
     lowest = loss + MIN_PRESSURE_RATIO * rated
     return {
         "zero_torque_pressure": (lowest, rated),
@@ -216,27 +220,29 @@ def stiffness(drive: Drive, torque: Array) -> Array:
     return curve.derivatives(curve.inverse(torque), 1)[1]
 
 
-def angle_picture(row: CatalogueRow, law: Drive, other_laws: Mapping[str, Drive], torque: Array) -> Picture:
+def angle_picture(
+    row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], torque: Array
+) -> Picture:
     """Plot of the wind-up at torques (n) [N.m]: catalogue, fitted law, and errors of the law.
 
     other_drives : {name: further law to plot}
     """
     grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), row.wind_up(torque)
     return Picture(
-        x=torque,
-        y=target / RAD_PER_ARCMIN,
-        misfit=100.0 * (target / wind_up(law, torque) - 1.0),
-        line=(grid, wind_up(law, grid) / RAD_PER_ARCMIN),
-        labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
-        highlighted=np.isin(torque, row.fitted_torques),
+        data_x=torque,
+        data_y=target / RAD_PER_ARCMIN,
+        misfit=100.0 * (target / wind_up(fitted_drive, torque) - 1.0),
+        law_curve=(grid, wind_up(fitted_drive, grid) / RAD_PER_ARCMIN),
+        axis_labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
+        highlighted_points=np.isin(torque, row.fitted_torques),
         other_laws={
-            name: (grid, wind_up(other, grid) / RAD_PER_ARCMIN) for name, other in other_laws.items()
+            name: (grid, wind_up(other, grid) / RAD_PER_ARCMIN) for name, other in other_drives.items()
         },
     )
 
 
 def stiffness_picture(
-    row: CatalogueRow, law: Drive, other_laws: Mapping[str, Drive], max_torque: float
+    row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], max_torque: float
 ) -> Picture:
     """Plot of the stiffness up to `max_torque` [N.m], without the corners: catalogue, fitted law, and errors.
 
@@ -246,10 +252,10 @@ def stiffness_picture(
     torque = grid[1::2][~np.isin(grid[1::2], (row.T1, row.T2))]
     steps = row.stiffness(torque)
     return Picture(
-        x=torque,
-        y=steps / 1e3,
-        misfit=100.0 * (steps / stiffness(law, torque) - 1.0),
-        line=(grid, stiffness(law, grid) / 1e3),
-        labels=("torque [N.m]", "stiffness [kN.m/rad]", "catalogue / law - 1 [%]"),
-        other_laws={name: (grid, stiffness(other, grid) / 1e3) for name, other in other_laws.items()},
+        data_x=torque,
+        data_y=steps / 1e3,
+        misfit=100.0 * (steps / stiffness(fitted_drive, torque) - 1.0),
+        law_curve=(grid, stiffness(fitted_drive, grid) / 1e3),
+        axis_labels=("torque [N.m]", "stiffness [kN.m/rad]", "catalogue / law - 1 [%]"),
+        other_laws={name: (grid, stiffness(other, grid) / 1e3) for name, other in other_drives.items()},
     )

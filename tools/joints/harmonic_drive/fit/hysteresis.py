@@ -21,12 +21,12 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
-from ....fitting import memory
+from ....fitting import hysteresis_fit
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from ....fitting.least_squares import Solution, Unknown, solve
 from ....fitting.measurement import read_measurement
-from ....fitting.outcome import FitResult, Picture, fitted_parameters, undetermined_names, unknowns
+from ....fitting.outcome import FitResult, Picture, fitted_parameters, make_unknowns, undetermined_names
 from . import drive
 from .drive import COLUMN_NAMES, RAD_PER_ARCMIN
 from .log_reading import Samples
@@ -47,21 +47,24 @@ def make_law(drive: Drive) -> HysteresisLaw:
     Raises ValueError if the parameters allow no such hysteresis.
     """
     spring = HarmonicDriveSpring.tabulate(drive)
-    stiffness, limit = spring.hysteresis.stiffness, spring.hysteresis.limit
+    stiffness, limit = spring.hysteresis.stiffness, spring.hysteresis.friction_limit
     curve = spring.curve
 
     def friction(motion: Array) -> Array:
         return np.asarray(np.sum(np.minimum(stiffness * motion[..., None], limit), axis=-1))
 
-    def work(motion: Array) -> Array:
+    def friction_work(motion: Array) -> Array:
         stuck = np.minimum(motion[..., None], limit / stiffness)
         return np.asarray(np.sum(0.5 * stiffness * stuck**2 + limit * (motion[..., None] - stuck), axis=-1))
 
-    def force(motion: Array) -> Array:
+    def elastic_force(motion: Array) -> Array:
         return np.copysign(curve.derivatives(np.abs(motion), 0)[0], motion)
 
     return HysteresisLaw(
-        friction, work, NonlinearSpring(force, lambda motion: curve.energy(np.abs(motion))), drive.d
+        friction,
+        friction_work,
+        NonlinearSpring(elastic_force, lambda motion: curve.energy(np.abs(motion))),
+        drive.d,
     )
 
 
@@ -88,19 +91,19 @@ def fit(
     if isinstance(data.data, Loops):
         reach = 0.5 * float(np.ptp(data.data.force))
         wind_up = float(drive.wind_up(start_file.values, np.array(reach)))
-        COLUMN_NAMES.check_level(data.path, wind_up / data.amplitude, data.units, start_file)
-    file, rest = _with_hysteresis(start_file, names)
+        COLUMN_NAMES.check_stiffness_ratio(data.path, wind_up / data.amplitude, data.stated_units, start_file)
+    file, rest = _set_start_hysteresis(start_file, names)
 
-    def law_of(values: Mapping[str, float]) -> HysteresisLaw:
+    def law_at_values(values: Mapping[str, float]) -> HysteresisLaw:
         return make_law(file.with_values(values, "calibration", "fit").values)
 
-    model = memory.build_model(data, law_of, "inertia", inertia, 0.0)
+    model = hysteresis_fit.build_model(data, law_at_values, "inertia", inertia, 0.0)
     starts = {
         HYSTERESIS_LOSS: LOSS_START_VALUES,
         HYSTERESIS_STIFFNESS: tuple(rest * np.array(STIFFNESS_START_RATIOS)),
     }
-    solution, scale, _ = memory.fit_measurement(
-        data, unknowns(file, names, drive.parameter_bounds(file)), model, starts
+    solution, scale, _ = hysteresis_fit.fit_measurement(
+        data, make_unknowns(file, names, drive.parameter_bounds(file)), model, starts
     )
     result = fitted_parameters(file, solution.values, "calibration", data.path.name, data.range_text)
     fitted_law = make_law(result.values)
@@ -109,13 +112,13 @@ def fit(
     return FitResult(
         result,
         solution,
-        law_facts | memory.facts(data, solution, fitted_law, scale),
-        memory.pictures(data, model, solution.values, scale),
-        notes=memory.notes(data, solution),
+        law_facts | hysteresis_fit.summarize_fit(data, solution, fitted_law, scale),
+        hysteresis_fit.make_pictures(data, model, solution.values, scale),
+        notes=hysteresis_fit.misfit_notes(data, solution),
     )
 
 
-def _with_hysteresis(file: ParameterFile, names: Sequence[str]) -> tuple[ParameterFile, float]:
+def _set_start_hysteresis(file: ParameterFile, names: Sequence[str]) -> tuple[ParameterFile, float]:
     """Start parameters with non-zero hysteresis, and K_WTS [N.m/rad] at zero torque.
 
     The fit needs non-zero values, because its unknowns are logarithms.
@@ -137,7 +140,7 @@ LOG_PARAMETERS = (*STIFFNESS_NAMES, HYSTERESIS_LOSS)
 """Parameters that `fit_log` can fit."""
 ROTOR_INERTIA = "motor_inertia"
 """Name of the unknown inertia of the rotor, which is fitted if the user does not state it."""
-DEFAULT_LOSS = 0.3 * RAD_PER_ARCMIN
+DEFAULT_HYSTERESIS_LOSS = 0.3 * RAD_PER_ARCMIN
 """Start value of hysteresis_loss [rad] if the file has no hysteresis."""
 LOWER_BOUND_RATIO = 1e-2
 """Lower bound of hysteresis loss and rotor inertia over a start value [1]."""
@@ -171,7 +174,7 @@ def fit_rotor_inertia(
     """
     names = [name for name in LOG_PARAMETERS if name in file.values_by_name]
     unknown = Unknown(ROTOR_INERTIA, "kg.m2", 0.1 * max_inertia, LOWER_BOUND_RATIO * max_inertia, max_inertia)
-    solution, _ = _solve(
+    solution, _ = _fit_wind_ups(
         file,
         names,
         phi,
@@ -183,7 +186,7 @@ def fit_rotor_inertia(
     return (
         None
         if ROTOR_INERTIA in undetermined_names(solution)
-        else (inertia, inertia * solution.deviations[ROTOR_INERTIA])
+        else (inertia, inertia * solution.relative_deviations[ROTOR_INERTIA])
     )
 
 
@@ -198,14 +201,14 @@ def fit_log(
 
     Raises RuntimeError if the fit does not converge.
     """
-    solution, law = _solve(file, names, phi, lambda values: tau, torque_changes)
+    solution, law = _fit_wind_ups(file, names, phi, lambda values: tau, torque_changes)
     labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
     return solution, Picture(
         tau, phi / RAD_PER_ARCMIN, (phi - law) / RAD_PER_ARCMIN, (tau, law / RAD_PER_ARCMIN), labels
     )
 
 
-def _solve(
+def _fit_wind_ups(
     file: ParameterFile,
     names: Sequence[str],
     phi: Array,
@@ -219,11 +222,11 @@ def _solve(
     torque_changes : as in `fit_log`
     extra_unknowns : on which the torque depends
     """
-    begin = {HYSTERESIS_LOSS: DEFAULT_LOSS} if file.values_by_name[HYSTERESIS_LOSS] == 0.0 else {}
+    begin = {HYSTERESIS_LOSS: DEFAULT_HYSTERESIS_LOSS} if file.values_by_name[HYSTERESIS_LOSS] == 0.0 else {}
     start = file.with_values({n: v for n, v in begin.items() if n in names}, "calibration", "start")
     path = phi - phi[0]
 
-    def angle(values: Mapping[str, float], tau: Array) -> Array:
+    def law_wind_up(values: Mapping[str, float], tau: Array) -> Array:
         """Wind-up (n) [rad] of the law, shifted to the mean of the measured one."""
         own_values = {name: values[name] for name in names}
         spring = HarmonicDriveSpring.tabulate(file.with_values(own_values, "calibration", "fit").values)
@@ -231,7 +234,7 @@ def _solve(
         return np.asarray(wind_up_values - np.mean((wind_up_values - phi)[IGNORED_SAMPLES:]))
 
     all_unknowns = [
-        *unknowns(
+        *make_unknowns(
             start,
             names,
             {HYSTERESIS_LOSS: (LOWER_BOUND_RATIO * start.values_by_name[HYSTERESIS_LOSS], np.inf)},
@@ -239,12 +242,14 @@ def _solve(
         *extra_unknowns,
     ]
     solution = solve(
-        all_unknowns, lambda values: (phi - angle(values, torque(values)))[IGNORED_SAMPLES:], nuisance_count=1
+        all_unknowns,
+        lambda values: (phi - law_wind_up(values, torque(values)))[IGNORED_SAMPLES:],
+        nuisance_count=1,
     )
     fitted_torque = torque(solution.values)
-    law = angle(solution.values, fitted_torque)
+    law = law_wind_up(solution.values, fitted_torque)
     for change in torque_changes:
-        difference = (angle(solution.values, fitted_torque + change) - law)[IGNORED_SAMPLES:]
+        difference = (law_wind_up(solution.values, fitted_torque + change) - law)[IGNORED_SAMPLES:]
         parameter_changes = np.linalg.lstsq(solution.jacobian, difference)[0]
         solution = replace(
             solution, covariance=solution.covariance + np.outer(parameter_changes, parameter_changes)
@@ -252,26 +257,28 @@ def _solve(
     return solution, law
 
 
-def _hysteresis_torque(spring: HarmonicDriveSpring, path: Array) -> Array:
+def _hysteresis_torque(spring: HarmonicDriveSpring, wind_up_path: Array) -> Array:
     """Friction torque (n) [N.m] of the hysteresis along wind-ups (n) [rad], starting at rest."""
     sliders = spring.hysteresis
     if not sliders.is_active:
-        return np.zeros(path.size)
-    path_with_turns, sampled = _insert_turning_points(path)
-    return sliders.follow_increments(np.diff(path_with_turns, prepend=0.0), sliders.limit)[sampled]
+        return np.zeros(wind_up_path.size)
+    path_with_turns, sampled = _insert_turning_points(wind_up_path)
+    return sliders.follow_increments(np.diff(path_with_turns, prepend=0.0), sliders.friction_limit)[sampled]
 
 
-def _insert_turning_points(path: Array) -> tuple[Array, NDArray[np.int_]]:
+def _insert_turning_points(wind_up_path: Array) -> tuple[Array, NDArray[np.int_]]:
     """Path (n) with its turning points inserted, and indices (n) of the samples in the longer path.
 
     A turning point between samples is the vertex of a parabola.
     """
-    before, after = np.diff(path)[:-1], np.diff(path)[1:]
+    before, after = np.diff(wind_up_path)[:-1], np.diff(wind_up_path)[1:]
     turns = np.flatnonzero(before * after < 0.0)
     step_before, step_after = before[turns], after[turns]
     offset = 0.5 * (step_before + step_after) / (step_before - step_after)  # in steps after the sample
-    vertex = path[turns + 1] + 0.25 * (step_before + step_after) * offset
+    vertex = wind_up_path[turns + 1] + 0.25 * (step_before + step_after) * offset
     # the vertex lies after the sample if `offset` is positive
     positions = turns + 1 + (offset > 0.0)
-    sampled = np.arange(path.size) + np.searchsorted(positions, np.arange(path.size), side="right")
-    return np.insert(path, positions, vertex), sampled
+    sampled = np.arange(wind_up_path.size) + np.searchsorted(
+        positions, np.arange(wind_up_path.size), side="right"
+    )
+    return np.insert(wind_up_path, positions, vertex), sampled

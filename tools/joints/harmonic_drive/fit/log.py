@@ -101,19 +101,15 @@ def fit(
         stiffness_fit, link_notes = _fit_stiffness(file, logs_with_motor_angle[0], fitted_log, fitted_names)
         notes += link_notes
         if stiffness_fit is not None:
-            solution, drawn_pictures = (
-                _combine_solutions(solution, stiffness_fit[0]),
-                [*drawn_pictures, stiffness_fit[1]],
-            )
+            solution = _combine_solutions(solution, stiffness_fit[0])
+            drawn_pictures = [*drawn_pictures, stiffness_fit[1]]
             intervals |= _confidence_intervals(stiffness_fit[0])
     result = fitted_parameters(file, solution.values, "calibration", label, _describe_ranges(samples))
     for name, value in solution.values.items():
         kind, text = "estimate", "not determined: other values fit as well"
         if name in intervals:
-            kind, text = (
-                "calibration",
-                "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *intervals[name]),
-            )
+            kind = "calibration"
+            text = "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *intervals[name])
         result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
     return FitResult(
         result,
@@ -121,7 +117,7 @@ def fit(
         fit_facts(file, samples, fitted_log, names_to_fit),
         drawn_pictures,
         notes=notes,
-        intervals=intervals,
+        confidence_intervals=intervals,
     )
 
 
@@ -149,10 +145,8 @@ def _fit_rotor_inertia(
     if file.law != "catalogue":
         return None
     square = fitted_log.drive.ratio**2
-    (load, spread), phi = (
-        fitted_log.evaluate_load(log),
-        hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio)),
-    )
+    load, spread = fitted_log.evaluate_load(log)
+    phi = hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio))
     return hysteresis.fit_rotor_inertia(
         file, phi, -load, -spread, square * log.ddq, fitted_log.inertia / square
     )
@@ -192,8 +186,8 @@ def _combine_solutions(first: Solution, second: Solution) -> Solution:
         noise=1.0,
         jacobian=block_diag(*(jacobian for _, jacobian in scaled)),
         covariance=block_diag(first.covariance, second.covariance),
-        at_bound=(*first.at_bound, *second.at_bound),
-        refusal=first.refusal or second.refusal,
+        names_at_bound=(*first.names_at_bound, *second.names_at_bound),
+        refusal_message=first.refusal_message or second.refusal_message,
     )
 
 
@@ -205,17 +199,18 @@ def _start_parameters(start: ParameterFile | None, ratio: float | None) -> Param
     return file if ratio is None else file.with_values({"ratio": ratio}, "user", "stated")
 
 
-def _check_speeds(label: str, samples: Samples) -> None:
+def _check_speeds(file_label: str, samples: Samples) -> None:
     """Check that the samples have several speeds. Raises ValueError if not."""
     speed = np.abs(samples.dq)
     speed = speed[speed > 0.0]
     if speed.size == 0:
         raise ValueError(
-            f"{label}: never turns on long enough for friction to build up; expected longer motion"
+            f"{file_label}: never turns on long enough for friction to build up; expected longer motion"
         )
     if speed.max() < MIN_SPEED_RATIO * speed.min():
         raise ValueError(
-            f"{label}: has one speed alone, {speed.min():.4g} to {speed.max():.4g} rad/s; expected several, "
+            f"{file_label}: has one speed alone, {speed.min():.4g} to {speed.max():.4g} rad/s; "
+            "expected several, "
             f"{MIN_SPEED_RATIO:g} times as fast or more"
         )
 
@@ -230,7 +225,7 @@ def _confidence_intervals(solution: Solution) -> dict[str, tuple[float, float]]:
     loose = undetermined_names(solution)
     return {
         name: (solution.values[name] * np.exp(-factor * d), solution.values[name] * np.exp(factor * d))
-        for name, d in solution.deviations.items()
+        for name, d in solution.relative_deviations.items()
         if name not in loose
     }
 
@@ -253,26 +248,26 @@ def fit_facts(
     texts = {"inertia": "of arm and rotor at the joint", "offset": "of the motor's torque"}
     facts = {
         name: (float(value), units[name], texts.get(name, f"{name[8:]}(q) part of gravity at the joint"))
-        for name, value in zip(terms.names, fitted_log.linear_unknowns, strict=True)
+        for name, value in zip(terms.unknown_names, fitted_log.linear_unknowns, strict=True)
     }
     if fitted_log.rotor_deviation:
         text = f"of the rotor, from the wind-up; standard deviation {fitted_log.rotor_deviation:.2g}"
         facts["motor_inertia"] = fitted_log.rotor_inertia, "kg.m2", text
     facts["residual"] = (
-        _root_mean_square(samples.torque - fitted_log.evaluate_torque(samples)[1]),
+        _root_mean_square(samples.motor_torque - fitted_log.evaluate_torque(samples)[1]),
         "N.m",
         "root mean square, at the motor",
     )
     early, late = samples.select(~samples.is_held_out), samples.select(samples.is_held_out)
-    if late.dq.size and early.dq.size > len(fitted_names) + len(terms.names):
+    if late.dq.size and early.dq.size > len(fitted_names) + len(terms.unknown_names):
         early_fit = fit_samples(file, early, fitted_names, fitted_log.rotor_inertia)
-        error = _root_mean_square(late.torque - early_fit.evaluate_torque(late)[1])
+        error = _root_mean_square(late.motor_torque - early_fit.evaluate_torque(late)[1])
         facts["held_out"] = (
             error,
             "N.m",
             f"the same of {late.dq.size} samples that a fit to the rest predicts",
         )
-        guess = _root_mean_square(late.torque - _constant_friction_torque(early, late, ratio))
+        guess = _root_mean_square(late.motor_torque - _constant_friction_torque(early, late, ratio))
         facts["held_out_constant"] = (guess, "N.m", "the same of a constant in the place of friction")
     return facts
 
@@ -283,11 +278,14 @@ def _constant_friction_torque(earlier: Samples, later: Samples, ratio: float) ->
     for samples in (earlier, later):
         terms = LinearTerms.at_samples(samples, ratio)
         models.append(
-            (np.concatenate([np.ones((samples.dq.size, 1)), terms.matrix], axis=1), terms.measured_gravity)
+            (
+                np.concatenate([np.ones((samples.dq.size, 1)), terms.design_matrix], axis=1),
+                terms.measured_gravity,
+            )
         )
     (early_matrix, early_known), (late_matrix, late_known) = models
     return np.asarray(
-        late_matrix @ np.linalg.lstsq(early_matrix, earlier.torque - early_known)[0] + late_known
+        late_matrix @ np.linalg.lstsq(early_matrix, earlier.motor_torque - early_known)[0] + late_known
     )
 
 
@@ -303,7 +301,7 @@ _NO_LOAD_LABEL, _TEMPERATURE_LABEL = "friction without load [mN m]", "temperatur
 def draw_pictures(samples: Samples, fitted_log: FittedLog) -> Iterator[Picture]:
     """Pictures of the friction over speed, time and temperature, as far as the log has these columns."""
     braked, torque = fitted_log.evaluate_torque(samples)
-    misfit = samples.torque - torque
+    misfit = samples.motor_torque - torque
     measured = braked + misfit
     yield _speed_picture(samples, fitted_log, misfit)
     if samples.is_dynamic.any():
@@ -329,21 +327,26 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
     speed = np.linspace(-fastest, fastest, 400)
     known = samples.temperature[np.isfinite(samples.temperature)]
     usual = float(np.median(known)) if known.size else np.nan
-    y, line = (
-        fitted_log.no_load_friction(samples.dq, usual) + misfit,
-        (speed, fitted_log.no_load_friction(speed, usual)),
-    )
+    y = fitted_log.no_load_friction(samples.dq, usual) + misfit
+    line = (speed, fitted_log.no_load_friction(speed, usual))
     picture = _friction_picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
     marks = None if samples.is_dynamic.any() else samples.is_held_out
-    return replace(picture, labels=(picture.labels[0], _NO_LOAD_LABEL, _ERROR_LABEL), highlighted=marks)
+    labels = (picture.axis_labels[0], _NO_LOAD_LABEL, _ERROR_LABEL)
+    return replace(picture, axis_labels=labels, highlighted_points=marks)
 
 
-def _friction_picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
+def _friction_picture(
+    abscissa: Array,
+    friction_torque: Array,
+    misfit: Array,
+    law_curve: tuple[Array, Array],
+    abscissa_label: str,
+) -> Picture:
     """Plot of friction torques (n) [N.m] over an abscissa (n): log, law, and errors (n) [N.m] of the law."""
     return Picture(
-        x,
-        MILLI_PER_UNIT * y,
+        abscissa,
+        MILLI_PER_UNIT * friction_torque,
         MILLI_PER_UNIT * misfit,
-        (line[0], MILLI_PER_UNIT * line[1]),
-        (label, _FRICTION_LABEL, _ERROR_LABEL),
+        (law_curve[0], MILLI_PER_UNIT * law_curve[1]),
+        (abscissa_label, _FRICTION_LABEL, _ERROR_LABEL),
     )

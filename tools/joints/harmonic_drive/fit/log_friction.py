@@ -20,7 +20,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ....fitting.least_squares import Solution, solve
-from ....fitting.outcome import unknowns
+from ....fitting.outcome import make_unknowns
 from .log_reading import Samples
 
 
@@ -33,16 +33,16 @@ class LinearTerms:
     unknown_names    : names (k) of the unknowns
     """
 
-    matrix: Array
+    design_matrix: Array
     measured_gravity: Array
-    names: tuple[str, ...]
+    unknown_names: tuple[str, ...]
 
     @classmethod
     def at_samples(cls, samples: Samples, ratio: float) -> "LinearTerms":
         """Evaluate the linear terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.is_dynamic.astype(float)
-        measured = np.isfinite(samples.gravity)
+        measured = np.isfinite(samples.gravity_torque)
         if dynamic.any():
             columns = {"inertia": samples.ddq / ratio, "offset": dynamic}
             swung = dynamic * np.isfinite(samples.q) * ~measured
@@ -53,22 +53,26 @@ class LinearTerms:
                     "gravity_sin": swung * np.sin(angle) / ratio,
                 }
         matrix = np.stack([*columns.values()], axis=1) if columns else np.zeros((samples.dq.size, 0))
-        known = np.where(measured, samples.gravity, 0.0) / ratio
+        known = np.where(measured, samples.gravity_torque, 0.0) / ratio
         return cls(matrix, known, tuple(columns))
 
     def solve_unknowns(self, torque: Array) -> Array:
         """Solve for the unknowns (k) by linear least squares, from the torque (n) [N.m] without friction."""
-        return np.asarray(np.linalg.lstsq(self.matrix, torque)[0]) if self.names else np.zeros(0)
+        return (
+            np.asarray(np.linalg.lstsq(self.design_matrix, torque)[0]) if self.unknown_names else np.zeros(0)
+        )
 
-    def load(self, samples: Samples, unknowns: Array, ratio: float, rotor_inertia: float) -> Array:
+    def tooth_load(
+        self, samples: Samples, linear_unknowns: Array, ratio: float, rotor_inertia: float
+    ) -> Array:
         """Load (n) [N.m] of the teeth: torque of the drive on the arm, positive in the direction of q.
 
         rotor_inertia : [kg.m2]
         """
-        values = dict(zip(self.names, unknowns.tolist(), strict=True))
+        values = dict(zip(self.unknown_names, linear_unknowns.tolist(), strict=True))
         arm = max(values.get("inertia", 0.0) - rotor_inertia * ratio**2, 0.0)
-        gravity = [n for n, name in enumerate(self.names) if name.startswith("gravity")]
-        fitted_gravity = ratio * self.matrix[:, gravity] @ unknowns[gravity]
+        gravity = [n for n, name in enumerate(self.unknown_names) if name.startswith("gravity")]
+        fitted_gravity = ratio * self.design_matrix[:, gravity] @ linear_unknowns[gravity]
         return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_gravity)
 
 
@@ -90,15 +94,13 @@ def filtered_motor_friction(drive: Drive, samples: Samples, load: Array) -> Arra
     """Friction torque (n) [N.m] at samples, smoothed by the filter of the log."""
     warmth, carried = samples.temperature[:, None], load[:, None]
     return np.asarray(
-        np.sum(samples.weights * motor_friction(drive, samples.speeds, warmth, carried), axis=1)
+        np.sum(samples.window_weights * motor_friction(drive, samples.window_speeds, warmth, carried), axis=1)
     )
 
 
-DRY_FRICTION, STRIBECK_FRICTION, VISCOUS_FRICTION = (
-    "friction_coulomb",
-    "friction_stribeck",
-    "friction_viscous",
-)
+DRY_FRICTION = "friction_coulomb"
+STRIBECK_FRICTION = "friction_stribeck"
+VISCOUS_FRICTION = "friction_viscous"
 LOAD_LOSS, LOAD_LOSS_BACK = "load_loss", "load_loss_back"
 TEMPERATURE_COEFFICIENTS = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
 FITTED_PARAMETERS = (
@@ -125,7 +127,7 @@ START_VALUES = {
 """Start values if the file has 0: losses [1], temperature coefficients [1/K]."""
 LOWER_BOUND_RATIO = 1e-3
 """Lower bound of a parameter over its start value [1]."""
-UNDETERMINED_FACTOR, EQUAL_FIT_DEVIATIONS = 2.0, 2.0
+UNDETERMINED_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
 well."""
@@ -161,22 +163,25 @@ class FittedLog:
         """Friction torque (n) [N.m] and total torque (n) [N.m] of the motor at samples."""
         ratio = abs(self.drive.ratio)
         terms = LinearTerms.at_samples(samples, ratio)
-        load = terms.load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
+        load = terms.tooth_load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
         friction_torque = filtered_motor_friction(self.drive, samples, load)
-        return friction_torque, friction_torque + terms.matrix @ self.linear_unknowns + terms.measured_gravity
+        return (
+            friction_torque,
+            friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_gravity,
+        )
 
     def evaluate_load(self, samples: Samples) -> tuple[Array, Array]:
         """Load (n) [N.m] of the teeth, and its changes (k, n) by k independent standard deviations."""
         ratio = abs(self.drive.ratio)
         terms = LinearTerms.at_samples(samples, ratio)
-        load = terms.load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
+        load = terms.tooth_load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
         variances, directions = np.linalg.eigh(self.covariance)
         ends = self.linear_unknowns + np.sqrt(np.maximum(variances, 0.0))[:, None] * directions.T
         cases = [
             *((end, self.rotor_inertia) for end in ends),
             (self.linear_unknowns, self.rotor_inertia + self.rotor_deviation),
         ]
-        changes = [terms.load(samples, end, ratio, rotor) - load for end, rotor in cases]
+        changes = [terms.tooth_load(samples, end, ratio, rotor) - load for end, rotor in cases]
         return load, np.reshape(changes, (len(changes), load.size))
 
     def no_load_friction(self, dq: Array, temperature: float) -> Array:
@@ -198,7 +203,7 @@ def select_parameters(
         return list(fitted_names), []
     reasons: dict[str, str] = {}
     terms, linear = _fit_linear_model(samples, drive)
-    load = terms.load(
+    load = terms.tooth_load(
         samples, linear[2:], abs(drive.ratio), rotor_inertia
     )  # with constant dry and viscous friction
     if np.max(np.abs(load)) < MIN_LOAD_RATIO * drive.rated_torque:
@@ -233,8 +238,8 @@ def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Arra
     ratio = abs(drive.ratio)
     terms = LinearTerms.at_samples(samples, ratio)
     friction_terms = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
-    matrix = np.concatenate([friction_terms, terms.matrix], axis=1)
-    return terms, np.linalg.lstsq(matrix, samples.torque - terms.measured_gravity)[0]
+    matrix = np.concatenate([friction_terms, terms.design_matrix], axis=1)
+    return terms, np.linalg.lstsq(matrix, samples.motor_torque - terms.measured_gravity)[0]
 
 
 def fit_samples(
@@ -251,29 +256,31 @@ def fit_samples(
     changed = file.with_values({n: v for n, v in start_values.items() if n in names}, "calibration", "start")
     bounds = {name: (LOWER_BOUND_RATIO * value, np.inf) for name, value in start_values.items()}
     for _ in range(LOAD_ITERATIONS):
-        load = terms.load(samples, linear, ratio, rotor_inertia)
+        load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
 
         def net_torque(values: Mapping[str, float], load: Array = load) -> Array:
             """Motor torque (n) [N.m] without friction and measured gravity."""
             drive = file.with_values(values, "calibration", "fit").values
             return np.asarray(
-                samples.torque - terms.measured_gravity - filtered_motor_friction(drive, samples, load)
+                samples.motor_torque - terms.measured_gravity - filtered_motor_friction(drive, samples, load)
             )
 
-        def residuals(values: Mapping[str, float], torque=net_torque) -> Array:  # type: ignore[no-untyped-def]
-            remaining = torque(values)
-            return np.asarray(remaining - terms.matrix @ terms.solve_unknowns(remaining))
+        def residuals(values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]
+            remaining = net_torque_function(values)
+            return np.asarray(remaining - terms.design_matrix @ terms.solve_unknowns(remaining))
 
-        solution = solve(unknowns(changed, names, bounds), residuals, nuisance_count=len(terms.names))
+        solution = solve(
+            make_unknowns(changed, names, bounds), residuals, nuisance_count=len(terms.unknown_names)
+        )
         linear = terms.solve_unknowns(net_torque(solution.values))
         changed = file.with_values(solution.values, "calibration", "fit")
-    direct = solution.noise**2 * np.linalg.pinv(terms.matrix.T @ terms.matrix)
+    direct = solution.noise**2 * np.linalg.pinv(terms.design_matrix.T @ terms.design_matrix)
     indirect = _propagate_deviations(solution, lambda values: terms.solve_unknowns(net_torque(values)))
     return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0)
 
 
 def drop_undetermined(
-    file: ParameterFile, samples: Samples, fit: FittedLog, names: Sequence[str]
+    file: ParameterFile, samples: Samples, fitted_log: FittedLog, names: Sequence[str]
 ) -> tuple[FittedLog, list[str], list[str]]:
     """Repeat the fit without the parameters that the log does not determine.
 
@@ -282,16 +289,18 @@ def drop_undetermined(
     the others.
     """
     undetermined = [
-        n for n in names if n in START_VALUES and fit.solution.deviations[n] > np.log(UNDETERMINED_FACTOR)
+        n
+        for n in names
+        if n in START_VALUES and fitted_log.solution.relative_deviations[n] > np.log(UNDETERMINED_FACTOR)
     ]
     determined = [name for name in names if name not in undetermined]
     if undetermined and determined:
-        other = fit_samples(file, samples, determined, fit.rotor_inertia)
-        increase = np.sum(other.solution.residuals**2) - np.sum(fit.solution.residuals**2)
-        if increase < len(undetermined) * (EQUAL_FIT_DEVIATIONS * fit.solution.noise) ** 2:
+        other = fit_samples(file, samples, determined, fitted_log.rotor_inertia)
+        increase = np.sum(other.solution.residuals**2) - np.sum(fitted_log.solution.residuals**2)
+        if increase < len(undetermined) * (MAX_RESIDUAL_INCREASE * fitted_log.solution.noise) ** 2:
             text = "the log does not determine {}, which stays as it is: that fits as well"
             return other, determined, [text.format(name) for name in undetermined]
-    return fit, list(names), []
+    return fitted_log, list(names), []
 
 
 def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
@@ -299,19 +308,21 @@ def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
     terms, linear = _fit_linear_model(samples, drive)
     w1 = abs(drive.ratio) * samples.dq
     friction_torque = linear[0] * np.sign(w1) + linear[1] * w1
-    residual = samples.torque - terms.measured_gravity - friction_torque - terms.matrix @ linear[2:]
+    residual = (
+        samples.motor_torque - terms.measured_gravity - friction_torque - terms.design_matrix @ linear[2:]
+    )
     return bool(friction_torque @ w1 < 0.0 and np.sum(friction_torque**2) > np.sum(residual**2))
 
 
 def fit_with_rotor(
-    file: ParameterFile, samples: Samples, names: Sequence[str], rotor_inertia: float, deviation: float
+    file: ParameterFile, samples: Samples, names: Sequence[str], rotor_inertia: float, rotor_deviation: float
 ) -> FittedLog:
     """Fit with a rotor inertia and its standard deviation [kg.m2], which is added to the covariance."""
     fit = fit_samples(file, samples, names, rotor_inertia)
-    shifted = fit_samples(file, samples, names, rotor_inertia + deviation).solution.values
+    shifted = fit_samples(file, samples, names, rotor_inertia + rotor_deviation).solution.values
     changes = np.array([np.log(shifted[name] / value) for name, value in fit.solution.values.items()])
     wider = replace(fit.solution, covariance=fit.solution.covariance + np.outer(changes, changes))
-    return replace(fit, solution=wider, rotor_deviation=deviation)
+    return replace(fit, solution=wider, rotor_deviation=rotor_deviation)
 
 
 def _propagate_deviations(solution: Solution, function: Callable[[Mapping[str, float]], Array]) -> Array:
@@ -330,14 +341,14 @@ def _propagate_deviations(solution: Solution, function: Callable[[Mapping[str, f
     return np.array(rows)
 
 
-def _start_values(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, float]:
+def _start_values(file: ParameterFile, samples: Samples, linear_fit: Array) -> dict[str, float]:
     """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
 
     linear_fit : result of `_fit_linear_model`
     """
-    size = float(np.median(np.abs(samples.torque))) or 1.0
+    size = float(np.median(np.abs(samples.motor_torque))) or 1.0
     fastest = abs(file.values.ratio) * float(np.max(np.abs(samples.dq)))
-    dry = max(float(linear[0]), 0.05 * size)
+    dry = max(float(linear_fit[0]), 0.05 * size)
     others = {
         name: file.values_by_name[name] if file.values_by_name[name] > 0.0 else value
         for name, value in START_VALUES.items()
@@ -345,5 +356,5 @@ def _start_values(file: ParameterFile, samples: Samples, linear: Array) -> dict[
     return {
         DRY_FRICTION: dry,
         STRIBECK_FRICTION: 0.2 * dry,
-        VISCOUS_FRICTION: max(float(linear[1]), 0.02 * size / fastest),
+        VISCOUS_FRICTION: max(float(linear_fit[1]), 0.02 * size / fastest),
     } | others

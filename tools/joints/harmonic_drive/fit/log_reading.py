@@ -28,7 +28,7 @@ FILTER_WINDOW, FILTER_DEGREE = 0.04, 4
 FILTER_NODES = 9
 """Number of speeds in a window at which friction is evaluated and filtered; smallest number of samples of a
 window."""
-ROTATION_RATIO = 5.0
+DEVELOPED_ROTATION_RATIO = 5.0
 """Rotation of the motor since a reversal over `presliding` [1] after which friction is developed to 99 %."""
 MIN_SPEED_RATIO = 1.2
 """Ratio of largest to smallest speed [1] that a log must exceed."""
@@ -56,10 +56,10 @@ class Samples:
     q: Array
     dq: Array
     ddq: Array
-    speeds: Array
-    weights: Array
-    torque: Array
-    gravity: Array
+    window_speeds: Array
+    window_weights: Array
+    motor_torque: Array
+    gravity_torque: Array
     temperature: Array
     motor_angle: Array
     sensor_torque: Array
@@ -85,10 +85,10 @@ def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Sampl
         q=columns_by_name.get("q", none),
         dq=columns_by_name["dq"],
         ddq=np.zeros(torque.size),
-        speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODES, axis=1),
-        weights=np.repeat(np.eye(1, FILTER_NODES), torque.size, axis=0),
-        torque=torque,
-        gravity=columns_by_name.get("gravity", none),
+        window_speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODES, axis=1),
+        window_weights=np.repeat(np.eye(1, FILTER_NODES), torque.size, axis=0),
+        motor_torque=torque,
+        gravity_torque=columns_by_name.get("gravity", none),
         temperature=columns_by_name.get("temperature", none),
         motor_angle=none,
         sensor_torque=none,
@@ -98,58 +98,60 @@ def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Sampl
     )
 
 
-def window_size(step: float) -> int:
+def window_size(time_step: float) -> int:
     """Number of samples in the window of the filter, at a time step [s]; odd."""
-    return max(2 * round(0.5 * FILTER_WINDOW / step) + 1, FILTER_NODES)
+    return max(2 * round(0.5 * FILTER_WINDOW / time_step) + 1, FILTER_NODES)
 
 
-def filter_values(values: Array, step: float, derivative: int = 0) -> Array:
+def filter_values(values: Array, time_step: float, derivative: int = 0) -> Array:
     """Filter values (n) at a constant time step [s]; or their derivative of the order `derivative`."""
-    return np.asarray(savgol_filter(values, window_size(step), FILTER_DEGREE, derivative, step))
+    return np.asarray(savgol_filter(values, window_size(time_step), FILTER_DEGREE, derivative, time_step))
 
 
-def dynamic_samples(time: Array, step: float, columns_by_name: Mapping[str, Array], drive: Drive) -> Samples:
+def dynamic_samples(
+    time: Array, time_step: float, columns_by_name: Mapping[str, Array], drive: Drive
+) -> Samples:
     """Filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
     none = np.full(time.size, np.nan)
 
     def smooth(name: str) -> Array:
-        return filter_values(columns_by_name[name], step) if name in columns_by_name else none
+        return filter_values(columns_by_name[name], time_step) if name in columns_by_name else none
 
     without_dq = "dq" not in columns_by_name
-    dq = filter_values(columns_by_name["q"], step, 1) if without_dq else smooth("dq")
-    nodes, weights = _filter_nodes(window_size(step))
+    dq = filter_values(columns_by_name["q"], time_step, 1) if without_dq else smooth("dq")
+    nodes, weights = _filter_nodes(window_size(time_step))
     return Samples(
         time=time,
         q=smooth("q"),
         dq=dq,
-        ddq=filter_values(columns_by_name["q"], step, 2)
+        ddq=filter_values(columns_by_name["q"], time_step, 2)
         if without_dq
-        else filter_values(columns_by_name["dq"], step, 1),
-        speeds=dq[np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)],
-        weights=np.repeat(weights[None, :], time.size, axis=0),
-        torque=smooth("tau"),
-        gravity=smooth("gravity"),
+        else filter_values(columns_by_name["dq"], time_step, 1),
+        window_speeds=dq[np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)],
+        window_weights=np.repeat(weights[None, :], time.size, axis=0),
+        motor_torque=smooth("tau"),
+        gravity_torque=smooth("gravity"),
         temperature=columns_by_name.get("temperature", none),
         motor_angle=smooth("q_motor"),
         sensor_torque=smooth("link_torque"),
         is_held_out=time > time[0] + 0.7 * (time[-1] - time[0]),
         is_dynamic=np.ones(time.size, dtype=bool),
-        is_developed=_is_friction_developed(dq, step, window_size(step), drive),
+        is_developed=_is_friction_developed(dq, time_step, window_size(time_step), drive),
     )
 
 
-def _filter_nodes(width: int) -> tuple[SampleIndices, Array]:
+def _filter_nodes(window_width: int) -> tuple[SampleIndices, Array]:
     """Sample offsets (FILTER_NODES) within the window of the filter, and the filter weights at these nodes.
 
     The weights are those for values that are linear between the nodes.
     """
-    half = width // 2
+    half = window_width // 2
     nodes = np.round(np.linspace(-half, half, FILTER_NODES)).astype(int)
     hats = [np.interp(np.arange(-half, half + 1), nodes, row) for row in np.eye(FILTER_NODES)]
-    return nodes, np.array(hats) @ savgol_coeffs(width, FILTER_DEGREE, use="dot")
+    return nodes, np.array(hats) @ savgol_coeffs(window_width, FILTER_DEGREE, use="dot")
 
 
-def _is_friction_developed(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bool_]:
+def _is_friction_developed(dq: Array, time_step: float, window_width: int, drive: Drive) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
     The motor has rotated by DEVELOPED_ROTATION_RATIO times `presliding` since its last reversal, and no
@@ -160,10 +162,10 @@ def _is_friction_developed(dq: Array, step: float, width: int, drive: Drive) -> 
     first = np.concatenate([[0], np.flatnonzero(np.diff(run)) + 1])
     last = np.concatenate([first[1:], [dq.size]])
     index = np.arange(dq.size)
-    rotation = np.concatenate([[0.0], np.cumsum(np.abs(dq[1:]))]) * step * abs(drive.ratio)
+    rotation = np.concatenate([[0.0], np.cumsum(np.abs(dq[1:]))]) * time_step * abs(drive.ratio)
     before, after = index - first[run], last[run] - 1 - index
-    developed = rotation - rotation[first[run]] > ROTATION_RATIO * drive.presliding
-    return np.asarray(developed & (before > width // 2) & (after > width // 2) & (sign != 0.0))
+    developed = rotation - rotation[first[run]] > DEVELOPED_ROTATION_RATIO * drive.presliding
+    return np.asarray(developed & (before > window_width // 2) & (after > window_width // 2) & (sign != 0.0))
 
 
 COLUMN_UNITS: Mapping[str, UnitSizes] = {
@@ -209,13 +211,13 @@ SPEED_RATIO_RANGE = (0.5, 2.0)
 """Allowed range of dq over the derivative of q [1]."""
 
 
-def parse_columns(texts: Sequence[str]) -> dict[str, tuple[str, str | None]]:
+def parse_columns(column_texts: Sequence[str]) -> dict[str, tuple[str, str | None]]:
     """Parse `NAME=HEADING` or `NAME=HEADING [UNIT]`: {column: (heading in the file, unit or None)}.
 
     Raises ValueError for other text and unknown columns.
     """
     found = {}
-    for word in texts:
+    for word in column_texts:
         name, _, text = word.partition("=")
         if name not in COLUMN_UNITS or not text.strip():
             raise ValueError(
@@ -226,7 +228,10 @@ def parse_columns(texts: Sequence[str]) -> dict[str, tuple[str, str | None]]:
 
 
 def read_log(
-    path: Path, names: Mapping[str, tuple[str, str | None]], torque_constant: float | None, drive: Drive
+    path: Path,
+    renamed_columns: Mapping[str, tuple[str, str | None]],
+    torque_constant: float | None,
+    drive: Drive,
 ) -> Samples:
     """Read the samples of a log.
 
@@ -236,7 +241,7 @@ def read_log(
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    table = columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, names)
+    table = columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, renamed_columns)
     have = dict(table.columns)
     torque = _motor_torque(table, torque_constant)
     if "temperature" in have and table.units["temperature"] != "K":
@@ -302,14 +307,14 @@ def _time_step(table: columns.Columns) -> tuple[Array, float]:
     if np.any(wrong := steps <= 0.0):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{table.path}: line {table.lines[first + 1]}: time = {time[first + 1]:.9g} s after "
+            f"{table.path}: line {table.line_numbers[first + 1]}: time = {time[first + 1]:.9g} s after "
             f"{time[first]:.9g} s runs back; expected rising times"
         )
     step = float(np.median(steps))
     if np.any(wrong := steps > GAP_RATIO * step):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{table.path}: line {table.lines[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
+            f"{table.path}: line {table.line_numbers[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
             f"{GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
         )
     if np.max(np.abs(steps - step)) < STEP_TOLERANCE * step:
@@ -346,7 +351,7 @@ def _check_samples(path: Path, samples: Samples, drive: Drive) -> None:
             f"{path}: has no motion; expected speeds of the joint above {MIN_MOTOR_SPEED / ratio:.2g} rad/s"
         )
     limit = MAX_TORQUE_RATIO * float(drive.max_table_torque) / ratio
-    largest = float(np.max(np.abs(samples.torque)))
+    largest = float(np.max(np.abs(samples.motor_torque)))
     if largest > limit:
         raise ValueError(
             f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "

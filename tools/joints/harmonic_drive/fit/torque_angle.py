@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.given import TableDrive
 from jointfmu.joints.harmonic_drive.law import ContactPairDrive
+from jointfmu.joints.harmonic_drive.prescribed_midline import TableDrive
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
 from .... import columns
 from ....catalogue import SourcedNumber
-from ....fitting import loop
+from ....fitting import backbone
 from ....fitting.least_squares import EMPTY_SOLUTION, Solution, solve
 from ....fitting.measurement import COLUMN_SYNONYMS
 from ....fitting.outcome import (
@@ -24,8 +24,8 @@ from ....fitting.outcome import (
     Picture,
     correlation_note,
     fitted_parameters,
-    predictor,
-    unknowns,
+    make_predictor,
+    make_unknowns,
 )
 from . import drive
 from .drive import COLUMN_NAMES, COLUMN_UNITS, RAD_PER_ARCMIN
@@ -43,7 +43,7 @@ class MeasuredCurve:
     """Measured curve: path of the file, its midline, and start parameters for a drive of this size."""
 
     path: Path
-    midline: loop.Backbone
+    midline: backbone.Backbone
     start: ParameterFile
 
 
@@ -82,18 +82,18 @@ def fit(
     )
     centred = line.angle - np.interp(0.0, line.torque, line.angle)
     file = drive.scale_stiffness(file, names, line.torque, centred)
-    weight = np.sqrt(line.count)
+    weight = np.sqrt(line.sample_counts)
     size = float(np.ptp(line.angle))
 
     def offset(predicted: Array) -> float:
-        return float(np.average(line.angle - predicted, weights=line.count))
+        return float(np.average(line.angle - predicted, weights=line.sample_counts))
 
     def weighted_residuals(predicted: Array) -> Array:
         return np.asarray(weight * (line.angle - predicted - offset(predicted)) / size)
 
-    angles = predictor(file, lambda joint: drive.wind_up(joint, line.torque))
+    angles = make_predictor(file, lambda joint: drive.wind_up(joint, line.torque))
     solution = solve(
-        unknowns(file, names, drive.parameter_bounds(file)),
+        make_unknowns(file, names, drive.parameter_bounds(file)),
         lambda values: weighted_residuals(angles(values)),
         nuisance_count=1,
     )
@@ -106,7 +106,7 @@ def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: floa
     table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS, COLUMN_SYNONYMS)
     torque, angle = (table.require_column(name, COLUMN_UNITS) for name in COLUMN_UNITS)
     try:
-        line = loop.find_backbone(torque, angle)
+        line = backbone.find_backbone(torque, angle)
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
     start_file = start or load_default("harmonic_drive")
@@ -114,17 +114,19 @@ def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: floa
     _check_size(line, file, table)
     size = start_file.values.rated_torque / file.values.rated_torque
     expected = float(np.ptp(drive.wind_up(start_file.values, size * line.torque)))
-    COLUMN_NAMES.check_level(table.path, expected / float(np.ptp(line.angle)), table.units, start_file)
+    COLUMN_NAMES.check_stiffness_ratio(
+        table.path, expected / float(np.ptp(line.angle)), table.units, start_file
+    )
     return MeasuredCurve(table.path, line, file)
 
 
-def describe_range(line: loop.Backbone) -> str:
+def describe_range(midline: backbone.Backbone) -> str:
     """Describe the range of torques of a measured curve, as text."""
-    return f"torque {line.torque[0]:.4g} to {line.torque[-1]:.4g} N.m"
+    return f"torque {midline.torque[0]:.4g} to {midline.torque[-1]:.4g} N.m"
 
 
 def make_result(
-    record: MeasuredCurve, result: ParameterFile, solution: Solution, offset: float, noise: float
+    record: MeasuredCurve, result: ParameterFile, solution: Solution, angle_offset: float, angle_noise: float
 ) -> FitResult:
     """Make the result of a fit: parameter file, facts, plot and notes.
 
@@ -132,48 +134,55 @@ def make_result(
     angle_noise  : [rad] standard deviation of one sample
     """
     line = record.midline
-    residuals = line.angle - drive.wind_up(result.values, line.torque) - offset
+    residuals = line.angle - drive.wind_up(result.values, line.torque) - angle_offset
     grid = np.linspace(line.torque[0], line.torque[-1], 400)
     picture = Picture(
-        x=line.torque,
-        y=(line.angle - offset) / RAD_PER_ARCMIN,
+        data_x=line.torque,
+        data_y=(line.angle - angle_offset) / RAD_PER_ARCMIN,
         misfit=residuals / RAD_PER_ARCMIN,
-        line=(grid, drive.wind_up(result.values, grid) / RAD_PER_ARCMIN),
-        labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
+        law_curve=(grid, drive.wind_up(result.values, grid) / RAD_PER_ARCMIN),
+        axis_labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
     return FitResult(
-        result, solution, _facts(line, offset, residuals, noise), [picture], notes=_notes(line, residuals)
+        result,
+        solution,
+        _facts(line, angle_offset, residuals, angle_noise),
+        [picture],
+        notes=_notes(line, residuals),
     )
 
 
 def _resize_start(
-    start: ParameterFile, torque: Array, rated_torque: float | None, path: Path
+    start_file: ParameterFile, torque: Array, rated_torque: float | None, path: Path
 ) -> ParameterFile:
     """Start parameters for a drive of the stated rated torque [N.m].
 
     Raises InputRefusal if the measured torque (n) [N.m] exceeds max_torque of the law.
     """
-    drive_, reach = start.values, float(np.max(np.abs(torque)))
+    drive_, reach = start_file.values, float(np.max(np.abs(torque)))
     if rated_torque is not None:
         factor = drive_.max_table_torque / drive_.rated_torque
-        start = drive.resize_drive(start, rated_torque, factor, "user", "stated with the torque-angle curve")
-    if isinstance(start.values, ContactPairDrive) and reach > start.values.max_torque:
+        start_file = drive.resize_drive(
+            start_file, rated_torque, factor, "user", "stated with the torque-angle curve"
+        )
+    if isinstance(start_file.values, ContactPairDrive) and reach > start_file.values.max_torque:
         raise InputRefusal(
-            f"{path}: torque reaches {reach:g} N.m, beyond max_torque = {start.values.max_torque:g} N.m of "
-            f"{start.name}: state the drive's rated torque, max_torque is scaled with it",
+            f"{path}: torque reaches {reach:g} N.m, beyond max_torque = "
+            f"{start_file.values.max_torque:g} N.m of "
+            f"{start_file.name}: state the drive's rated torque, max_torque is scaled with it",
             "rated_torque",
         )
-    return start
+    return start_file
 
 
-def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Columns) -> None:
+def _check_size(midline: backbone.Backbone, start_file: ParameterFile, table: columns.Columns) -> None:
     """Check wind-up and loop energy before the fit.
 
     Raises InputRefusal for a wind-up that is implausible for this size, ValueError for a loop that creates
     energy.
     """
-    angle_range, torque_range = float(np.ptp(line.angle)), float(np.ptp(line.torque))
-    rated = start.values.rated_torque
+    angle_range, torque_range = float(np.ptp(midline.angle)), float(np.ptp(midline.torque))
+    rated = start_file.values.rated_torque
     low, high = drive.WIND_UP_RANGE
     path, at_rated = table.path, angle_range * rated / torque_range
     if not low <= at_rated <= high:
@@ -181,11 +190,12 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
         raise InputRefusal(
             f"{path}: the angle turns {angle_range:.3g} rad over {torque_range:.3g} N.m, that is "
             f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
-            f"{COLUMN_NAMES.likely_unit(typical / at_rated, table.units)}, or state the drive's rated torque",
+            f"{COLUMN_NAMES.describe_likely_unit_error(typical / at_rated, table.units)}, or state the "
+            "drive's rated torque",
             "rated_torque",
         )
-    if line.loop_area is not None:
-        area, deviation = line.loop_area
+    if midline.loop_area is not None:
+        area, deviation = midline.loop_area
         if area < -max(3.0 * deviation, MAX_CREATED_ENERGY * torque_range * angle_range):
             raise ValueError(
                 f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected is 0 or more: the "
@@ -193,12 +203,12 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
             )
 
 
-def _facts(line: loop.Backbone, offset: float, residuals: Array, noise: float) -> Facts:
+def _facts(midline: backbone.Backbone, angle_offset: float, residuals: Array, angle_noise: float) -> Facts:
     """Facts about the measured curve: offset, loop area, backlash, drift, noise, largest error."""
     facts = {
-        "points": (float(np.sum(line.count)), "1", "samples used"),
-        "branches": (float(line.branches), "1", "branches used"),
-        "offset": (offset, "rad", "angle at zero torque, taken off"),
+        "points": (float(np.sum(midline.sample_counts)), "1", "samples used"),
+        "branches": (float(midline.branch_count), "1", "branches used"),
+        "offset": (angle_offset, "rad", "angle at zero torque, taken off"),
     }
     texts = {
         "loop_area": ("J", "dissipated per loop"),
@@ -206,20 +216,20 @@ def _facts(line: loop.Backbone, offset: float, residuals: Array, noise: float) -
         "drift": ("rad", "drift of the angle over the record, taken off"),
     }
     for name, (unit, text) in texts.items():
-        if (value := getattr(line, name)) is not None:
+        if (value := getattr(midline, name)) is not None:
             facts[name] = (value[0], unit, text)
             facts[f"{name}_deviation"] = (value[1], unit, "its standard deviation")
-    facts["noise"] = (noise, "rad", "standard deviation of one sample about the fitted law")
+    facts["noise"] = (angle_noise, "rad", "standard deviation of one sample about the fitted law")
     facts["largest_misfit"] = (float(np.max(np.abs(residuals))), "rad", "of the mid-line from the fitted law")
     return facts
 
 
-def _notes(line: loop.Backbone, residuals: Array) -> list[str]:
+def _notes(midline: backbone.Backbone, residuals: Array) -> list[str]:
     """Notes about quantities that the curve does not determine, and about systematic errors of the law."""
     notes = []
-    if line.loop_area is None:
+    if midline.loop_area is None:
         notes.append("one direction of loading only: loop area, backlash and drift cannot be told")
-    elif line.drift is None:
+    elif midline.drift is None:
         notes.append("a single loop that is not closed: a drift cannot be told from the loop")
     return notes + correlation_note(residuals, "curve")
 
@@ -249,33 +259,33 @@ def fit_table(
     values["table.torque"] = tuple(torque.tolist())
     values["table.angle"] = tuple(angle.tolist())
     table = {label: SourcedNumber(column, "calibration", name) for label, column in values.items()}
-    file = drive.with_law(start_file, TableDrive, name, table)
+    file = drive.change_law(start_file, TableDrive, name, table)
     file = replace(fitted_parameters(file, values, "calibration", name, describe_range(line)), name=name)
     residuals = line.angle - offset - drive.wind_up(file.values, line.torque)
-    noise = float(np.sqrt(np.average(line.count * residuals**2)))
+    noise = float(np.sqrt(np.average(line.sample_counts * residuals**2)))
     return make_result(record, file, EMPTY_SOLUTION, offset, noise)
 
 
-def table_points(line: loop.Backbone) -> tuple[Array, Array, float]:
+def table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
     """Torques (n) [N.m] and angles (n) [rad] of a table, and the offset [rad]: the angle at zero torque.
 
     Raises ValueError if the midline does not include zero torque or does not rise.
     """
-    low, high = line.torque[0], line.torque[-1]
+    low, high = midline.torque[0], midline.torque[-1]
     if low * high > 0.0 and min(abs(low), abs(high)) > 0.05 * (high - low):
         raise ValueError(f"the torque goes from {low:.4g} to {high:.4g} N.m; a table needs it to pass zero")
     common_torques = np.linspace(0.0, max(min(-low, high), 0.0), 41)
     offset = float(
-        np.mean([np.interp(sign * common_torques, line.torque, line.angle) for sign in (-1.0, 1.0)])
+        np.mean([np.interp(sign * common_torques, midline.torque, midline.angle) for sign in (-1.0, 1.0)])
     )
-    size, angle = np.abs(line.torque), np.sign(line.torque) * (line.angle - offset)
+    size, angle = np.abs(midline.torque), np.sign(midline.torque) * (midline.angle - offset)
     for count in range(MAX_TABLE_POINTS, MIN_TABLE_POINTS - 1, -1):
         edges = size.max() * np.linspace(0.0, 1.0, count + 1) ** SPACING_EXPONENT
         bin_index = np.clip(np.searchsorted(edges, size, side="left") - 1, 0, count - 1)
-        weight = np.bincount(bin_index, line.count, count)
+        weight = np.bincount(bin_index, midline.sample_counts, count)
         is_filled = weight > 0.0
         means = [
-            np.bincount(bin_index, line.count * x, count)[is_filled] / weight[is_filled]
+            np.bincount(bin_index, midline.sample_counts * x, count)[is_filled] / weight[is_filled]
             for x in (size, angle)
         ]
         if all(x[0] > 0.0 and np.all(np.diff(x) > 0.0) for x in means):

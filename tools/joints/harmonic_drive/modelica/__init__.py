@@ -21,10 +21,10 @@ from ....modelica.records import (
     ModelicaRecord,
     WorkingPoint,
     decimate_curve,
-    format_computed,
-    format_given,
+    format_computed_values,
     format_matrix,
     format_number,
+    format_parameter_values,
     make_identifier,
 )
 
@@ -38,9 +38,9 @@ _COMPONENT_PARAMETERS = tuple(name for name, _ in flat_fields(Drive) if name not
 def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     drive = file.values
     spring = HarmonicDriveSpring.tabulate(drive)
-    stated = format_given({name: getattr(drive, name) for name in _COMPONENT_PARAMETERS})
-    stated |= format_given({"T": file.start_value("temperature")})
-    derived = format_computed({"K_FTS0": drive.K_FTS} | _hysteresis_totals(spring))
+    stated = format_parameter_values({name: getattr(drive, name) for name in _COMPONENT_PARAMETERS})
+    stated |= format_parameter_values({"T": file.start_value("temperature")})
+    derived = format_computed_values({"K_FTS0": drive.K_FTS} | _hysteresis_totals(spring))
     sliders = np.array(slider_shares(stiffness_exponent(drive)), dtype=np.float64).T
     return [
         ModelicaRecord(
@@ -56,23 +56,23 @@ def _hysteresis_totals(spring: HarmonicDriveSpring) -> dict[str, float]:
     """Total friction limit [N.m] of the hysteresis sliders, and their stiffness [N.m/rad] while all stick."""
     sliders = spring.hysteresis
     return {
-        "hysteresis_friction": float(np.sum(sliders.limit)),
+        "hysteresis_friction": float(np.sum(sliders.friction_limit)),
         "hysteresis_stiffness": float(np.sum(sliders.stiffness)),
     }
 
 
 COMPONENT = ModelicaComponent(
     name="HarmonicDriveSpring",
-    base="HarmonicDrive",
-    records=_make_records,
+    base_record="HarmonicDrive",
+    make_records=_make_records,
     system_parameters=lambda file: (
-        format_computed(_hysteresis_totals(HarmonicDriveSpring.tabulate(file.values)))
+        format_computed_values(_hysteresis_totals(HarmonicDriveSpring.tabulate(file.values)))
         | {"stateSelect": "StateSelect.default"}
     ),
     fixed_input_parameters={"temperature": "T"},
     component_only_parameters=("hysteresis_loss", "hysteresis_stiffness"),
-    template_texts=lambda drive: {
-        "end": f"{drive.end:g} N m",
+    make_template_texts=lambda drive: {
+        "end": f"{drive.max_load:g} N m",
         "brakes": format_matrix(np.column_stack([STIFFNESS_SHARES, LIMIT_SHARES])),
         "turned": format_number(PRIOR_ROTATION_TIME),
         "reference": format_number(REFERENCE_TEMPERATURE),

@@ -13,6 +13,7 @@ the unrounded nodes. benchmarks/patch_reduction.py prints the deviation from the
 import numpy as np
 
 from ...quantity import Array
+from .distribution import PressureDistribution
 from .elimination import NodeIndices, reduce_weights, select_independent, weight_changes
 from .reproducible import (
     binary_power,
@@ -23,53 +24,50 @@ from .reproducible import (
     successive_powers,
     weighted_sums,
 )
-from .shape import PressureDistribution
 
 LAW_EXPONENTS = (4.0, 8.0, 16.0, 64.0)
 """Exponents N of the laws p ~ delta^N [1], with k ~ p^(1 - 1/N). Hertz has 1.5, rough surfaces about 10; the
 last one is nearly an exponential."""
 STATE_COUNT = 80
 """Number of sampled states of the joint [1]."""
-UNTILTED_SHARE = 0.4
+UNTILTED_STATE_SHARE = 0.4
 """Share of the states without normal displacement and tilt [1]."""
 MOVED_STATE_WEIGHT = 0.02
 """Weight of the states with displacement and tilt, over that of the others [1]."""
-MAX_OPENING, MAX_TILT = 0.1, 0.1
+MAX_OPENING_RATIO, MAX_TILT_OPENING_RATIO = 0.1, 0.1
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
-MAX_LOST_FORCE = 1e-4
+MAX_LOST_FORCE_SHARE = 1e-4
 """Share of the force [1] that is lost by opening at the largest moment."""
-MIN_PEAK_FACTOR = 0.1
+MIN_PEAK_SHARE_FACTOR = 0.1
 """Smallest factor [1] on the share of a node with the largest pressure."""
-MIN_PEAK_COUNT = 96
+MIN_COUNT_FOR_PEAK_NODES = 96
 """Smallest number of points [1] for which the nodes with the largest pressure are kept."""
 MIN_SYMMETRY_GROUPS = 10
 """Smallest number of groups of mirrored points [1]; with fewer groups the symmetry is given up."""
 _SEQUENCE_STEPS = successive_powers(1.0 / 1.1673039782614187, 4)
-"""Increments of a low-discrepancy sequence in four dimensions [1]: powers of the root of x^5 = x + 1."""
+"""Increments of a low-discrepancy sequence in four dimensions [1]: powers of 1/x with x^5 = x + 1."""
 
 
-def reduce_points(shape: PressureDistribution, count: int) -> PressureDistribution:
-    """Reduce a pressure distribution to at most `count` of its nodes with other shares.
+def reduce_points(distribution: PressureDistribution, max_point_count: int) -> PressureDistribution:
+    """Reduce a pressure distribution to at most `max_point_count` of its nodes with other shares.
 
     Returns the distribution itself if it has no more nodes.
     Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
     share), and the second moments of share.
-    Kept exactly: the largest pressure at any preload and moment, if count is at least MIN_PEAK_COUNT, and the
-    symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
+    Kept exactly: the largest pressure at any preload and moment, if max_point_count is at least
+    MIN_COUNT_FOR_PEAK_NODES, and the symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
 
-    Raises ValueError if count is too small to keep the sums.
+    Raises ValueError if max_point_count is too small to keep the sums.
     """
-    if shape.share.size <= count:
-        return shape
-    rounded_shape = round_distribution(shape)
+    if distribution.area_share.size <= max_point_count:
+        return distribution
+    rounded_shape = round_distribution(distribution)
     group = _find_symmetry_groups(rounded_shape)
-    if np.max(np.bincount(group)) * MIN_SYMMETRY_GROUPS > count:
-        group = np.arange(shape.share.size)
-    nodes, factor = _select_groups(rounded_shape, group, count)
-    old_shares, exact = (
-        _group_sums(group, shape.share),
-        _group_means(_scaled_exact_functions(shape), shape, group),
-    )
+    if np.max(np.bincount(group)) * MIN_SYMMETRY_GROUPS > max_point_count:
+        group = np.arange(distribution.area_share.size)
+    nodes, factor = _select_groups(rounded_shape, group, max_point_count)
+    old_shares = _group_sums(group, distribution.area_share)
+    exact = _group_means(_scaled_exact_functions(distribution), distribution, group)
     new_shares, exact_nodes = np.zeros_like(old_shares), exact[:, nodes]
     new_shares[nodes] = factor * old_shares[nodes]
     new_shares[nodes] += weight_changes(
@@ -77,70 +75,86 @@ def reduce_points(shape: PressureDistribution, count: int) -> PressureDistributi
         exact_nodes,
         weighted_sums(exact, old_shares) - weighted_sums(exact_nodes, new_shares[nodes]),
     )
-    return clear_round_off(_scale_shares(shape, group, new_shares / old_shares))
+    return clear_round_off(_scale_shares(distribution, group, new_shares / old_shares))
 
 
-def _select_groups(shape: PressureDistribution, group: NodeIndices, count: int) -> tuple[NodeIndices, Array]:
-    """Select groups with at most `count` nodes that keep the sums; return groups and factors of their shares.
+def _select_groups(
+    distribution: PressureDistribution, node_groups: NodeIndices, max_node_count: int
+) -> tuple[NodeIndices, Array]:
+    """Select groups of nodes that keep the sums; return the groups and the factors on their shares.
 
-    group : (n) group of each node
+    node_groups : (n) group of each node
     """
-    size, share = np.bincount(group), _group_sums(group, shape.share)
+    size, share = np.bincount(node_groups), _group_sums(node_groups, distribution.area_share)
     factor = np.sqrt(share)
     exact = select_independent(
-        factor * _group_means(_scaled_exact_functions(shape), shape, group), share.size
+        factor * _group_means(_scaled_exact_functions(distribution), distribution, node_groups), share.size
     )[1]
-    rest = factor * _group_means(_sample_functions(shape), shape, group)
+    rest = factor * _group_means(_sample_functions(distribution), distribution, node_groups)
     rest -= matrix_product(matrix_product(rest, exact), exact.T)
-    functions = np.concatenate([exact, select_independent(rest, count)[1]]).T / factor[:, None]
-    min_shares = _minimum_shares(shape, group, share) if count >= MIN_PEAK_COUNT else np.zeros_like(share)
+    functions = np.concatenate([exact, select_independent(rest, max_node_count)[1]]).T / factor[:, None]
+    min_shares = (
+        _minimum_shares(distribution, node_groups, share)
+        if max_node_count >= MIN_COUNT_FOR_PEAK_NODES
+        else np.zeros_like(share)
+    )
     weights, number = share, functions.shape[1]
     while number >= len(exact):
         free_groups = np.flatnonzero(weights > min_shares)
         reduced = reduce_weights(functions[free_groups, :number], (weights - min_shares)[free_groups])
         weights = min_shares.copy()
         weights[free_groups] += reduced
-        excess = int(np.sum(size[weights > 0.0])) - count
+        excess = int(np.sum(size[weights > 0.0])) - max_node_count
         if excess <= 0:
             nodes = np.flatnonzero(weights > 0.0)
             return nodes, weights[nodes] / share[nodes]
         number = min(number, int(np.sum(reduced > 0.0))) - max(excess // (2 * int(np.max(size))), 1)
-    raise ValueError(f"{count} points are too few, expected at least {count + excess} for this contact")
+    raise ValueError(
+        f"{max_node_count} points are too few, expected at least {max_node_count + excess} for this contact"
+    )
 
 
-def _minimum_shares(shape: PressureDistribution, group: NodeIndices, share: Array) -> Array:
+def _minimum_shares(
+    distribution: PressureDistribution, node_groups: NodeIndices, group_shares: Array
+) -> Array:
     """Smallest shares (groups) [1] that the groups must keep: nonzero for nodes with the largest pressure."""
-    min_shares, peak_groups = np.zeros_like(share), np.unique(group[find_peak_nodes(shape)])
-    min_shares[peak_groups] = MIN_PEAK_FACTOR * share[peak_groups]
+    min_shares = np.zeros_like(group_shares)
+    peak_groups = np.unique(node_groups[find_peak_nodes(distribution)])
+    min_shares[peak_groups] = MIN_PEAK_SHARE_FACTOR * group_shares[peak_groups]
     return min_shares
 
 
-def _scale_shares(shape: PressureDistribution, group: NodeIndices, factor: Array) -> PressureDistribution:
-    """Multiply shares by the factor (groups) [1] of their group; remove nodes with the factor zero."""
-    nodes = np.flatnonzero(factor[group] > 0.0)
-    selected = shape.select_nodes(nodes)
+def _scale_shares(
+    distribution: PressureDistribution, node_groups: NodeIndices, group_factors: Array
+) -> PressureDistribution:
+    """Multiply shares of nodes by the factor (groups) [1] of their group; remove nodes with factor zero."""
+    nodes = np.flatnonzero(group_factors[node_groups] > 0.0)
+    selected = distribution.select_nodes(nodes)
     return PressureDistribution(
-        selected.share * factor[group[nodes]],
+        selected.area_share * group_factors[node_groups[nodes]],
         selected.position,
         selected.preload_shape,
         selected.moment_shape,
     )
 
 
-def _find_symmetry_groups(shape: PressureDistribution) -> NodeIndices:
-    """Group (n) of each node: mirror images at x = 0, y = 0 or both are in one group, if all nodes have one.
+def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
+    """Symmetry group (n) of each node: its mirror images at x = 0, y = 0 or both, if every node has an image.
 
     At y = 0 moment_shape changes its sign.
     """
-    share, (x, y), equal, tilt = shape.share, shape.position.T, shape.preload_shape, shape.moment_shape
+    share = distribution.area_share
+    x, y = distribution.position.T
+    equal = distribution.preload_shape
+    tilt = distribution.moment_shape
 
-    def keys(x_sign: float, y_sign: float) -> Array:
+    def mirrored_node_keys(x_sign: float, y_sign: float) -> Array:
         return np.column_stack([x_sign * x, y_sign * y, share, equal, y_sign * tilt]) + 0.0  # no -0.0
 
-    own_keys, group = keys(1.0, 1.0), np.arange(shape.share.size)
+    own_keys, group = mirrored_node_keys(1.0, 1.0), np.arange(distribution.area_share.size)
     order = np.lexsort(own_keys.T)
     for sides in ((-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
-        image = keys(*sides)
+        image = mirrored_node_keys(*sides)
         image_order = np.lexsort(image.T)
         if np.array_equal(own_keys[order], image[image_order]):
             partner = np.empty_like(group)
@@ -149,24 +163,27 @@ def _find_symmetry_groups(shape: PressureDistribution) -> NodeIndices:
     return np.unique(group, return_inverse=True)[1]
 
 
-def _group_means(functions: Array, shape: PressureDistribution, group: NodeIndices) -> Array:
+def _group_means(functions: Array, distribution: PressureDistribution, node_groups: NodeIndices) -> Array:
     """Means (m, groups) of functions (m, n) over the nodes of each group, weighted by share."""
-    sums = [_group_sums(group, shape.share * row) for row in functions]
-    return np.array(sums) / _group_sums(group, shape.share)
+    sums = [_group_sums(node_groups, distribution.area_share * row) for row in functions]
+    return np.array(sums) / _group_sums(node_groups, distribution.area_share)
 
 
-def _group_sums(group: NodeIndices, values: Array) -> Array:
+def _group_sums(node_groups: NodeIndices, node_values: Array) -> Array:
     """Sums (groups) of values (n) over the nodes of each group."""
-    return np.asarray(np.bincount(group, values), dtype=np.float64)
+    return np.asarray(np.bincount(node_groups, node_values), dtype=np.float64)
 
 
-def _scale_positions(shape: PressureDistribution) -> tuple[Array, Array]:
+def _scale_positions(distribution: PressureDistribution) -> tuple[Array, Array]:
     """Coordinates x and y (n) of the nodes over their largest absolute values [1]."""
-    x, y = (values / max(float(np.max(np.abs(values))), np.finfo(float).tiny) for values in shape.position.T)
+    x, y = (
+        values / max(float(np.max(np.abs(values))), np.finfo(float).tiny)
+        for values in distribution.position.T
+    )
     return x, y
 
 
-def exact_functions(x: Array, y: Array, preload_shape: Array, moment_shape: Array) -> Array:
+def exact_sum_functions(x: Array, y: Array, preload_shape: Array, moment_shape: Array) -> Array:
     """Functions (12, n) of points (n) whose sums, weighted by share, are kept to round-off."""
     ones = np.ones_like(x)
     return np.stack(
@@ -187,55 +204,63 @@ def exact_functions(x: Array, y: Array, preload_shape: Array, moment_shape: Arra
     )
 
 
-def _scaled_exact_functions(shape: PressureDistribution) -> Array:
-    """Functions (12, n) of `exact_functions` for the nodes, scaled to the order of 1."""
-    steep = max(float(np.max(np.abs(shape.moment_shape))), 1.0)
-    return exact_functions(*_scale_positions(shape), shape.preload_shape, shape.moment_shape / steep)
+def _scaled_exact_functions(distribution: PressureDistribution) -> Array:
+    """Functions (12, n) of `exact_sum_functions` for the nodes, scaled to the order of 1."""
+    steep = max(float(np.max(np.abs(distribution.moment_shape))), 1.0)
+    return exact_sum_functions(
+        *_scale_positions(distribution), distribution.preload_shape, distribution.moment_shape / steep
+    )
 
 
-def largest_moment(shape: PressureDistribution) -> float:
-    """Factor [1] on moment_shape at which opening removes the share MAX_LOST_FORCE of the preload force."""
-    low, high = 0.0, 2.0 / float(np.max(np.abs(shape.share * shape.moment_shape)))
+def largest_moment_factor(distribution: PressureDistribution) -> float:
+    """Factor [1] on moment_shape at which opening removes MAX_LOST_FORCE_SHARE of the preload force."""
+    low, high = 0.0, 2.0 / float(np.max(np.abs(distribution.area_share * distribution.moment_shape)))
     for _ in range(50):
         middle = 0.5 * (low + high)
-        open_to = np.stack([side * middle * shape.moment_shape - shape.preload_shape for side in (-1.0, 1.0)])
-        lost_share = np.max(weighted_sums(np.maximum(open_to, 0.0), shape.share))
-        low, high = (middle, high) if lost_share < MAX_LOST_FORCE else (low, middle)
+        open_to = np.stack(
+            [side * middle * distribution.moment_shape - distribution.preload_shape for side in (-1.0, 1.0)]
+        )
+        lost_share = np.max(weighted_sums(np.maximum(open_to, 0.0), distribution.area_share))
+        low, high = (middle, high) if lost_share < MAX_LOST_FORCE_SHARE else (low, middle)
     return low
 
 
-def _sample_functions(shape: PressureDistribution) -> Array:
+def _sample_functions(distribution: PressureDistribution) -> Array:
     """Functions (m, n) [1] of the nodes whose sums are approximated: pressure and stiffness in all states.
 
     Each state has a power law, a moment, a normal displacement and a tilt. The pressure is multiplied by 1, x
     and y (normal force, moments) and by the distance from the centre (friction moment in a rotation about the
     normal); the stiffness by 1, x, y, x^2, x y and y^2.
     """
-    (x, y), limit = _scale_positions(shape), largest_moment(shape)
-    distance = np.sqrt(np.add.reduce(shape.position**2, axis=1))
+    (x, y), limit = _scale_positions(distribution), largest_moment_factor(distribution)
+    distance = np.sqrt(np.add.reduce(distribution.position**2, axis=1))
     of_pressure = np.stack([np.ones_like(x), x, y, distance / np.max(distance)])
     of_stiffness = np.stack([*of_pressure[:3], x * x, x * y, y * y])
     number = np.arange(STATE_COUNT)[:, None]
     moment, opening, about_x, about_y = (
         2.0 * ((0.5 + (number + 1.0) * _SEQUENCE_STEPS) % 1.0).T[..., None] - 1.0
     )
-    power, is_moved = (
-        np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS),
-        number >= UNTILTED_SHARE * STATE_COUNT,
+    power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
+    is_moved = number >= UNTILTED_STATE_SHARE * STATE_COUNT
+    normal_displacement = is_moved * (
+        MAX_OPENING_RATIO * opening + MAX_TILT_OPENING_RATIO * (about_x * y - about_y * x)
     )
-    normal_displacement = is_moved * (MAX_OPENING * opening + MAX_TILT * (about_x * y - about_y * x))
-    approach = binary_root(np.maximum(shape.preload_shape + limit * moment * shape.moment_shape, 0.0), power)
+    approach = binary_root(
+        np.maximum(distribution.preload_shape + limit * moment * distribution.moment_shape, 0.0), power
+    )
     approach = np.maximum(approach - np.max(approach, axis=1, keepdims=True) * normal_displacement, 0.0)
     pressure = binary_power(approach, power)
     stiffness = np.divide(pressure, approach, out=np.zeros_like(pressure), where=approach > 0.0)
     rows = np.concatenate([pressure[:, None] * of_pressure, stiffness[:, None] * of_stiffness], axis=1)
-    sizes = np.add.reduce(np.abs(rows) * shape.share, axis=2, keepdims=True)
+    sizes = np.add.reduce(np.abs(rows) * distribution.area_share, axis=2, keepdims=True)
     rows *= np.where(is_moved, MOVED_STATE_WEIGHT, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
     return np.asarray(rows.reshape(-1, x.size))
 
 
-def find_peak_nodes(shape: PressureDistribution) -> NodeIndices:
+def find_peak_nodes(distribution: PressureDistribution) -> NodeIndices:
     """Indices of the nodes that have the largest pressure at any of several moments."""
     steep = 0.01 * successive_powers(1.25, 36)
     moments = np.concatenate([-steep, [0.0], steep])
-    return np.unique([int(np.argmax(shape.preload_shape + m * shape.moment_shape)) for m in moments])
+    return np.unique(
+        [int(np.argmax(distribution.preload_shape + m * distribution.moment_shape)) for m in moments]
+    )

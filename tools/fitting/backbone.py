@@ -36,7 +36,7 @@ MIN_BRANCH_SPAN = 0.9
 """Range of a branch over the torque range [1], from which the branch counts as covering the full range."""
 MAX_KNOTS, POINTS_PER_KNOT = 41, 20
 """Maximum number of knots of the piecewise linear curves, and number of samples for each knot."""
-MAX_POINTS = 400
+MAX_BACKBONE_POINTS = 400
 """Maximum number of points of the backbone; more samples are averaged in groups of neighbouring torque."""
 MIN_DRIFT_FRACTION = 0.05
 """Fraction of the drift column of the design matrix [1] that is linearly independent of the other columns,
@@ -61,8 +61,8 @@ class Backbone:
 
     torque: Array
     angle: Array
-    count: Array
-    branches: int
+    sample_counts: Array
+    branch_count: int
     loop_area: tuple[float, float] | None
     backlash: tuple[float, float] | None
     drift: tuple[float, float] | None
@@ -74,8 +74,8 @@ class _Branch:
 
     indices: NDArray[np.int64]
     rising: bool
-    low: float
-    high: float
+    min_torque: float
+    max_torque: float
 
 
 def find_backbone(torque: Array, angle: Array) -> Backbone:
@@ -86,14 +86,14 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
     """
     if not np.ptp(torque) > 0.0:
         raise ValueError(f"torque is {torque[0]:g} N.m throughout; expected a range of torques")
-    branches = _full_range_branches(_branches(torque))
+    branches = _full_range_branches(_cut_branches(torque))
     if len({b.rising for b in branches}) == 1:
         indices = np.concatenate([b.indices for b in branches])
         line = _average_groups(torque[indices], angle[indices])
         return _check_monotone(Backbone(*line, len(branches), None, None, None))
     low, high = (
         inner(outer(getattr(b, name) for b in branches if b.rising is rising) for rising in (True, False))
-        for inner, outer, name in ((max, min, "low"), (min, max, "high"))
+        for inner, outer, name in ((max, min, "min_torque"), (min, max, "max_torque"))
     )
     if not high - low >= 0.5 * np.ptp(torque):
         raise ValueError(
@@ -103,7 +103,7 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
     return _check_monotone(_separate_hysteresis(torque, angle, branches, float(low), float(high)))
 
 
-def _branches(torque: Array) -> list[_Branch]:
+def _cut_branches(torque: Array) -> list[_Branch]:
     """Cut a record into branches at the turning points of the torque, in the order of the measurement."""
     turns = find_reversals(torque, MIN_REVERSAL * float(np.ptp(torque)))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
@@ -117,16 +117,16 @@ def _branches(torque: Array) -> list[_Branch]:
 
 def _full_range_branches(branches: list[_Branch]) -> list[_Branch]:
     """Select the branches that cover the full torque range; if a direction has none, all its branches."""
-    span = max(b.high for b in branches) - min(b.low for b in branches)
+    span = max(b.max_torque for b in branches) - min(b.min_torque for b in branches)
     selected = []
     for rising in (True, False):
         same = [b for b in branches if b.rising is rising]
-        selected += [b for b in same if b.high - b.low >= MIN_BRANCH_SPAN * span] or same
+        selected += [b for b in same if b.max_torque - b.min_torque >= MIN_BRANCH_SPAN * span] or same
     return sorted(selected, key=lambda b: int(b.indices[0]))
 
 
 def _separate_hysteresis(
-    torque: Array, angle: Array, branches: list[_Branch], low: float, high: float
+    torque: Array, angle: Array, branches: list[_Branch], min_torque: float, max_torque: float
 ) -> Backbone:
     """Separate backbone, hysteresis and drift by one linear least-squares problem.
 
@@ -134,16 +134,16 @@ def _separate_hysteresis(
     """
     indices = np.concatenate([b.indices for b in branches])
     direction = np.concatenate([np.where(b.rising, 1.0, -1.0) * np.ones(b.indices.size) for b in branches])
-    inside = (torque[indices] >= low) & (torque[indices] <= high)
+    inside = (torque[indices] >= min_torque) & (torque[indices] <= max_torque)
     indices, direction = indices[inside], direction[inside]
     T, phi, time = torque[indices], angle[indices], indices / (torque.size - 1.0) - 0.5
     knots = int(np.clip(indices.size // POINTS_PER_KNOT, 5, MAX_KNOTS))
-    grid = np.linspace(low, high, knots)
+    grid = np.linspace(min_torque, max_torque, knots)
     hats = _hat_functions(T, grid)
     open_gap = np.ones(knots, dtype=bool)  # knots whose gap is unknown; at turning points it is zero
     open_gap[[0, -1]] = [
-        not _has_turning_point(branches, low, span := high - low, 0),
-        not _has_turning_point(branches, high, span, -1),
+        not _has_turning_point(branches, min_torque, span := max_torque - min_torque, 0),
+        not _has_turning_point(branches, max_torque, span, -1),
     ]
     gap = scipy.sparse.diags(direction) @ hats
     design = scipy.sparse.hstack(
@@ -167,19 +167,23 @@ def _separate_hysteresis(
     lengths = np.gradient(grid)
     lengths[[0, -1]] = 0.5 * (grid[1] - grid[0])
     backlash = (
-        weighted_gap(-2.0 * _hat_functions(np.zeros(1), grid).toarray()[0]) if low <= 0.0 <= high else None
+        weighted_gap(-2.0 * _hat_functions(np.zeros(1), grid).toarray()[0])
+        if min_torque <= 0.0 <= max_torque
+        else None
     )
     drift = (float(values[-1]), float(np.sqrt(covariance[-1, -1]))) if has_drift else None
     driftless = phi - (drift[0] * time if drift else 0.0)
-    position = (T - 0.5 * (low + high)) / (0.5 * (high - low))  # in the range of the torque, from -1 to 1
+    position = (T - 0.5 * (min_torque + max_torque)) / (
+        0.5 * (max_torque - min_torque)
+    )  # in the range of the torque, from -1 to 1
     central = np.abs(position) <= CENTRAL_FRACTION
-    friction = _friction(T[central], driftless[central], direction[central])
+    friction = _fit_friction_torque(T[central], driftless[central], direction[central])
     loading = direction * position >= 0.0
     line = _average_groups((T - friction * direction)[loading], driftless[loading])
     return Backbone(*line, len(branches), weighted_gap(-2.0 * lengths), backlash, drift)
 
 
-def _friction(torque: Array, angle: Array, direction: Array) -> float:
+def _fit_friction_torque(torque: Array, angle: Array, direction: Array) -> float:
     """Friction torque [N.m]: half the torque difference of rising and falling branches at equal angles.
 
     direction : +1 (rising) or -1 (falling) for each sample (n)
@@ -196,7 +200,9 @@ def _hat_functions(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
     return scipy.sparse.csr_matrix(BSpline.design_matrix(T, np.pad(grid, 1, mode="edge"), 1))
 
 
-def _has_turning_point(branches: list[_Branch], end: float, span: float, side: int) -> bool:
+def _has_turning_point(
+    branches: list[_Branch], end_torque: float, torque_range: float, end_index: int
+) -> bool:
     """Whether a rising and a falling branch meet at an end of the torque range.
 
     end_torque, torque_range : torque of that end, and length of the range [N.m]
@@ -206,8 +212,9 @@ def _has_turning_point(branches: list[_Branch], end: float, span: float, side: i
     return any(
         branch.rising is not next_branch.rising
         and branch.indices[-1] == next_branch.indices[0]
-        and branch.rising is (side == -1)
-        and abs((branch.high if branch.rising else branch.low) - end) < (1.0 - MIN_BRANCH_SPAN) * span
+        and branch.rising is (end_index == -1)
+        and abs((branch.max_torque if branch.rising else branch.min_torque) - end_torque)
+        < (1.0 - MIN_BRANCH_SPAN) * torque_range
         for branch, next_branch in pairs
     )
 
@@ -226,19 +233,21 @@ def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
     Returns mean torque, mean angle and size (n) of the groups.
     """
     order = np.argsort(torque, kind="stable")
-    starts = np.linspace(0, order.size, min(order.size, MAX_POINTS) + 1).astype(int)[:-1]
+    starts = np.linspace(0, order.size, min(order.size, MAX_BACKBONE_POINTS) + 1).astype(int)[:-1]
     count = np.diff(np.append(starts, order.size)).astype(float)
     sums = (np.add.reduceat(column[order], starts) for column in (torque, angle))
     T, phi = (total / count for total in sums)
     return T, phi, count
 
 
-def _check_monotone(line: Backbone) -> Backbone:
+def _check_monotone(backbone: Backbone) -> Backbone:
     """Return the backbone; ValueError if its angle falls between neighbouring tenths of the torque range."""
-    edges = np.linspace(line.torque[0], line.torque[-1], MONOTONE_INTERVALS + 1)
-    tenth = np.clip(np.searchsorted(edges, line.torque, side="right") - 1, 0, MONOTONE_INTERVALS - 1)
+    edges = np.linspace(backbone.torque[0], backbone.torque[-1], MONOTONE_INTERVALS + 1)
+    tenth = np.clip(np.searchsorted(edges, backbone.torque, side="right") - 1, 0, MONOTONE_INTERVALS - 1)
     nonempty = [k for k in range(MONOTONE_INTERVALS) if np.any(tenth == k)]
-    means = np.array([np.average(line.angle[tenth == k], weights=line.count[tenth == k]) for k in nonempty])
+    means = np.array(
+        [np.average(backbone.angle[tenth == k], weights=backbone.sample_counts[tenth == k]) for k in nonempty]
+    )
     if np.all(np.diff(means) < 0.0):
         raise ValueError("the angle falls as the torque rises; reverse the sign of one column")
     if np.any(falling := np.diff(means) <= 0.0):
@@ -247,4 +256,4 @@ def _check_monotone(line: Backbone) -> Backbone:
             f"the mid-line of the angle does not rise with the torque between {edges[k]:.4g} and "
             f"{edges[min(k + 2, MONOTONE_INTERVALS)]:.4g} N.m; expected one loop or curve of a spring"
         )
-    return line
+    return backbone

@@ -20,8 +20,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...quantity import Array
+from .distribution import FrictionPatches, PressureDistribution
 from .elimination import solve_linear, weight_changes
-from .patches import exact_functions, largest_moment, reduce_points
+from .point_reduction import exact_sum_functions, largest_moment_factor, reduce_points
 from .reproducible import (
     binary_power,
     binary_root,
@@ -34,22 +35,21 @@ from .reproducible import (
     successive_powers,
     weighted_sums,
 )
-from .shape import FrictionPatches, PressureDistribution
 
 LAW_EXPONENTS = (4.0, 8.0, 8.0, 16.0)
 """Exponents N of the laws p ~ delta^N [1], powers of 2; real laws: Hertz 1.5, default law 7, roughness 12."""
-SLIP_CASES, GROSS_SLIP_CASES = 240, 200
+SLIP_CASE_COUNT, GROSS_SLIP_CASE_COUNT = 240, 200
 """Number of fitted cases [1]: partial slip from the virgin state, and gross slip about a pole."""
-UNTILTED_SHARE = 0.4
+UNTILTED_CASE_SHARE = 0.4
 """Share of the cases of partial slip without normal displacement and tilt [1]."""
-MAX_OPENING, MAX_TILT = 0.1, 0.2
+MAX_OPENING_RATIO, MAX_TILT_OPENING_RATIO = 0.1, 0.2
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
 MAX_MOMENT_RATIO = 2.5
-"""Largest moment over that of `largest_moment` [1]."""
-MIN_DISTANCE, MAX_DISTANCE = 0.05, 3.0
+"""Largest moment over that of `largest_moment_factor` [1]."""
+MIN_MOTION_LENGTH, MAX_MOTION_LENGTH = 0.05, 3.0
 """Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
-all but STUCK_SHARE of its friction."""
-STUCK_SHARE = 2.0**-13
+all but UNMOBILISED_FRICTION_SHARE of its friction."""
+UNMOBILISED_FRICTION_SHARE = 2.0**-13
 """Share of the friction that is not yet mobilised [1], for the scale of motions."""
 MAX_ITERATIONS = 50
 """Iterations of the Levenberg-Marquardt method [1]."""
@@ -61,18 +61,18 @@ MAX_RELATIVE_STEP = 0.5
 """Largest relative change of a share, position or pressure in one step [1]."""
 MIN_DIAGONAL_RATIO = 1e-9
 """Smallest diagonal of the normal equations used for damping, over the largest [1]."""
-EXACT_WEIGHT = 400.0
+EXACT_SUM_WEIGHT = 400.0
 """Weight of an exact sum over the weight of a case [1]."""
 RELATIVE_PERTURBATION = 1e-6
 """Relative perturbation of a position or pressure for finite differences [1]."""
 BATCH_SIZE = 2000
 """Number of nodes whose friction is evaluated at once [1]."""
-MAX_POLE_OFFSET, GROSS_SLIP_DISTANCE = 0.06, 1e3
+MAX_POLE_OFFSET, GROSS_SLIP_MOTION_LENGTH = 0.06, 1e3
 """Largest distance of a pole of gross slip from a loaded node, over the radius of gyration [1]; length of the
 motion in gross slip [1]."""
 TILTED_POLE_PERIOD = 8
 """One of this number of cases of gross slip [1] has a tilted contact; the others have no moment."""
-POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT = 12.0, 5.0, 4.0
+POLE_WEIGHT, TORQUE_WEIGHT, TRANSLATION_WEIGHT = 12.0, 5.0, 4.0
 """Weights [1]: forces in gross slip; torques in gross slip; losses in gross slip and all values of
 translations and of rotations about the centre. All other values have the weight 1."""
 CIRCLE_POINT_COUNT = 4
@@ -80,12 +80,12 @@ CIRCLE_POINT_COUNT = 4
 CIRCLE_RADIUS_RATIO = 0.9
 """Radius of the circle over the radius of gyration of the friction of a patch [1]: in a rotation about a pole
 inside it, a disc acts like a smaller ring."""
-ADDED_PRESSURE, DIVISION_ITERATIONS = 0.1, 5
+ADDED_PRESSURE_RATIO, DIVISION_ITERATIONS = 0.1, 5
 """Pressure over mean pressure [1] that is added to that of each node for the division among patches, and
 number of iterations of the division [1]."""
 SMALLEST_FLOAT = float(np.finfo(float).tiny)
 _SEQUENCE_STEPS = successive_powers(1.0 / 1.0969815577985598, 7)
-"""Increments of a low-discrepancy sequence in seven dimensions [1]: powers of the root of x^8 = x + 1."""
+"""Increments of a low-discrepancy sequence in seven dimensions [1]: powers of 1/x with x^8 = x + 1."""
 CIRCLE_POINTS = round_to_digits(
     np.exp(2j * np.pi * (np.arange(CIRCLE_POINT_COUNT) + 0.25) / CIRCLE_POINT_COUNT).view(float)
 ).reshape(-1, 2)
@@ -93,37 +93,36 @@ CIRCLE_POINTS = round_to_digits(
 
 
 def reduce_patches(
-    shape: PressureDistribution, count: int, start_points: PressureDistribution | None = None
+    distribution: PressureDistribution, max_patch_count: int, start_points: PressureDistribution | None = None
 ) -> FrictionPatches:
-    """Reduce the friction of a contact to at most `count` patches; one per node if it has no more nodes.
+    """Reduce the friction of a contact to few patches; one patch per node if it has no more nodes.
 
-    start_points : distribution from which the initial patches are selected; None: `shape`
+    start_points : distribution from which the initial patches are selected; None: `distribution`
 
     Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
     share), and the second moments of share.
 
-    Raises ValueError if count is too small to keep these sums.
+    Raises ValueError if max_patch_count is too small to keep these sums.
     """
-    if shape.share.size <= count:
-        return shape.as_patches()
-    rough = round_distribution(shape)
-    gyration = float(np.sqrt(np.add.reduce(rough.share * np.add.reduce(rough.position**2, axis=1))))
-    highest, steep = (
-        float(np.max(rough.preload_shape)),
-        max(float(np.max(np.abs(rough.moment_shape))), SMALLEST_FLOAT),
-    )
+    if distribution.area_share.size <= max_patch_count:
+        return distribution.as_patches()
+    rough = round_distribution(distribution)
+    gyration = float(np.sqrt(np.add.reduce(rough.area_share * np.add.reduce(rough.position**2, axis=1))))
+    highest = float(np.max(rough.preload_shape))
+    steep = max(float(np.max(np.abs(rough.moment_shape))), SMALLEST_FLOAT)
     unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
-    few = reduce_points(rough if start_points is None else round_distribution(start_points), count)
+    few = reduce_points(rough if start_points is None else round_distribution(start_points), max_patch_count)
     first = _divide_nodes(rough, few.position)
     nodes, there, points = (
-        np.stack([each.share, *each.position.T, each.preload_shape, each.moment_shape, each.radius]) / unit
-        for each in (rough.as_patches(), shape.as_patches(), first)
+        np.stack([each.area_share, *each.position.T, each.preload_shape, each.moment_shape, each.radius])
+        / unit
+        for each in (rough.as_patches(), distribution.as_patches(), first)
     )
-    aim = _TargetSums.for_nodes(nodes, MAX_MOMENT_RATIO * largest_moment(rough) * steep / highest)
+    aim = _TargetSums.for_nodes(nodes, MAX_MOMENT_RATIO * largest_moment_factor(rough) * steep / highest)
     moved = _correct_exact_sums(
         _fit_points(points, aim),
-        aim.extent,
-        weighted_sums(_scaled_exact_functions(there, aim.extent), there[0]),
+        aim.max_coordinates,
+        weighted_sums(_scaled_exact_functions(there, aim.max_coordinates), there[0]),
     )
     share, x, y, equal, tilt, radius = unit * moved
     few = clear_round_off(PressureDistribution(share, np.column_stack([x, y]), equal, tilt))
@@ -138,7 +137,7 @@ def _radius_signs(force: Array) -> Array:
     return np.where(rank_descending(force) % 2 == 0, 1.0, -1.0)
 
 
-def _divide_nodes(shape: PressureDistribution, centres: Array) -> FrictionPatches:
+def _divide_nodes(distribution: PressureDistribution, centres: Array) -> FrictionPatches:
     """Divide the nodes among m patches by Lloyd's method.
 
     Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
@@ -146,68 +145,71 @@ def _divide_nodes(shape: PressureDistribution, centres: Array) -> FrictionPatche
 
     centres : (m, 2) initial positions of the patches
     """
-    share, (x, y) = shape.share, shape.position.T
-    weight, count = share * (shape.preload_shape + ADDED_PRESSURE), len(centres)
+    share, (x, y) = distribution.area_share, distribution.position.T
+    weight, count = share * (distribution.preload_shape + ADDED_PRESSURE_RATIO), len(centres)
 
-    def sums(values: Array) -> Array:
+    def sum_over_nodes(values: Array) -> Array:
         return np.asarray(np.bincount(nearest, values, count))
 
     for _ in range(DIVISION_ITERATIONS):
         square = (x - centres[:, :1]) ** 2 + (y - centres[:, 1:]) ** 2
         nearest = np.argmin(square, axis=0)
-        whole = np.maximum(sums(weight), SMALLEST_FLOAT)
-        centres = np.column_stack([sums(weight * x) / whole, sums(weight * y) / whole])
+        whole = np.maximum(sum_over_nodes(weight), SMALLEST_FLOAT)
+        centres = np.column_stack([sum_over_nodes(weight * x) / whole, sum_over_nodes(weight * y) / whole])
     away = (x - centres[nearest, 0]) ** 2 + (y - centres[nearest, 1]) ** 2
-    area = np.maximum(sums(share), SMALLEST_FLOAT)
+    area = np.maximum(sum_over_nodes(share), SMALLEST_FLOAT)
     xx, xy, yy = (float(np.add.reduce(share * each)) for each in (x * x, x * y, y * y))
     thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 for nodes on a line
-    radius = np.minimum(CIRCLE_RADIUS_RATIO * np.sqrt(sums(weight * away) / whole), np.sqrt(thin))
+    radius = np.minimum(CIRCLE_RADIUS_RATIO * np.sqrt(sum_over_nodes(weight * away) / whole), np.sqrt(thin))
     return FrictionPatches(
         area,
         centres,
-        sums(share * shape.preload_shape) / area,
-        sums(share * shape.moment_shape) / area,
+        sum_over_nodes(share * distribution.preload_shape) / area,
+        sum_over_nodes(share * distribution.moment_shape) / area,
         radius,
     )
 
 
 @dataclass(frozen=True, slots=True)
 class _SlipCases:
-    """Cases (m, 1) of normal loading and tangential motion whose friction is fitted.
+    """Load cases (m, 1), normal and tangential, in which the patches are fitted to the friction of all nodes.
 
     Lengths are divided by the radius of gyration of the contact, pressures by the largest one.
 
-    power            : exponent N [1] of the law p ~ delta^N
-    moment           : factor [1] on the pressure by a moment
-    opening          : normal displacement [1], over the largest approach
-    tilt_x, tilt_y   : tilts [1] about x and y, as opening per length, over the largest approach
-    direction        : (3, m, 1) unit vector of the motion: translation along x and y, rotation [1]
-    distance         : length of the motion [1], in units of mu/kappa times the largest approach
+    law_exponent        : exponent N [1] of the law p ~ delta^N
+    moment_factor       : factor [1] on the pressure by a moment
+    normal_displacement : normal displacement [1], over the largest approach
+    tilt_x, tilt_y      : tilts [1] about x and y, as opening per length, over the largest approach
+    motion_direction    : (3, m, 1) unit vector of the motion: translation along x and y, rotation [1]
+    motion_length       : length of the motion [1], in units of mu/kappa times the largest approach
     """
 
-    power: Array
-    moment: Array
-    opening: Array
+    law_exponent: Array
+    moment_factor: Array
+    normal_displacement: Array
     tilt_x: Array
     tilt_y: Array
-    direction: Array
-    distance: Array
+    motion_direction: Array
+    motion_length: Array
 
     @classmethod
-    def sample(cls, nodes: Array, largest_moment: float, extent: Array) -> "_SlipCases":
+    def sample(cls, nodes: Array, largest_moment: float, max_coordinates: Array) -> "_SlipCases":
         """Sample the cases evenly (low-discrepancy sequence) for a contact with nodes (6, n).
 
-        Of the SLIP_CASES a quarter are translations, a quarter rotations about the centre, and
-        half rotations about loaded nodes. GROSS_SLIP_CASES more are gross slip about poles near loaded nodes.
+        Of the SLIP_CASE_COUNT a quarter are translations, a quarter rotations about the centre, and
+        half rotations about loaded nodes. GROSS_SLIP_CASE_COUNT more are gross slip about poles near loaded
+        nodes.
 
-        largest_moment : [1] largest factor on the pressure by a moment
-        extent         : (2) [1] largest |x| and |y|
+        largest_moment  : [1] largest factor on the pressure by a moment
+        max_coordinates : (2) [1] largest |x| and |y|
         """
-        number = np.arange(1, SLIP_CASES + GROSS_SLIP_CASES + 1)
+        number = np.arange(1, SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT + 1)
         unit = (0.5 + number[:, None] * _SEQUENCE_STEPS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
-        gross = number > SLIP_CASES
-        moves = np.where(gross, number % TILTED_POLE_PERIOD == 0, number > UNTILTED_SHARE * SLIP_CASES)
+        gross = number > SLIP_CASE_COUNT
+        moves = np.where(
+            gross, number % TILTED_POLE_PERIOD == 0, number > UNTILTED_CASE_SHARE * SLIP_CASE_COUNT
+        )
         moment = np.where(gross & ~moves, 0.0, moment)
         kind = np.where(gross, 2, np.minimum(number % 4, 2))
         along = 2.0 * np.abs(angle) - 1.0  # on the square |along| + |across| = 1
@@ -219,18 +221,22 @@ class _SlipCases:
         motion = np.stack([np.choose(kind, each) for each in shift_or_turn])
         motion /= np.sqrt(np.add.reduce(motion * motion, axis=0))
         power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
-        way = MIN_DISTANCE + (MAX_DISTANCE - MIN_DISTANCE) * unit[:, 6] ** 2
+        way = MIN_MOTION_LENGTH + (MAX_MOTION_LENGTH - MIN_MOTION_LENGTH) * unit[:, 6] ** 2
         columns = (
             power,
             largest_moment * moment,
-            MAX_OPENING * apart * moves,
-            MAX_TILT / extent[1] * about_x * moves,
-            MAX_TILT / extent[0] * about_y * moves,
+            MAX_OPENING_RATIO * apart * moves,
+            MAX_TILT_OPENING_RATIO / max_coordinates[1] * about_x * moves,
+            MAX_TILT_OPENING_RATIO / max_coordinates[0] * about_y * moves,
             motion,
             np.where(
                 gross,
-                GROSS_SLIP_DISTANCE,
-                way * (1.0 - binary_root(np.full((number.size, 1), STUCK_SHARE), power[:, None])[:, 0]),
+                GROSS_SLIP_MOTION_LENGTH,
+                way
+                * (
+                    1.0
+                    - binary_root(np.full((number.size, 1), UNMOBILISED_FRICTION_SHARE), power[:, None])[:, 0]
+                ),
             ),
         )
         return cls(*(each[..., None] for each in columns))
@@ -242,21 +248,21 @@ class _SlipCases:
         [1]: friction limit times displacement per length of the motion.
         """
         _, x, y, equal, tilt, radius = points
-        start = binary_root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
-        now = np.maximum(start - (self.opening + self.tilt_x * y - self.tilt_y * x), 0.0)
-        most, whole, turned = binary_power(now, self.power), np.zeros((4, *now.shape)), np.zeros(now.shape)
+        start = binary_root(np.maximum(equal + self.moment_factor * tilt, 0.0), self.law_exponent)
+        now = np.maximum(start - (self.normal_displacement + self.tilt_x * y - self.tilt_y * x), 0.0)
+        most = binary_power(now, self.law_exponent)
+        whole = np.zeros((4, *now.shape))
+        turned = np.zeros(now.shape)
         places, stored = CIRCLE_POINTS if np.any(radius) else CIRCLE_POINTS[:1], now * most
         for along, across in places:
             there_x, there_y = x + along * radius, y + across * radius
-            u, v = (
-                self.direction[0] - self.direction[2] * there_y,
-                self.direction[1] + self.direction[2] * there_x,
-            )
+            u = self.motion_direction[0] - self.motion_direction[2] * there_y
+            v = self.motion_direction[1] + self.motion_direction[2] * there_x
             size = np.sqrt(u * u + v * v)
-            way = self.distance * size
+            way = self.motion_length * size
             then = np.maximum(now - way, 0.0)
-            rest = binary_power(then, self.power)
-            force, work = most - rest, most * way - (stored - then * rest) / (self.power + 1.0)
+            rest = binary_power(then, self.law_exponent)
+            force, work = most - rest, most * way - (stored - then * rest) / (self.law_exponent + 1.0)
             part = force / np.maximum(size, SMALLEST_FLOAT)
             each = part * u, part * v, part * (there_x * v - there_y * u), 8.0 * (work - 0.5 * force * way)
             for total, one in zip(whole, each, strict=True):
@@ -269,30 +275,28 @@ class _SlipCases:
 class _TargetSums:
     """Target of the fit: sums over all nodes. Points (6, n) are share, x, y, both pressure shapes, radius.
 
-    cases       : cases whose friction is fitted
-    extent      : (2) [1] largest |x| and |y|
-    scale       : (m) [1] weights of the sums of friction
-    exact_scale : (12) [1] weights of the sums that must be exact
-    exact_sums  : (12) [1] sums that must be exact
-    sums        : (m + 12) [1] all sums, weighted
+    cases             : cases whose friction is fitted
+    max_coordinates   : (2) [1] largest |x| and |y|
+    friction_weights  : (m) [1] weights of the sums of friction
+    exact_sum_weights : (12) [1] weights of the sums that must be exact
+    exact_sums        : (12) [1] sums that must be exact
+    target_sums       : (m + 12) [1] all sums, weighted
     """
 
     cases: _SlipCases
-    extent: Array
-    scale: Array
-    exact_scale: Array
+    max_coordinates: Array
+    friction_weights: Array
+    exact_sum_weights: Array
     exact_sums: Array
-    sums: Array
+    target_sums: Array
 
     @classmethod
     def for_nodes(cls, nodes: Array, largest_moment: float) -> "_TargetSums":
         """Compute the target sums of nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), SMALLEST_FLOAT)
         motions, share = _SlipCases.sample(nodes, largest_moment, reach), nodes[0]
-        friction, gross = (
-            np.zeros(4 * (SLIP_CASES + GROSS_SLIP_CASES)),
-            np.zeros(SLIP_CASES + GROSS_SLIP_CASES),
-        )
+        friction = np.zeros(4 * (SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT))
+        gross = np.zeros(SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT)
         for first in range(0, share.size, BATCH_SIZE):
             some = nodes[:, first : first + BATCH_SIZE]
             each, most = motions.evaluate_friction(some)
@@ -300,36 +304,41 @@ class _TargetSums:
         scale = 1.0 / np.maximum(
             np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), SMALLEST_FLOAT
         )
-        shift_x, shift_y, turn = motions.direction[:, :, 0]
+        shift_x, shift_y, turn = motions.motion_direction[:, :, 0]
         centred = (turn == 0.0) | ((shift_x == 0.0) & (shift_y == 0.0))
-        weight = np.tile(np.where(centred, SHIFT_WEIGHT, 1.0), (4, 1))
-        weight[:, SLIP_CASES:] = np.array([POLE_WEIGHT, POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT])[:, None]
+        weight = np.tile(np.where(centred, TRANSLATION_WEIGHT, 1.0), (4, 1))
+        weight[:, SLIP_CASE_COUNT:] = np.array([POLE_WEIGHT, POLE_WEIGHT, TORQUE_WEIGHT, TRANSLATION_WEIGHT])[
+            :, None
+        ]
         scale *= weight.ravel()
         exact = _scaled_exact_functions(nodes, reach)
         held, size = weighted_sums(exact, share), weighted_sums(np.abs(exact), share)
         hold = np.divide(
-            EXACT_WEIGHT, size, out=np.zeros_like(size), where=size > EXACT_WEIGHT * SMALLEST_FLOAT
+            EXACT_SUM_WEIGHT, size, out=np.zeros_like(size), where=size > EXACT_SUM_WEIGHT * SMALLEST_FLOAT
         )  # 0 for sums of 0
         sums = np.concatenate([scale * friction, hold * held])
         return cls(motions, reach, scale, hold, held, sums)
 
     def evaluate_functions(self, points: Array) -> Array:
-        """Functions (m + 12, n) [1] of points (6, n); their sums, weighted by share, are to equal `sums`."""
-        friction = self.cases.evaluate_friction(points)[0] * self.scale[:, None]
+        """Functions (m + 12, n) [1] of points (6, n); sums weighted by share should be `target_sums`."""
+        friction = self.cases.evaluate_friction(points)[0] * self.friction_weights[:, None]
         return np.concatenate(
-            [friction, _scaled_exact_functions(points, self.extent) * self.exact_scale[:, None]]
+            [
+                friction,
+                _scaled_exact_functions(points, self.max_coordinates) * self.exact_sum_weights[:, None],
+            ]
         )
 
-    def residual(self, points: Array) -> tuple[Array, Array]:
+    def find_residual(self, points: Array) -> tuple[Array, Array]:
         """Weighted functions (m + 12, n) of points (6, n), and the residual (m + 12) of their sums."""
         values = self.evaluate_functions(points)
-        return values, weighted_sums(values, points[0]) - self.sums
+        return values, weighted_sums(values, points[0]) - self.target_sums
 
 
-def _correct_exact_sums(points: Array, extent: Array, exact_sums: Array) -> Array:
-    """Correct shares and pressure shapes of points (6, n) slightly, so that they have the exact sums (12)."""
+def _correct_exact_sums(points: Array, max_coordinates: Array, exact_sums: Array) -> Array:
+    """Correct shares and pressure shapes of points (6, n) slightly, so that their sums (12) are exact."""
     share, x, y, equal, tilt, radius = points
-    place = _scaled_exact_functions(points, extent)[:6]
+    place = _scaled_exact_functions(points, max_coordinates)[:6]
     share = share + weight_changes(share, place, exact_sums[:6] - weighted_sums(place, share))
     force, place = share * equal, place[:3]
     equal = equal + weight_changes(force, place, exact_sums[6:9] - weighted_sums(place, force)) / share
@@ -338,11 +347,11 @@ def _correct_exact_sums(points: Array, extent: Array, exact_sums: Array) -> Arra
     return np.stack([share, x, y, equal, tilt, radius])
 
 
-def _scaled_exact_functions(points: Array, extent: Array) -> Array:
+def _scaled_exact_functions(points: Array, max_coordinates: Array) -> Array:
     """Functions (12, n) of points (6, n) whose sums, weighted by share, must be exact."""
     _, x, y, equal, tilt, radius = points
-    each = exact_functions(x / extent[0], y / extent[1], equal, tilt)
-    for place, over_reach in zip((3, 5), radius / extent[:, None], strict=True):  # x^2 and y^2
+    each = exact_sum_functions(x / max_coordinates[0], y / max_coordinates[1], equal, tilt)
+    for place, over_reach in zip((3, 5), radius / max_coordinates[:, None], strict=True):  # x^2 and y^2
         each[place] += 0.5 * over_reach * over_reach
     return each
 
@@ -352,32 +361,34 @@ class _LinearProblem:
     """Linearised least-squares problem: residual of the sums as a function of relative changes of the points.
 
     residual : (m) residual of the sums [1]
-    scale    : (5, n) sizes [1] to which the changes are relative
+    change_scale    : (5, n) sizes [1] to which the changes are relative
     normal_matrix : (5 n, 5 n) J^T J [1] of the Jacobian J
     gradient : (5 n) gradient [1] of half the sum of squared residuals
     """
 
     residual: Array
-    scale: Array
+    change_scale: Array
     normal_matrix: Array
     gradient: Array
 
     @classmethod
     def linearise(
-        cls, points: Array, target: _TargetSums, values: Array, residual: Array
+        cls, points: Array, target: _TargetSums, function_values: Array, residual: Array
     ) -> "_LinearProblem":
         """Linearise at points (6, n) with constant radii.
 
-        values, residual : result of `_TargetSums.residual` at these points
+        function_values, residual : result of `_TargetSums.find_residual` at these points
         """
         share, *_, equal, _, _ = points
         one = np.ones_like(share)
-        size = np.stack([share, *np.outer(target.extent, one), equal, equal])
-        slopes = [values * share]
+        size = np.stack([share, *np.outer(target.max_coordinates, one), equal, equal])
+        slopes = [function_values * share]
         for place in range(1, 5):
             moved = points.copy()
             moved[place] += RELATIVE_PERTURBATION * size[place]
-            slopes.append((target.evaluate_functions(moved) - values) / RELATIVE_PERTURBATION * share)
+            slopes.append(
+                (target.evaluate_functions(moved) - function_values) / RELATIVE_PERTURBATION * share
+            )
         slope = np.concatenate(slopes, axis=1).T.copy()
         return cls(residual, size, gram_matrix(slope), weighted_sums(slope, residual))
 
@@ -386,16 +397,18 @@ class _LinearProblem:
         own = np.diag(self.normal_matrix)
         diagonal = damping * (own + MIN_DIAGONAL_RATIO * np.max(own))
         parts = solve_linear(self.normal_matrix + np.diag(diagonal), -self.gradient)
-        parts = np.clip(parts, -MAX_RELATIVE_STEP, MAX_RELATIVE_STEP).reshape(self.scale.shape)
-        return np.concatenate([self.scale * parts, np.zeros_like(self.scale[:1])])
+        parts = np.clip(parts, -MAX_RELATIVE_STEP, MAX_RELATIVE_STEP).reshape(self.change_scale.shape)
+        return np.concatenate([self.change_scale * parts, np.zeros_like(self.change_scale[:1])])
 
 
 def _fit_points(points: Array, target: _TargetSums) -> Array:
     """Fit points (6, n) by the Levenberg-Marquardt method with MAX_ITERATIONS iterations."""
-    here, damping = _LinearProblem.linearise(points, target, *target.residual(points)), INITIAL_DAMPING
+    here, damping = _LinearProblem.linearise(points, target, *target.find_residual(points)), INITIAL_DAMPING
     for _ in range(MAX_ITERATIONS):
-        trial = _correct_exact_sums(points + here.solve_step(damping), target.extent, target.exact_sums)
-        values, miss = target.residual(trial)
+        trial = _correct_exact_sums(
+            points + here.solve_step(damping), target.max_coordinates, target.exact_sums
+        )
+        values, miss = target.find_residual(trial)
         allowed = np.all(trial[0] > 0.0) and np.all(trial[3] >= 0.0)
         if allowed and euclidean_norm(miss) < euclidean_norm(here.residual):
             points, here = trial, _LinearProblem.linearise(trial, target, values, miss)

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Protocol
 from jointfmu.contact.interface import InterfaceLaw
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.footprint.bolts import PressureSource
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
@@ -72,11 +72,11 @@ class FieldAdapter:
     describe_joint : {name: (value, unit, meaning)} of the complete joint for such a file and preload
     """
 
-    pressures: PressureFunction
-    shear_ratio: Callable[[Any], Number]
+    nodal_pressures: PressureFunction
+    tangential_stiffness_ratio: Callable[[Any], Number]
     bolt_layout: Callable[[Any], BoltLayout]
-    with_elastic_bodies: Callable[[ParameterFile, Any, float, str, PressureDistribution], ParameterFile]
-    facts: Callable[[ParameterFile, float], dict[str, tuple[float, str, str]]]
+    insert_elastic_bodies: Callable[[ParameterFile, Any, float, str, PressureDistribution], ParameterFile]
+    describe_joint: Callable[[ParameterFile, float], dict[str, tuple[float, str, str]]]
 
 
 def field_adapters() -> dict[str, FieldAdapter]:
@@ -86,7 +86,7 @@ def field_adapters() -> dict[str, FieldAdapter]:
 
 
 def field_adapter(joint: str) -> FieldAdapter:
-    """Adapter of a kind of joint; ValueError if its pressure cannot be a field."""
+    """Functions for pressure fields of a kind of joint; ValueError if it takes no pressure field."""
     adapters = field_adapters()
     if joint not in adapters:
         allowed = " or ".join(repr(name) for name in adapters)

@@ -11,36 +11,36 @@ from jointfmu.progress import track_progress
 from jointfmu.quantity import flat_fields
 
 from ...partners import PARTNERS
-from ...partners import parameters as partner_parameters
-from ..data import split
-from .kept import compiled_model, pack_model, shipped_name
+from ...partners import load_partner_parameters as partner_parameters
+from ..data import split_parameters
+from .compiled_models import compiled_model_name, get_compiled_model, pack_model
 
 
-def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
+def compile_ahead(fmu_names: Sequence[str], output_folder: Path) -> list[Path]:
     """Write the compiled models of FMUs into a folder and return the files; other files there are deleted.
 
-    names : of FMUs; empty: all
+    fmu_names : of FMUs; empty: all
 
     Raises as `compiled_models.get_compiled_model`, and ValueError for an unknown name.
     """
     models = MODELS | PARTNERS
-    if unknown := [name for name in names if name not in models]:
+    if unknown := [name for name in fmu_names if name not in models]:
         raise ValueError(f"unknown FMU {unknown[0]!r}, allowed are {', '.join(models)}")
-    jobs = [job for name in names or models for job in structures(models[name])]
-    out.mkdir(parents=True, exist_ok=True)
+    jobs = [job for name in fmu_names or models for job in list_structures(models[name])]
+    output_folder.mkdir(parents=True, exist_ok=True)
     written_files = []
     for model, parameters in track_progress(jobs, "compile", len(jobs)):
-        parameter_split = split(model, parameters)
-        compiled = compiled_model(model, parameters, parameter_split)
-        file = out / shipped_name(model, parameter_split)
+        parameter_split = split_parameters(model, parameters)
+        compiled = get_compiled_model(model, parameters, parameter_split)
+        file = output_folder / compiled_model_name(model, parameter_split)
         file.write_bytes(pack_model(compiled))
         written_files.append(file)
-    for old_file in set(out.iterdir()) - set(written_files):
+    for old_file in set(output_folder.iterdir()) - set(written_files):
         old_file.unlink()
     return written_files
 
 
-def structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
+def list_structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
     """Yield a model and parameters for each structure of an FMU, which has its own C code."""
     if model.name in PARTNERS:
         yield model, partner_parameters(model.name)
@@ -48,7 +48,7 @@ def structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
     for law in KINDS[model.joint].laws:
         file = load_default(model.joint, law)
         law_model = model.with_parameters(file.joint, file.values)
-        for choices in _choices(law_model, file):
+        for choices in _list_choices(law_model, file):
             try:
                 chosen = file.with_values(choices, "user", "compiled ahead")
             except ValueError:  # the choice needs parameters that the file does not have
@@ -56,9 +56,9 @@ def structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
             yield law_model, chosen
 
 
-def _choices(model: Model, file: ParameterFile) -> Iterator[Mapping[str, object]]:
+def _list_choices(model: Model, file: ParameterFile) -> Iterator[Mapping[str, object]]:
     """Yield all combinations {name: value} of the choice parameters on which the C code depends."""
-    code = split(model, file).code
+    code = split_parameters(model, file).code_values
     allowed = {
         name: item.metadata["allowed"]
         for name, item in flat_fields(type(file.values))

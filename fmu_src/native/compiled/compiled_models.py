@@ -26,22 +26,22 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import set_step
 
-from ...folders import own_folder
-from ...joint_parts.data import Split
-from ..data import PLACEHOLDER, placeholder
-from .cache import check_access, make_folder, parts_folder
-from .compiler import exported, libraries
+from ...folders import find_source_folder
+from ...joint_parts.data import ParameterSplit
+from ..data import PLACEHOLDER, make_placeholder
+from .cache import check_access, compiled_model_folder, make_folder
+from .compiler import compile_libraries, select_units
 
-SHIPPED = Path(__file__).parent.with_name("parts")
+SHIPPED_FOLDER = Path(__file__).parent.with_name("parts")
 """Folder of the compiled models in a wheel."""
-VERSIONS = ("2", "3")
+FMI_VERSIONS = ("2", "3")
 """Versions of FMI."""
-MOST_KEPT = 200
+MAX_CACHED_FILES = 200
 """Largest number of files in a cache folder [1]; the oldest are deleted."""
-_SUFFIX, _RESULT_SUFFIX = ".tar.xz", ".kept.xz"
-_COMPILERS = ("casadi", "ziglang")
-_SOURCES = (".py", ".c", ".h")
-_MEMBER = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
+_MODEL_SUFFIX, _RESULT_SUFFIX = ".tar.xz", ".kept.xz"
+_COMPILER_PACKAGES = ("casadi", "ziglang")
+_SOURCE_SUFFIXES = (".py", ".c", ".h")
+_MEMBER_PATTERN = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
 """Pattern of member names in the file of a compiled model: C files, and libraries as FMI version/platform."""
 
 
@@ -56,41 +56,41 @@ class CompiledModel(NamedTuple):
     libraries: dict[str, dict[str, bytes]]
 
 
-def compiled_model(model: Model, parameters: ParameterFile, split: Split) -> CompiledModel:
+def get_compiled_model(model: Model, parameters: ParameterFile, split: ParameterSplit) -> CompiledModel:
     """Get the compiled model of an FMU from the wheel or the cache, or compile and cache it.
 
     Raises ImportError if it must be compiled and a package is missing, ValueError if other users may write
     to the cache, ValueError and RuntimeError as `compiler.compile_libraries`.
     """
-    paths = _places(shipped_name(model, split))
-    for content in filter(None, map(_content, paths)):
+    paths = _candidate_paths(compiled_model_name(model, split))
+    for content in filter(None, map(_read_cached, paths)):
         with suppress(lzma.LZMAError, tarfile.TarError, ValueError, EOFError):
             return unpack_model(content)
     compiled_model = compile_model(model, parameters, split)
     with suppress(OSError):  # without cache the next build compiles again
-        _keep(paths[-1], pack_model(compiled_model))
+        _write_cached(paths[-1], pack_model(compiled_model))
     return compiled_model
 
 
-def cached_result(dependency: str, model: Model, make: Callable[[], bytes]) -> bytes:
-    """Bytes that `make` computes from a model, read from the cache if the sources are unchanged.
+def cached_result(dependency: str, model: Model, compute_result: Callable[[], bytes]) -> bytes:
+    """Bytes that `compute_result` computes from a model, read from the cache if the sources are unchanged.
 
     dependency : text of everything else on which the result depends
 
-    Raises ValueError if other users may write to the cache, and what `make` raises.
+    Raises ValueError if other users may write to the cache, and what `compute_result` raises.
     """
-    name = sha256(f"{dependency} {_sources_of(model)}".encode()).hexdigest()[:32]
-    file = _places(f"{model.name}-{name}{_RESULT_SUFFIX}")[-1]
-    if content := _content(file):
+    name = sha256(f"{dependency} {_digest_sources(model)}".encode()).hexdigest()[:32]
+    file = _candidate_paths(f"{model.name}-{name}{_RESULT_SUFFIX}")[-1]
+    if content := _read_cached(file):
         with suppress(lzma.LZMAError):
             return lzma.decompress(content)
-    result = make()
+    result = compute_result()
     with suppress(OSError):
-        _keep(file, lzma.compress(result))
+        _write_cached(file, lzma.compress(result))
     return result
 
 
-def _content(file: Path) -> bytes:
+def _read_cached(file: Path) -> bytes:
     """Content of a cached file; empty if it is missing. Raises ValueError as `check_access`."""
     with suppress(OSError):
         check_access(file)
@@ -99,8 +99,8 @@ def _content(file: Path) -> bytes:
 
 
 @contextmanager
-def _interrupt_after() -> Iterator[None]:
-    """Defer Ctrl-C to the end of the body, which takes a second or two: CasADi ignores the interrupt."""
+def _defer_interrupt() -> Iterator[None]:
+    """Context that defers Ctrl-C to its end, a second or two: CasADi ignores the interrupt."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -114,60 +114,62 @@ def _interrupt_after() -> Iterator[None]:
         raise KeyboardInterrupt
 
 
-def compile_model(model: Model, parameters: ParameterFile, split: Split) -> CompiledModel:
+def compile_model(model: Model, parameters: ParameterFile, split: ParameterSplit) -> CompiledModel:
     """Compile the model of an FMU for all platforms and FMI versions."""
     set_step(f"compile {model.name}")
-    from ..code.generate import code
+    from ..code.generate import generate_code
 
-    with _interrupt_after():
-        sources = code(model, parameters, split)
-    all_sources = sources | {"data.c": placeholder(model, split).source()}
+    with _defer_interrupt():
+        sources = generate_code(model, parameters, split)
+    all_sources = sources | {"data.c": make_placeholder(model, split).make_source()}
     libraries_by_version = {
-        fmi: libraries(model.name, all_sources, exported(all_sources, fmi), stem=PLACEHOLDER)
-        for fmi in VERSIONS
+        fmi: compile_libraries(model.name, all_sources, select_units(all_sources, fmi), stem=PLACEHOLDER)
+        for fmi in FMI_VERSIONS
     }
     return CompiledModel(sources, libraries_by_version)
 
 
-def shipped_name(model: Model, split: Split) -> str:
+def compiled_model_name(model: Model, split: ParameterSplit) -> str:
     """File name of a compiled model, with a digest of structure and sources."""
     law = model.parameters
-    text = f"{model.name} {law.__module__}.{law.__qualname__} {split.structure} {_sources_of(model)}"
-    return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_SUFFIX}"
+    text = f"{model.name} {law.__module__}.{law.__qualname__} {split.structure_key} {_digest_sources(model)}"
+    return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_MODEL_SUFFIX}"
 
 
-def _places(name: str) -> tuple[Path, Path]:
+def _candidate_paths(file_name: str) -> tuple[Path, Path]:
     """Paths of a file in the wheel and in the cache, which has one folder per set of compiler versions."""
     compilers = []
-    for package in _COMPILERS:
+    for package in _COMPILER_PACKAGES:
         with suppress(PackageNotFoundError):
             compilers.append(f"{package}-{version(package)}")
-    return SHIPPED / name, parts_folder() / "_".join(compilers or ["none"]) / name
+    return SHIPPED_FOLDER / file_name, compiled_model_folder() / "_".join(compilers or ["none"]) / file_name
 
 
-def _sources_of(model: Model) -> str:
+def _digest_sources(model: Model) -> str:
     """Digest of all files that affect the generated code: packages, this builder, folder of the joint."""
     kind = KINDS.get(model.joint)
     packages = {"jointfmu", kind.package if kind else "jointfmu"}
     roots = [Path(str(files(package))) for package in sorted(packages)]
     here = Path(__file__).parent.parent
-    return _digest((*roots, here, here.with_name("joint_parts"), own_folder(model)))
+    return _digest_folders((*roots, here, here.with_name("joint_parts"), find_source_folder(model)))
 
 
 @cache
-def _digest(folders: tuple[Path, ...]) -> str:
+def _digest_folders(source_folders: tuple[Path, ...]) -> str:
     """SHA-256 of all source files in folders."""
     digest = sha256()
-    for folder in folders:
-        for name, content in _files(folder):
+    for folder in source_folders:
+        for name, content in _read_source_files(folder):
             digest.update(f"{name}\0{len(content)}\0".encode() + content)
     return digest.hexdigest()
 
 
-def _files(folder: Path) -> Iterator[tuple[str, bytes]]:
+def _read_source_files(folder: Path) -> Iterator[tuple[str, bytes]]:
     """Yield path and content of all source files below a folder, sorted by path."""
     paths = {
-        path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.suffix in _SOURCES
+        path.relative_to(folder).as_posix(): path
+        for path in folder.rglob("*")
+        if path.suffix in _SOURCE_SUFFIXES
     }
     for name in sorted(paths):
         yield name, paths[name].read_bytes()
@@ -176,8 +178,8 @@ def _files(folder: Path) -> Iterator[tuple[str, bytes]]:
 def pack_model(model: CompiledModel) -> bytes:
     """Encode a compiled model as an archive; equal models give equal bytes."""
     members = {f"sources/{name}": text.encode() for name, text in model.sources.items()}
-    for platform in model.libraries[VERSIONS[0]]:  # similar content is adjacent, for better compression
-        members |= {f"{v}/{platform}": model.libraries[v][platform] for v in VERSIONS}
+    for platform in model.libraries[FMI_VERSIONS[0]]:  # similar content is adjacent, for better compression
+        members |= {f"{v}/{platform}": model.libraries[v][platform] for v in FMI_VERSIONS}
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w:xz", preset=9) as archive:
         for name, content in members.items():
@@ -197,7 +199,7 @@ def unpack_model(content: bytes) -> CompiledModel:
     with tarfile.open(fileobj=io.BytesIO(lzma.decompress(content))) as archive:
         for info in archive:
             folder, _, name = info.name.partition("/")
-            if not _MEMBER.fullmatch(info.name):
+            if not _MEMBER_PATTERN.fullmatch(info.name):
                 raise ValueError(f"no part: it has a member {info.name!r}")
             stream = archive.extractfile(info)
             member = stream.read() if stream else b""
@@ -205,12 +207,12 @@ def unpack_model(content: bytes) -> CompiledModel:
                 sources[name] = member.decode()
             else:
                 libraries_by_version.setdefault(folder, {})[name] = member
-    if not sources or not libraries_by_version.keys() >= {*VERSIONS}:
+    if not sources or not libraries_by_version.keys() >= {*FMI_VERSIONS}:
         raise ValueError("no part")
     return CompiledModel(sources, libraries_by_version)
 
 
-def _keep(file: Path, content: bytes) -> None:
+def _write_cached(file: Path, content: bytes) -> None:
     """Write a cache file atomically, and delete the oldest files of its folder beyond MAX_CACHED_FILES.
 
     While other processes write into the folder, its listing can contain a file twice.
@@ -219,13 +221,13 @@ def _keep(file: Path, content: bytes) -> None:
     with tempfile.NamedTemporaryFile("wb", dir=file.parent, delete=False) as new:
         new.write(content)
     Path(new.name).replace(file)
-    times = {other: _written_at(other) for other in file.parent.glob("*.xz") if other != file}
+    times = {other: _modification_time(other) for other in file.parent.glob("*.xz") if other != file}
     dated_files = sorted((time, other) for other, time in times.items() if time is not None)
-    for _, old_file in dated_files[: max(len(dated_files) + 1 - MOST_KEPT, 0)]:
+    for _, old_file in dated_files[: max(len(dated_files) + 1 - MAX_CACHED_FILES, 0)]:
         old_file.unlink(missing_ok=True)
 
 
-def _written_at(file: Path) -> float | None:
+def _modification_time(file: Path) -> float | None:
     """Modification time of a file [s]; None if another process has just deleted it."""
     with suppress(FileNotFoundError):
         return file.stat().st_mtime

@@ -1,7 +1,7 @@
 """Layout of history variables in one array, declared once for Python and C."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import accumulate
 from math import prod
 
@@ -19,6 +19,13 @@ class HistoryLayout:
     """
 
     shapes: Mapping[str, tuple[int, ...]]
+    _places: tuple[tuple[str, int, int, tuple[int, ...]], ...] = field(init=False, repr=False, compare=False)
+    """(name, index of the first value, index after the last, shape) of the variables."""
+
+    def __post_init__(self) -> None:
+        ends = [*accumulate(map(prod, self.shapes.values()))]
+        places = zip(self.shapes, [0, *ends], ends, self.shapes.values(), strict=False)
+        object.__setattr__(self, "_places", tuple(places))
 
     def __or__(self, right: "HistoryLayout") -> "HistoryLayout":
         return HistoryLayout({**self.shapes, **right.shapes})
@@ -26,12 +33,12 @@ class HistoryLayout:
     @property
     def size(self) -> int:
         """Total number of values [1]."""
-        return sum(map(prod, self.shapes.values()))
+        return self._places[-1][2] if self._places else 0
 
     @property
     def offsets(self) -> dict[str, int]:
         """{name: index of its first value in the array}."""
-        return dict(zip(self.shapes, accumulate(map(prod, self.shapes.values()), initial=0), strict=False))
+        return {name: start for name, start, _, _ in self._places}
 
     def virgin_history(self) -> Array:
         """Array (n) of history variables in the virgin state: zeros."""
@@ -39,14 +46,14 @@ class HistoryLayout:
 
     def split(self, history: Array) -> dict[str, Array]:
         """Views {name: variable (..., *shape)} into arrays of history variables (..., n)."""
+        rows = history.shape[:-1]
         return {
-            name: history[..., start : start + prod(shape)].reshape(history.shape[:-1] + shape)
-            for (name, shape), start in zip(self.shapes.items(), self.offsets.values(), strict=True)
+            name: history[..., start:end].reshape(rows + shape) for name, start, end, shape in self._places
         }
 
-    def join(self, variables: Mapping[str, ArrayLike], *shape: int) -> Array:
+    def join(self, variables: Mapping[str, ArrayLike], *leading_shape: int) -> Array:
         """Array (*shape, n) of history variables from {name: variable (..., *its shape)}."""
-        memory = np.empty((*shape, self.size))
+        memory = np.empty((*leading_shape, self.size))
         for name, view in self.split(memory).items():
             view[...] = variables[name]
         return memory

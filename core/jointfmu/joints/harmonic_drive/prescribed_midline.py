@@ -24,14 +24,14 @@ from ...quantity import (
 )
 from .drive import PLAY_WIDTH_RATIO, Drive, lost_motion_angle
 
-DEFAULT_CORNER = 0.04
+DEFAULT_CORNER_RATIO = 0.04
 """Default half-width of a smoothed corner over its wind-up [1]: for catalogue drives the angle at a corner is
 then within 0.4 % of the lines."""
-MIN_CORNER = 1e-6
+MIN_CORNER_RATIO = 1e-6
 """Smallest half-width [1], used if `corner` is 0: the angle at a corner is within 1e-7 of the lines."""
 MAX_STIFFNESS = 1e12
 """Largest stiffness of a drive [N.m/rad]: more than that of a solid steel shaft of its size."""
-MAX_POINTS = 1000
+MAX_TABLE_POINTS = 1000
 """Largest number of points of a measured table."""
 MIN_END_STIFFNESS_RATIO, MAX_END_STIFFNESS_RATIO = 1.0 / 3.0, 3.0
 """Bounds of the stiffness at the last point over the mean stiffness of the last segment [1]."""
@@ -40,7 +40,7 @@ MIN_STIFFNESS_RATIO = 0.5
 the stiffness is made continuous at its points."""
 PLAY_NODE_COUNT = 60
 """Nodes for the play on the first line of a catalogue drive: the torque error is below 1e-8 rated_torque."""
-PLAY_END_RATIO = 8.0
+PLAY_END_TORQUE_RATIO = 8.0
 """Torque over T_p of the play [1] at which the play has ended: 2e-7 of lost_motion is missing."""
 _SAMPLE_POINTS = np.linspace(0.0, 1.0, 33)
 
@@ -73,7 +73,7 @@ class PrescribedDrive(Drive):
 
     @property
     def law(self) -> None:
-        """None: the midline has no interface law."""
+        """Interface law of the contact pair: None, a prescribed midline has none."""
         return
 
     @property
@@ -94,7 +94,7 @@ class CatalogueDrive(PrescribedDrive):
     corner at the wind-up theta_i, within theta_i (1 +- corner), the stiffness changes from one line to the
     next by the smooth step 3 t^2 - 2 t^3. Outside this range torque and angle are exactly those of the lines.
     The torque is twice continuously differentiable everywhere. With corner = 0 the angles are those of the
-    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER): a kink without an event.
+    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER_RATIO): a kink without an event.
     """
 
     K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0, le=MAX_STIFFNESS)
@@ -107,15 +107,15 @@ class CatalogueDrive(PrescribedDrive):
         "half-width of the two smooth corners over their wind-up; 0: the lines themselves, with kinks",
         ge=0.0,
         lt=1.0,
-        default=DEFAULT_CORNER,
+        default=DEFAULT_CORNER_RATIO,
     )
     max_torque: float = quantity_field(
         "N.m", "end of the tabulated law, at least past the second corner", gt=0.0
     )
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals that other parameters decide."""
-        first, second = self.corners
+        """Intervals of parameters that depend on other parameters."""
+        first, second = self.corner_angles
         return [
             *super().find_limits(),
             ParameterLimit("T2", Interval.from_bounds(gt=self.T1), "it must exceed T1"),
@@ -129,31 +129,34 @@ class CatalogueDrive(PrescribedDrive):
                 Interval.from_bounds(
                     ge=0.0,
                     le=select(
-                        self._first_line_torque > PLAY_END_RATIO * PLAY_WIDTH_RATIO * self.rated_torque,
+                        self._first_line_torque
+                        > PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque,
                         1.0,
                         0.0,
                     ),
                 ),
-                f"the first line must reach beyond {PLAY_END_RATIO * PLAY_WIDTH_RATIO:g} "
+                f"the first line must reach beyond {PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO:g} "
                 "rated_torque, where play ends",
             ),
         ]
 
     @property
-    def corners(self) -> tuple[Number, Number]:
+    def corner_angles(self) -> tuple[Number, Number]:
         """Wind-up [rad] of the lines at T1 and T2."""
         first = self.T1 / self.K1
         return first, first + (self.T2 - self.T1) / self.K2
 
     @property
-    def half_width(self) -> Number:
-        """Half-width of the corners over their wind-up [1], at least MIN_CORNER."""
-        return np.maximum(self.corner, MIN_CORNER)
+    def corner_half_width_ratio(self) -> Number:
+        """Half-width of a smoothed corner over its wind-up [1], at least MIN_CORNER_RATIO."""
+        return np.maximum(self.corner, MIN_CORNER_RATIO)
 
     @property
     def max_table_torque(self) -> Number:
         """Torque [N.m] at the end of the table: max_torque, but at least T2 plus the width of its corner."""
-        return np.maximum(self.max_torque, self.T2 + 2.0 * self.half_width * self.corners[1] * self.K3)
+        return np.maximum(
+            self.max_torque, self.T2 + 2.0 * self.corner_half_width_ratio * self.corner_angles[1] * self.K3
+        )
 
     @property
     def K_FTS(self) -> Number:
@@ -163,16 +166,14 @@ class CatalogueDrive(PrescribedDrive):
     @property
     def _first_line_torque(self) -> Number:
         """Torque [N.m] at the end of the first line, where the first corner begins."""
-        return self.T1 - self.K1 * self.half_width * self.corners[0]
+        return self.T1 - self.K1 * self.corner_half_width_ratio * self.corner_angles[0]
 
     def make_nodes(self) -> list[SplineNode]:
         """Nodes of the first line with the play, then both ends of each corner, then the end of the table."""
-        (first, second), (K1, K2, K3) = self.corners, (self.K1, self.K2, self.K3)
-        first_width, second_width, end = (
-            self.half_width * first,
-            self.half_width * second,
-            self.max_table_torque,
-        )
+        (first, second), (K1, K2, K3) = self.corner_angles, (self.K1, self.K2, self.K3)
+        first_width = self.corner_half_width_ratio * first
+        second_width = self.corner_half_width_ratio * second
+        end = self.max_table_torque
         play_angle = lost_motion_angle(self, self._first_line_torque)[0]
         return [
             *self._play_nodes(),
@@ -185,10 +186,10 @@ class CatalogueDrive(PrescribedDrive):
 
     def _play_nodes(self) -> list[SplineNode]:
         """Nodes of the first line with the play in series, denser at small torque."""
-        end_torque, nodes = (
-            np.minimum(PLAY_END_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque),
-            [],
+        end_torque = np.minimum(
+            PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque
         )
+        nodes = []
         for position in np.arange(PLAY_NODE_COUNT) / PLAY_NODE_COUNT:
             torque = end_torque * float(position) ** 2
             angle, compliance, change = lost_motion_angle(self, torque)
@@ -202,7 +203,7 @@ class CatalogueDrive(PrescribedDrive):
 class MeasuredMidline:
     """Points of a measured midline without the point at zero load; torque and angle increase.
 
-    Raises ValueError if both columns do not have the same number of points, 2 to MAX_POINTS, or do not
+    Raises ValueError if both columns do not have the same number of points, 2 to MAX_TABLE_POINTS, or do not
     increase.
     """
 
@@ -212,10 +213,10 @@ class MeasuredMidline:
     def __post_init__(self) -> None:
         check_fields(self)
         counts = len(self.torque), len(self.angle)
-        if counts[0] != counts[1] or not 2 <= counts[0] <= MAX_POINTS:
+        if counts[0] != counts[1] or not 2 <= counts[0] <= MAX_TABLE_POINTS:
             raise ValueError(
                 f"table.torque and table.angle have {counts[0]} and {counts[1]} points, "
-                f"allowed is 2 to {MAX_POINTS}, the same of both"
+                f"allowed is 2 to {MAX_TABLE_POINTS}, the same of both"
             )
         for name, unit in (("torque", "N.m"), ("angle", "rad")):
             values = getattr(self, name)
@@ -230,7 +231,7 @@ class MeasuredDrive(PrescribedDrive):
     """Harmonic drive with a measured midline, which already contains the lost motion."""
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals that other parameters decide."""
+        """Intervals of parameters that depend on other parameters."""
         no_play = ParameterLimit(
             "lost_motion", Interval.from_bounds(ge=0.0, le=0.0), "a measured midline has it already"
         )
@@ -280,28 +281,32 @@ class TableDrive(MeasuredDrive):
         common_slope = np.concatenate([[0.0], mean, slope_before[-1:]])
         smallest = np.min(_sample_stiffness(h, torque_steps, s, common_slope[:-1], common_slope[1:]), axis=0)
         is_stiff = smallest > MIN_STIFFNESS_RATIO * np.minimum(np.minimum(s[:-1], s[1:]), torque_steps / h)
-        slope_after, slope_before = (
-            np.where(is_stiff, common_slope[:-1], slope_after),
-            np.where(is_stiff, common_slope[1:], slope_before),
-        )
+        slope_after = np.where(is_stiff, common_slope[:-1], slope_after)
+        slope_before = np.where(is_stiff, common_slope[1:], slope_before)
         ends = np.concatenate([[0.0], slope_before]), np.concatenate([slope_after, [0.0]])
         return [SplineNode(*row) for row in np.column_stack([x, y, s, *ends]).tolist()]
 
 
-def _node_stiffness(h: Array, secants: Array) -> Array:
-    """Stiffness (n + 1) at the points, from widths h (n) and secant stiffnesses d (n); the curve is odd."""
-    weight_left, weight_right = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-    inner = (weight_left + weight_right) / (weight_left / secants[:-1] + weight_right / secants[1:])
-    end_stiffness = ((2.0 * h[-1] + h[-2]) * secants[-1] - h[-1] * secants[-2]) / (h[-1] + h[-2])
+def _node_stiffness(segment_widths: Array, secant_stiffnesses: Array) -> Array:
+    """Stiffness (n + 1) at the points of an odd curve, from widths (n) and secant stiffnesses (n)."""
+    weight_left = 2.0 * segment_widths[1:] + segment_widths[:-1]
+    weight_right = segment_widths[1:] + 2.0 * segment_widths[:-1]
+    inner = (weight_left + weight_right) / (
+        weight_left / secant_stiffnesses[:-1] + weight_right / secant_stiffnesses[1:]
+    )
+    end_stiffness = (
+        (2.0 * segment_widths[-1] + segment_widths[-2]) * secant_stiffnesses[-1]
+        - segment_widths[-1] * secant_stiffnesses[-2]
+    ) / (segment_widths[-1] + segment_widths[-2])
     return np.concatenate(
         [
-            secants[:1],
+            secant_stiffnesses[:1],
             inner,
             [
                 np.clip(
                     end_stiffness,
-                    MIN_END_STIFFNESS_RATIO * secants[-1],
-                    MAX_END_STIFFNESS_RATIO * secants[-1],
+                    MIN_END_STIFFNESS_RATIO * secant_stiffnesses[-1],
+                    MAX_END_STIFFNESS_RATIO * secant_stiffnesses[-1],
                 )
             ],
         ]
@@ -309,17 +314,19 @@ def _node_stiffness(h: Array, secants: Array) -> Array:
 
 
 def _sample_stiffness(
-    h: Array, torque_steps: Array, s: Array, slope_after: Array, slope_before: Array
+    segment_widths: Array, torque_steps: Array, node_stiffness: Array, slope_after: Array, slope_before: Array
 ) -> Array:
     """Stiffness (m, n) at m sample points inside each of n quintic segments.
 
-    h, torque_steps           : (n) widths and torque increments of the segments
-    s                         : (n + 1) stiffness at the nodes
-    slope_after, slope_before : (n) derivative of the stiffness at the start and at the end of each segment
+    segment_widths, torque_steps : (n) widths and torque increments of the segments
+    node_stiffness               : (n + 1) stiffness at the nodes
+    slope_after, slope_before    : (n) derivative of the stiffness at the start and at the end of each segment
     """
     t = _SAMPLE_POINTS[:, None]
-    first, last = s[:-1], s[1:]
-    a2, c0, c1 = torque_steps / h, 0.5 * h * slope_after, 0.5 * h * slope_before
+    first, last = node_stiffness[:-1], node_stiffness[1:]
+    a2 = torque_steps / segment_widths
+    c0 = 0.5 * segment_widths * slope_after
+    c1 = 0.5 * segment_widths * slope_before
     cubic = 30.0 * a2 - 18.0 * first - 12.0 * last - 9.0 * c0 + 3.0 * c1
     quartic = -60.0 * a2 + 32.0 * first + 28.0 * last + 12.0 * c0 - 8.0 * c1
     quintic = 30.0 * a2 - 15.0 * first - 15.0 * last - 5.0 * c0 + 5.0 * c1

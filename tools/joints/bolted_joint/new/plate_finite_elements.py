@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import COMPONENTS, Compliances
-from jointfmu.joints.bolted_joint.law import preload_pressure, working_preload
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.law import ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import set_step
 from jointfmu.quantity import Array, flatten_parameters
@@ -42,11 +41,11 @@ class BoltedPlates:
     """
 
     plate: BoltedPlate
-    layers: tuple[ClampedPart, ...]
+    clamped_parts: tuple[ClampedPart, ...]
     bearing_diameter: float
     density: tuple[float, ...]
     preload: float
-    tension: float
+    remaining_preload: float
     thread_depth: float = 0.0
 
     def make_assembly(self, file: ParameterFile) -> "Assembly":
@@ -65,7 +64,7 @@ class BoltedPlates:
                 nu=file.values_by_name[f"side{i + 1}.nu"],
                 density=self.density[i],
             )
-            for i, layer in enumerate(self.layers)
+            for i, layer in enumerate(self.clamped_parts)
         ]
         if self.thread_depth:
             sides[1] = TappedPlate(**flatten_parameters(sides[1]), depth=self.thread_depth)
@@ -87,13 +86,13 @@ def compute_pressure_field(
     """
 
     with require_fem_packages("--field computed"):
-        from ....fem.bolted_contact import BoltedContact, with_contact_field
+        from ....fem.bolted_contact import BoltedContact, insert_contact_field
 
         set_step("contact of the plates by finite elements")
         solution = BoltedContact.from_assembly(plates.make_assembly(file)).solve(
-            tabulate_approach(file.values), plates.tension
+            tabulate_approach(file.values), plates.remaining_preload
         )
-    return with_contact_field(file, solution, plates.tension)
+    return insert_contact_field(file, solution, plates.remaining_preload)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +104,14 @@ class ComputedJoint:
 
 
 def compute_joint(
-    file: ParameterFile, plates: BoltedPlates, attached: str, shape: PressureDistribution | None = None
+    file: ParameterFile,
+    plates: BoltedPlates,
+    attachment: str,
+    pressure_shape: PressureDistribution | None = None,
 ) -> ComputedJoint:
     """Compute the complete joint of a drawing at its preload, see `compute_joint_of_assembly`."""
     return compute_joint_of_assembly(
-        file, lambda: plates.make_assembly(file), plates.preload, attached, shape
+        file, lambda: plates.make_assembly(file), plates.preload, attachment, pressure_shape
     )
 
 
@@ -117,8 +119,8 @@ def compute_joint_of_assembly(
     file: ParameterFile,
     make_assembly: "Callable[[], Assembly]",
     preload: float,
-    attached: str,
-    shape: PressureDistribution | None = None,
+    attachment: str,
+    pressure_shape: PressureDistribution | None = None,
 ) -> ComputedJoint:
     """Compute the complete joint by finite elements and reduce its bodies to modes.
 
@@ -138,8 +140,8 @@ def compute_joint_of_assembly(
         set_step("members by finite elements")
         clamped = make_assembly()
         check_thickness(clamped)
-        joint = JointFiniteElements.from_assembly(clamped, attached)
-        springs = _interface_stiffness(file, preload, joint, shape)
+        joint = JointFiniteElements.from_assembly(clamped, attachment)
+        springs = _interface_stiffness(file, preload, joint, pressure_shape)
         linear = joint.linearize(springs, file.values.bolt_stiffness)
         bodies = replace(
             reduce_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
@@ -150,19 +152,21 @@ def compute_joint_of_assembly(
             thread_depth=getattr(clamped.side2, "depth", 0.0),
         )
         compliances = linear.compliances()
-    return ComputedJoint(compliances, with_bodies(file, bodies, attached))
+    return ComputedJoint(compliances, set_elastic_bodies(file, bodies, attachment))
 
 
 def _contact_outline(assembly: "Assembly", centroid: Array) -> tuple[float, ...]:
     """Bounding box of the contact relative to its centroid: x_min, y_min, x_max, y_max [m]."""
-    half = np.min([side.layers()[0].outline for side in (assembly.side1, assembly.side2)], axis=0)
+    half = np.min(
+        [side.layers()[0].outline_half_lengths for side in (assembly.side1, assembly.side2)], axis=0
+    )
     return tuple(np.concatenate([-half - centroid, half - centroid]).tolist())
 
 
-def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
+def set_elastic_bodies(file: ParameterFile, bodies: ElasticBodies, attachment: str) -> ParameterFile:
     """Parameters of the joint with elastic sides, described by `bodies`."""
-    values = replace(file.values, sides="elastic", bodies=replace(bodies, attached=attached))
-    source = f"finite elements of the bodies between {ATTACHMENTS[attached]}, reduced to modes"
+    values = replace(file.values, sides="elastic", bodies=replace(bodies, attached=attachment))
+    source = f"finite elements of the bodies between {ATTACHMENTS[attachment]}, reduced to modes"
     names = [f"bodies.{name}" for name, value in flatten_parameters(bodies).items() if value != ()]
     stated = "the whole joint between what it connects; rigid: the interface alone"
     return replace(
@@ -174,7 +178,10 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
 
 
 def _interface_stiffness(
-    file: ParameterFile, preload: float, joint: "JointFiniteElements", shape: PressureDistribution | None
+    file: ParameterFile,
+    preload: float,
+    joint: "JointFiniteElements",
+    pressure_shape: PressureDistribution | None,
 ) -> Array:
     """Stiffness per area (points, 3) [N/m3] along x, y, z of the tightened interface, at integration points.
 
@@ -186,12 +193,14 @@ def _interface_stiffness(
     from scipy.spatial import cKDTree
 
     values, interface = file.values, joint.interface
-    shape = shape or pressure_distribution(values.pattern)
+    pressure_shape = pressure_shape or pressure_distribution(values.pattern)
     curve = tabulate_approach(values)
-    nodal = curve.derivatives(curve.inverse(preload_pressure(values, shape, preload, 0.0)), 1)[1]
-    normal = nodal[cKDTree(shape.position).query(interface.centred_position)[1]]
-    normal = normal * (values.A_0 * (shape.share @ nodal) / (interface.area @ normal))
-    ratio = float(values.shear_ratio())
+    nodal = curve.derivatives(curve.inverse(preload_pressure(values, pressure_shape, preload, 0.0)), 1)[1]
+    normal = nodal[cKDTree(pressure_shape.position).query(interface.centred_position)[1]]
+    normal = normal * (
+        values.A_0 * (pressure_shape.area_share @ nodal) / (interface.quadrature_area @ normal)
+    )
+    ratio = float(values.shear_stiffness_ratio())
     return np.stack([ratio * normal, ratio * normal, normal], axis=1)
 
 
@@ -202,10 +211,10 @@ Facts = dict[str, tuple[float, str, str]]
 def compute_facts(
     file: ParameterFile,
     plates: BoltedPlates,
-    attached: str,
+    attachment: str,
     sides: str | None,
     interface_only_text: str,
-    shape: PressureDistribution | None = None,
+    pressure_shape: PressureDistribution | None = None,
 ) -> NewJoint:
     """Compute the complete joint: parameters with elastic sides and facts, or a warning why this failed.
 
@@ -217,13 +226,13 @@ def compute_facts(
     Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """
     try:
-        computed = compute_joint(file, plates, attached, shape)
+        computed = compute_joint(file, plates, attachment, pressure_shape)
     except ValueError as error:
         if sides == "elastic":
             raise
         return NewJoint(file, {}, [f"members and bolts are not computed, {interface_only_text}: {error}"])
     if sides == "rigid":
-        return NewJoint(file, _fact_rows(computed.compliances, plates.tension, attached), [])
+        return NewJoint(file, _fact_rows(computed.compliances, plates.remaining_preload, attachment), [])
     return NewJoint(computed.file, joint_facts(computed.file, plates.preload), [])
 
 
@@ -235,20 +244,22 @@ def joint_facts(file: ParameterFile, preload: float) -> Facts:
     return _fact_rows(compliances, tension, file.values.bodies.attached, suffix)
 
 
-def _fact_rows(compliances: Compliances, tension: float, attached: str, fmu_suffix: str = "") -> Facts:
+def _fact_rows(
+    compliances: Compliances, remaining_preload: float, attachment: str, fmu_suffix: str = ""
+) -> Facts:
     """Facts about the complete joint with a tension [N] of each bolt.
 
     fmu_suffix : text that names the load of the same output of the FMU; empty: the FMU contains the interface
                  only
     """
     return (
-        _stiffness_facts(compliances, attached, fmu_suffix)
-        | _load_facts(compliances, tension, attached)
+        _stiffness_facts(compliances, attachment, fmu_suffix)
+        | _load_facts(compliances, remaining_preload, attachment)
         | _interface_share(compliances, not fmu_suffix)
     )
 
 
-def _stiffness_facts(compliances: Compliances, attached: str, fmu_suffix: str) -> Facts:
+def _stiffness_facts(compliances: Compliances, attachment: str, fmu_suffix: str) -> Facts:
     """Stiffnesses in all directions, first of the complete joint, then of its members."""
     rows, members = {}, {}
     for name, unit, (joint, interface, alone, _), parts in compliances.rows():
@@ -256,7 +267,7 @@ def _stiffness_facts(compliances: Compliances, attached: str, fmu_suffix: str) -
         rows[f"joint_{name}"] = (
             joint,
             unit,
-            f"complete joint between {ATTACHMENTS[attached]}, other motions held"
+            f"complete joint between {ATTACHMENTS[attachment]}, other motions held"
             + (f": output {name} of the FMU{fmu_suffix}" if fmu_suffix else "")
             + f"; compliance: {shares}; the interface alone is {interface / joint:.3g} times as stiff",
         )
@@ -280,10 +291,10 @@ def _interface_share(compliances: Compliances, is_interface_only: bool) -> Facts
     return {"interface_share": (float(share[2]), "1", text)}
 
 
-def _load_facts(compliances: Compliances, tension: float, attached: str) -> Facts:
+def _load_facts(compliances: Compliances, remaining_preload: float, attachment: str) -> Facts:
     """Effect of an external force along z without bending: load factor, bolt share, opening load."""
-    where = f"a force along z at {ATTACHMENTS[attached]}"
-    opens = compliances.opening_load(tension)
+    where = f"a force along z at {ATTACHMENTS[attachment]}"
+    opens = compliances.opening_load(remaining_preload)
     free = f"{where}, other motions free"
     return {
         "joint_load_factor": (compliances.load_factor, "1", f"n Phi_K: share that the bolts carry of {free}"),

@@ -18,14 +18,14 @@ PRESSURE_DECIMALS = 11
 class PressureDistribution:
     """Pressure distribution of a bolted contact at n nodes.
 
-    share         : (n)    [1] share of the node in the nominal area, with the sum 1
+    area_share    : (n)    [1] share of the node in the nominal area, with the sum 1
     position      : (n, 2) [m] relative to the centroid of the contact
     preload_shape : (n)    [1] pressure over mean pressure for equal bolt forces
     moment_shape  : (n)    [1] pressure by a moment about x: bolt forces +1 in the row y > 0 and -1 in the row
                     y < 0, over the mean pressure of one row
     """
 
-    share: Array
+    area_share: Array
     position: Array
     preload_shape: Array
     moment_shape: Array
@@ -33,25 +33,29 @@ class PressureDistribution:
     def select_nodes(self, nodes: "slice | NDArray[np.intp]") -> "PressureDistribution":
         """Distribution at a subset of the nodes, with unchanged shares."""
         return PressureDistribution(
-            self.share[nodes], self.position[nodes], self.preload_shape[nodes], self.moment_shape[nodes]
+            self.area_share[nodes], self.position[nodes], self.preload_shape[nodes], self.moment_shape[nodes]
         )
 
     def as_patches(self) -> "FrictionPatches":
         """Friction patches, one per node, with the radius 0."""
         return FrictionPatches(
-            self.share, self.position, self.preload_shape, self.moment_shape, np.zeros_like(self.share)
+            self.area_share,
+            self.position,
+            self.preload_shape,
+            self.moment_shape,
+            np.zeros_like(self.area_share),
         )
 
-    def merge_nodes(self, with_moment: bool = True) -> "MergedDistribution":
+    def merge_nodes(self, keeps_moment: bool = True) -> "MergedDistribution":
         """Merge nodes that have the same pressure at every preload and moment.
 
-        with_moment : False: merge nodes with the same pressure at every preload, without moment
+        keeps_moment : False: merge nodes with the same pressure at every preload, without moment
         """
-        tilt = self.moment_shape if with_moment else 0.0 * self.moment_shape
+        tilt = self.moment_shape if keeps_moment else 0.0 * self.moment_shape
         keys = np.round(np.column_stack([self.preload_shape, tilt]), PRESSURE_DECIMALS)
         _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        share = np.asarray(np.bincount(group.ravel(), self.share), dtype=np.float64)
-        x2, y2 = (np.bincount(group.ravel(), self.share * x**2) / share for x in self.position.T)
+        share = np.asarray(np.bincount(group.ravel(), self.area_share), dtype=np.float64)
+        x2, y2 = (np.bincount(group.ravel(), self.area_share * x**2) / share for x in self.position.T)
         return MergedDistribution(share, self.preload_shape[first], tilt[first], x2, y2)
 
 
@@ -66,15 +70,15 @@ class FrictionPatches(PressureDistribution):
     radius: Array
 
 
-def moment_pressure(share: Array, y: Array, preload_shape: Array) -> Array:
+def moment_pressure(area_share: Array, y: Array, preload_shape: Array) -> Array:
     """Pressure (n) [1/m] by a moment of 1 N.m on an area of 1 m2, linear in the distance from the centre.
 
-    It is p (y - y_p)/sum(share p (y - y_p)^2), with p = preload_shape and y_p the centre of pressure.
-    share, y [m], preload_shape : (n) as in PressureShape
+    It is p (y - y_p)/sum(area_share p (y - y_p)^2), with p = preload_shape and y_p the centre of pressure.
+    area_share, y [m], preload_shape : (n) as in PressureDistribution
 
     Raises ValueError if all nodes in contact have the same y.
     """
-    force = share * preload_shape
+    force = area_share * preload_shape
     distances = y - force @ y
     second_moment = float(force @ distances**2)
     if not second_moment > 0.0:
@@ -96,16 +100,17 @@ def position_means(points: Array) -> PositionMeans:
 
 @dataclass(frozen=True, slots=True)
 class MergedDistribution:
-    """Nodes with different pressures, merged from a PressureShape; share and pressures (n) [1] as there.
+    """Nodes with different pressures, merged from a PressureDistribution; area_share and pressures as there.
 
-    x2, y2 : (n) [m2] mean squared distances from the centroid along and across the bolt rows
+    mean_square_x, mean_square_y : (n) [m2] mean squared distances from the centroid along and across the bolt
+        rows
     """
 
-    share: Array
+    area_share: Array
     preload_shape: Array
     moment_shape: Array
-    x2: Array
-    y2: Array
+    mean_square_x: Array
+    mean_square_y: Array
 
 
 _POINT_ENTRIES = ("share", "x", "y", "equal", "tilt")
@@ -116,17 +121,22 @@ MAX_PATCHES = 22
 """Largest number of friction patches of a joint [1], each with sliders."""
 
 
-def field_entries(shape: PressureDistribution) -> dict[str, tuple[float, ...]]:
+def nodal_field_entries(distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
     """{entry of a nodal field: values} for the points, or for friction patches."""
     rows = dict(
         zip(
             _POINT_ENTRIES,
-            (shape.share, *shape.position.T, shape.preload_shape, shape.moment_shape),
+            (
+                distribution.area_share,
+                *distribution.position.T,
+                distribution.preload_shape,
+                distribution.moment_shape,
+            ),
             strict=True,
         )
     )
-    if isinstance(shape, FrictionPatches):
-        rows = {PATCH_PREFIX + name: row for name, row in (rows | {"radius": shape.radius}).items()}
+    if isinstance(distribution, FrictionPatches):
+        rows = {PATCH_PREFIX + name: row for name, row in (rows | {"radius": distribution.radius}).items()}
     return {name: tuple(row.tolist()) for name, row in rows.items()}
 
 
@@ -208,26 +218,27 @@ class NodalField:
                 f"each_bolt_y has {len(self.each_bolt_y)} numbers, expected {count}: one per each_bolt_x"
             )
 
-    def _check_points(self, prefix: str) -> None:
+    def _check_points(self, entry_prefix: str) -> None:
         """Raise ValueError if the points (prefix "") or the patches do not balance, see the class."""
-        count = len(getattr(self, f"{prefix}share"))
-        for name in (*_POINT_ENTRIES, "radius") if prefix and self.patch_radius else _POINT_ENTRIES:
-            if (length := len(getattr(self, prefix + name))) != count:
+        count = len(getattr(self, f"{entry_prefix}share"))
+        for name in (*_POINT_ENTRIES, "radius") if entry_prefix and self.patch_radius else _POINT_ENTRIES:
+            if (length := len(getattr(self, entry_prefix + name))) != count:
                 raise ValueError(
-                    f"{prefix}{name} has {length} numbers, expected as many as {prefix}share has: {count}"
+                    f"{entry_prefix}{name} has {length} numbers, expected as many as "
+                    f"{entry_prefix}share has: {count}"
                 )
         if not count:
             return
-        shape, owner = self._distribution(prefix), "of the patches" if prefix else ""
+        shape, owner = self._make_distribution(entry_prefix), "of the patches" if entry_prefix else ""
         reach = float(np.max(np.abs(shape.position)))
-        x, y = shape.share @ shape.position
+        x, y = shape.area_share @ shape.position
         steep = max(float(np.max(np.abs(shape.moment_shape))), 1.0)
         for text, value, expected, size in (
-            (f"the sum of {prefix}share", float(np.sum(shape.share)), 1.0, 1.0),
+            (f"the sum of {entry_prefix}share", float(np.sum(shape.area_share)), 1.0, 1.0),
             ("x of the centroid", float(x), 0.0, reach),
             ("y of the centroid", float(y), 0.0, reach),
-            (f"the mean of {prefix}equal", float(shape.share @ shape.preload_shape), 1.0, 1.0),
-            (f"the mean of {prefix}tilt", float(shape.share @ shape.moment_shape), 0.0, steep),
+            (f"the mean of {entry_prefix}equal", float(shape.area_share @ shape.preload_shape), 1.0, 1.0),
+            (f"the mean of {entry_prefix}tilt", float(shape.area_share @ shape.moment_shape), 0.0, steep),
         ):
             if not abs(value - expected) <= BALANCE_TOLERANCE * size:
                 text = f"{text} {owner}".rstrip() if "centroid" in text else text
@@ -236,26 +247,26 @@ class NodalField:
                 )
 
     @property
-    def bolt_means(self) -> PositionMeans:
-        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+    def bolt_position_means(self) -> PositionMeans:
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolt positions, from the centroid of the contact."""
         return self.bolt_x, self.bolt_y, self.bolt_x2, self.bolt_y2, self.bolt_xy
 
     @property
     def bolt_positions(self) -> Array:
-        """Positions (n, 2) [m] of the bolts, from the centroid of the contact; none where it has no list."""
+        """Positions (n, 2) [m] of the bolts, from the centroid of the contact; empty if none are stated."""
         return np.stack([self.each_bolt_x, self.each_bolt_y], axis=-1)
 
     def pressure_distribution(self) -> PressureDistribution:
         """Pressure distribution at the points."""
-        return self._distribution("")
+        return self._make_distribution("")
 
     def friction_patches(self) -> FrictionPatches | None:
         """Friction patches; None if the field states none."""
         if not self.patch_share:
             return None
-        patches = self._distribution(PATCH_PREFIX).as_patches()
+        patches = self._make_distribution(PATCH_PREFIX).as_patches()
         return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
 
-    def _distribution(self, prefix: str) -> PressureDistribution:
-        share, x, y, equal, tilt = (np.array(getattr(self, prefix + name)) for name in _POINT_ENTRIES)
+    def _make_distribution(self, entry_prefix: str) -> PressureDistribution:
+        share, x, y, equal, tilt = (np.array(getattr(self, entry_prefix + name)) for name in _POINT_ENTRIES)
         return PressureDistribution(share, np.column_stack([x, y]), equal, tilt)

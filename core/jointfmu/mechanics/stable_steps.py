@@ -9,8 +9,8 @@ import numpy as np
 
 from ..quantity import Number, select
 
-MAX_STEP = 1e3
-"""Largest step [s]: reported if any step is stable, without stiffness or for fixed bodies."""
+MAX_STABLE_STEP = 1e3
+"""Largest reported stable step [s]: used if every step is stable (no stiffness, or fixed bodies)."""
 STABLE_STEP_OUTPUTS = (
     ("step_at_once", "largest stable step if the master passes the new force on before the body steps"),
     (
@@ -19,14 +19,14 @@ STABLE_STEP_OUTPUTS = (
     ),
 )
 """Names and meanings of the outputs of a joint with the largest stable steps."""
-_DAMPED_STEP = 0.39
-"""Largest stable step times d/J [1] with a damper alone and a force one step late; fit to eigenvalues."""
+_DAMPER_STEP_RATIO = 0.39
+"""Largest stable step times d/J [1], damper without spring, force one step late; fit to eigenvalues."""
 
 
-def mobility(inertia: Number, lever: Number = 1.0) -> Number:
+def mobility(inertia: Number, lever_arm: Number = 1.0) -> Number:
     """Mobility lever^2/J of a body with inertia J at a lever arm [1 or m]; 0 for inertia 0: a fixed body."""
     is_free = inertia > 0.0
-    return select(is_free, lever**2 / select(is_free, inertia, 1.0), 0.0 * inertia)
+    return select(is_free, lever_arm**2 / select(is_free, inertia, 1.0), 0.0 * inertia)
 
 
 def largest_stable_steps(stiffness: Number, damping: Number, mobility: Number) -> tuple[Number, Number]:
@@ -39,15 +39,15 @@ def largest_stable_steps(stiffness: Number, damping: Number, mobility: Number) -
 
         2/((omega^2 + e^2)^(1/2) + e),    (e/(omega^4 + (e/b)^3 e))^(1/3)
 
-    with b = _DAMPED_STEP. The first is exact. The second is within 5 % of the eigenvalue analysis up to
+    with b = _DAMPER_STEP_RATIO. The first is exact. The second is within 5 % of the eigenvalue analysis up to
     zeta = 4. For small damping they are 2/omega and (2 zeta)^(1/3)/omega. With a late force and no damping no
     step is stable: the second is 0.
     """
-    square = select(stiffness > 0.0, stiffness, 0.0 * stiffness) * mobility + (2.0 / MAX_STEP) ** 2
+    square = select(stiffness > 0.0, stiffness, 0.0 * stiffness) * mobility + (2.0 / MAX_STABLE_STEP) ** 2
     damping_rate = damping * mobility
     is_damped = damping_rate > 0.0
     safe_rate = select(is_damped, damping_rate, 1.0)
-    late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPED_STEP**3)) ** (1.0 / 3.0)
+    late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPER_STEP_RATIO**3)) ** (1.0 / 3.0)
     return 2.0 / (np.sqrt(square + damping_rate**2) + damping_rate), select(
-        is_damped, late_step, select(mobility > 0.0, 0.0 * damping_rate, MAX_STEP)
+        is_damped, late_step, select(mobility > 0.0, 0.0 * damping_rate, MAX_STABLE_STEP)
     )

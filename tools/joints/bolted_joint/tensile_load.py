@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.contact import STICK_TANGENT
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.friction import STICK_TANGENT
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.quantity import Array
 
 RELATIVE_TOLERANCE = 1e-10
@@ -29,15 +29,14 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
     secant stiffness of the patches from the iteration before. Ends at the first force at which a bolt exceeds
     MAX_BOLT_FORCE_RATIO, or at which the iteration does not converge.
     """
-    whole, modes, law = spring.assembly, spring.modes, spring.foundation()
+    whole, modes, law = spring.assembly, spring.modes, spring.friction.foundation()
     start = spring.preloaded_approach(preload, moment)
     z, bolts = np.zeros(6 + len(modes.stiffness)), spring.bolts
     tension = bolts.preload_force(spring.joint, preload, moment)
-    G, E = (np.zeros((len(rows), len(z))) for rows in (start, tension))
-    G[:, 2:5], G[:, 6:] = whole.point_opening, modes.opening
-    E[:, 2:5], E[:, 6:] = whole.bolt_elongation, modes.bolt_elongation
+    G, E = whole.opening_jacobian, whole.elongation_jacobian
     preload_pressure, preload_stiffness = spring.curve.derivatives(start, 1)
-    min_stiffness, results = MIN_STIFFNESS_RATIO * law.stick_stiffness(spring.patch_approach(start)).max(), []
+    min_stiffness = MIN_STIFFNESS_RATIO * law.stick_stiffness(spring.contact.patch_approach(start)).max()
+    results = []
 
     def residual(z: Array, K: Array, tensile_force: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]
@@ -48,9 +47,9 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
     for pull in tensile_forces:
         for _ in range(MAX_ITERATIONS):
             approach = start - G @ z
-            shift = np.linalg.norm(spring.patch_displacement(z[[0, 1, 5]], z[6:]), axis=1) + MIN_DISPLACEMENT
+            shift = np.linalg.norm(whole.tangential_displacement(z[:6], z[6:]), axis=1) + MIN_DISPLACEMENT
             stick = np.maximum(
-                law.virgin_traction(spring.patch_approach(approach), shift) / shift, min_stiffness
+                law.virgin_traction(spring.contact.patch_approach(approach), shift) / shift, min_stiffness
             )
             K = whole.tangent_stiffness(
                 np.zeros_like(start), stick[:, None] * STICK_TANGENT, np.zeros_like(tension)

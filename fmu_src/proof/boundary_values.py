@@ -13,17 +13,17 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
 
-from .reference import rounded
+from .reference import round_to_digits
 
 OPEN_END_DISTANCE = 1e-6
 """Distance of a boundary value from an open end over the width of the interval [1]."""
-HALVINGS = 5
+BISECTION_STEPS = 5
 """Bisection steps [1]."""
-INWARD = 0.02
+INWARD_SHIFT = 0.02
 """Shift from the last accepted value to that of the file, over their distance [1]: round-off margin."""
 
 
-def neighbours(
+def find_boundary_values(
     model: Model, parameters: ParameterFile, is_accepted: Callable[[str, object], bool]
 ) -> Iterator[tuple[str, Any, str]]:
     """Yield (parameter, boundary value, description), for one parameter at a time.
@@ -57,15 +57,15 @@ def neighbours(
 
 
 def _nearest_accepted(
-    first: float, value: float, is_integer: bool, is_accepted: Callable[[float], bool]
+    boundary_value: float, file_value: float, is_integer: bool, is_accepted: Callable[[float], bool]
 ) -> float | None:
     """Accepted value nearest to `boundary_value`, by bisection; None if only the file's value is accepted."""
-    round_value: Callable[[float], float] = round if is_integer else rounded
-    if is_accepted(round_value(first)):
-        return float(round_value(first))
-    refused, accepted = first, value
-    for _ in range(HALVINGS):
+    round_value: Callable[[float], float] = round if is_integer else round_to_digits
+    if is_accepted(round_value(boundary_value)):
+        return float(round_value(boundary_value))
+    refused, accepted = boundary_value, file_value
+    for _ in range(BISECTION_STEPS):
         middle = 0.5 * (refused + accepted)
         refused, accepted = (refused, middle) if is_accepted(round_value(middle)) else (middle, accepted)
-    inward = float(round_value(accepted + INWARD * (value - accepted)))
+    inward = float(round_value(accepted + INWARD_SHIFT * (file_value - accepted)))
     return inward if is_accepted(inward) else None

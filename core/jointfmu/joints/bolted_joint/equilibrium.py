@@ -1,0 +1,357 @@
+"""Static equilibrium of a bolted joint with elastic members, over one load step.
+
+The relative displacement q of side 2 is prescribed: s_x, s_y, s_z [m], theta_x, theta_y, theta_z [rad]. The
+modal coordinates a [m] of the members are unknown. Both open the points of the contact, displace the friction
+patches along the surface and elongate the bolts, by G_q q + G_a a. In equilibrium the residual is zero:
+
+    r(a) = S a + G_a^T f = 0,    f = -(p - p_preload) A at points, t A at patches, k_b e at bolts
+
+S modal stiffness, p contact pressure, t traction, A area, k_b and e stiffness and elongation of a bolt. k_b e
+is at least the negative preload of the bolt, see `BoltSprings`.
+
+Newton's method starts with the tangent at the start of the load step and corrects it by Broyden's update. The
+tangent is not symmetric: pressure changes the friction limit. A load step that does not converge is divided.
+Shapes: n points, m patches, b bolts, k modes.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ...quantity import Array
+from .bodies import Modes
+from .bolts import BoltSprings
+from .contact import Contact, NormalState, PreloadState
+from .friction import FrictionUpdate
+from .kinematics import opening_jacobian, rigid_opening, tangential_displacement, tangential_jacobian
+
+RELATIVE_TOLERANCE = 1e-13
+"""Residual over the sum of all forces [1] that counts as equilibrium: the round-off of the sum. The load at
+which the contact closes is part of the sum: all other forces vanish if the joint is open."""
+CANCELLATION_RATIO = 0.02
+"""Share of the force by rigid-body opening alone in this sum [1]: modal opening cancels nearly all of it."""
+INTERMEDIATE_TOLERANCE_FACTOR = 1e7
+"""Tolerance inside a divided load step over the tolerance at its end [1]."""
+MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH = 16, 6
+"""Newton iterations at one load factor [1], and trial lengths in each iteration [1]."""
+TANGENT_REUSE_RATIO = 0.03
+"""Residual after an iteration over the residual before [1], below which the tangent is reused."""
+MAX_ENERGY_SLOPE_RATIO = 0.5
+"""Energy slope at the end of a correction over its initial size [1], above which the step is too long."""
+MIN_LENGTH_RATIO = 0.1
+"""Length of a shortened correction over the length tried before [1]."""
+MIN_LOAD_STEP = 1e-4
+"""Increment of the load factor [1] below which a load step is given up."""
+DIFFERENCE_STEP = 1e-7
+"""Perturbation for finite differences over the largest approach of a patch at tightening [1], or over the
+approach at which the contact has closed if it is larger: without preload all patches are open."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrialState:
+    """Contact, friction and residual at trial modal coordinates.
+
+    modal_coordinates    : a (k) [m]
+    normal               : contact of points and patches
+    tangential_increment : displacement (m, 3) [m] of the patches since the start of the load step
+    friction             : tractions, tangent and history variables of the patches
+    elongation           : (b) [m] of the bolts since tightening
+    residual             : r (k) [N]
+    tolerance            : largest entry of r [N] that counts as equilibrium
+    """
+
+    modal_coordinates: Array
+    normal: NormalState
+    tangential_increment: Array
+    friction: FrictionUpdate
+    elongation: Array
+    residual: Array
+    tolerance: float
+
+    @property
+    def residual_norm(self) -> float:
+        """Largest entry of r [N]."""
+        return float(np.max(np.abs(self.residual)))
+
+
+@dataclass(frozen=True)
+class JointAssembly:
+    """Members, contact interface and bolts. Jacobians G = [G_q G_a] are with respect to q and a.
+
+    area : nominal area of the interface [m2]
+    """
+
+    contact: Contact
+    modes: Modes
+    bolts: BoltSprings
+    area: float
+
+    @cached_property
+    def point_area(self) -> Array:
+        """Nominal areas (n) [m2] of the points."""
+        return self.area * self.contact.points.area_share
+
+    @cached_property
+    def patch_area(self) -> Array:
+        """Nominal areas (m) [m2] of the patches."""
+        return self.area * self.contact.patches.area_share
+
+    @cached_property
+    def opening_jacobian(self) -> Array:
+        """Jacobian G (n, 6 + k) [1, m] of the opening of the points."""
+        return np.hstack([opening_jacobian(self.contact.points.position), self.modes.opening])
+
+    @cached_property
+    def tangential_jacobian(self) -> Array:
+        """Jacobian G (3, m, 6 + k) [1, m] of the tangential displacement of the patches."""
+        rigid = tangential_jacobian(self.contact.patches)
+        return np.concatenate([rigid, self.modes.patch_displacement], axis=-1)
+
+    @cached_property
+    def elongation_jacobian(self) -> Array:
+        """Jacobian G (b, 6 + k) [1, m] of the elongation of the bolts."""
+        return np.hstack([opening_jacobian(self.bolts.position), self.modes.bolt_elongation])
+
+    def evaluate_normal(self, preload: PreloadState, q: Array, a: Array) -> NormalState:
+        """Contact at relative displacement q (6) and modal coordinates a (k) [m]."""
+        return self.contact.evaluate_normal(preload, q, self.modes.opening @ a)
+
+    def tangential_displacement(self, q: Array, a: Array) -> Array:
+        """Displacement (m, 3) [m] of the patches along x, along y and around their centres."""
+        elastic = (self.modes.patch_displacement @ a).T
+        return np.asarray(tangential_displacement(self.contact.patches, q) + elastic)
+
+    def elongation(self, q: Array, a: Array) -> Array:
+        """Elongation (b) [m] of the bolts."""
+        return np.asarray(rigid_opening(self.bolts.position, q) + self.modes.bolt_elongation @ a)
+
+    def residual(self, a: Array, pressure_change: Array, traction: Array, bolt_force_change: Array) -> Array:
+        """Residual r (k) [N] of modal coordinates a (k) [m].
+
+        traction                           : t (m, 3) [Pa] against the displacement of the patches
+        pressure_change, bolt_force_change : (n) [Pa], (b) [N] since tightening
+        """
+        modes = self.modes
+        r = modes.stiffness * a + modes.bolt_elongation.T @ bolt_force_change
+        r = r - modes.opening.T @ (self.point_area * pressure_change)
+        for axis in range(3):
+            r = r + modes.patch_displacement[axis].T @ (self.patch_area * traction[:, axis])
+        return np.asarray(r)
+
+    def tangent_stiffness(
+        self, contact_stiffness: Array, friction_tangent: Array, bolt_tangent: Array
+    ) -> Array:
+        """Tangent stiffness H (6 + k, 6 + k) [N/m, N, N.m] with respect to q and a, at fixed friction limits.
+
+        contact_stiffness : (n) [Pa/m] of the points
+        friction_tangent  : (m, 6) [Pa/m] of the patches: xx, xy, yy, xt, yt, tt
+        bolt_tangent      : (b) [N/m] of the bolts
+        """
+        normal, (u, v, w), bolts = self.opening_jacobian, self.tangential_jacobian, self.elongation_jacobian
+        xx, xy, yy, xt, yt, tt = (self.patch_area * friction_tangent.T)[:, :, None]
+        H = normal.T @ ((self.point_area * contact_stiffness)[:, None] * normal)
+        H += (bolt_tangent * bolts.T) @ bolts
+        H += u.T @ (xx * u + xy * v + xt * w) + v.T @ (xy * u + yy * v + yt * w)
+        H += w.T @ (xt * u + yt * v + tt * w)
+        H[6:, 6:] += np.diag(self.modes.stiffness)
+        return np.asarray(H)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadStep:
+    """Straight path of the relative displacement, from the last equilibrium to the prescribed inputs.
+
+    preload, bolt_force : contact, and force (b) [N] of the bolts, at tightening
+    start, end          : q (6) [m, rad] at load factors 0 and 1
+    modal_coordinates   : a (k) [m] at the start
+    friction_tangent    : (m, 6) [Pa/m] of the patches at the start
+    update_friction     : friction law with the history at the start, called with the patch approach (m) [m]
+                          and the tangential displacement (m, 3) [m] since the start
+    input_summary       : inputs at the end, for the error message
+    """
+
+    assembly: JointAssembly
+    preload: PreloadState
+    bolt_force: Array
+    start: Array
+    end: Array
+    modal_coordinates: Array
+    friction_tangent: Array
+    update_friction: Callable[[Array, Array], FrictionUpdate]
+    input_summary: str
+
+    def displacement(self, load_factor: float) -> Array:
+        """Relative displacement q (6) [m, rad] at a load factor [1]."""
+        return self.end if load_factor == 1.0 else self.start + load_factor * (self.end - self.start)
+
+    def evaluate_trial(self, q: Array, a: Array) -> TrialState:
+        """Contact, friction and residual at relative displacement q (6) and modal coordinates a (k) [m]."""
+        assembly, bolts = self.assembly, self.assembly.bolts
+        normal = assembly.evaluate_normal(self.preload, q, a)
+        increment = assembly.tangential_displacement(q - self.start, a - self.modal_coordinates)
+        friction = self.update_friction(normal.patch_approach, increment)
+        elongation = assembly.elongation(q, a)
+        traction, preload_pressure = friction.traction, self.preload.pressure
+        bolt_force_change = bolts.stiffness * (elongation + bolts.gap(self.bolt_force, elongation))
+        residual = assembly.residual(a, normal.pressure - preload_pressure, traction, bolt_force_change)
+
+        force_sum = assembly.point_area @ (normal.pressure + preload_pressure)
+        force_sum += np.sum(np.abs(bolt_force_change)) + np.sum(assembly.patch_area @ np.abs(traction))
+        rigid = np.max(np.abs(rigid_opening(assembly.contact.points.position, q)))
+        force_sum += (assembly.point_area @ normal.stiffness) * rigid * CANCELLATION_RATIO
+        force_sum += assembly.area * assembly.contact.curve.closing_end_load
+        tolerance = float(RELATIVE_TOLERANCE * force_sum)
+        return TrialState(a, normal, increment, friction, elongation, residual, tolerance)
+
+    def modal_tangent(self, state: TrialState) -> Array:
+        """Tangent J = dr/da (k, k) [N/m] of the modal coordinates."""
+        assembly, modes = self.assembly, self.assembly.modes
+        bolt_tangent = assembly.bolts.tangent(self.bolt_force, state.elongation)
+        J = np.diag(modes.stiffness) + (bolt_tangent * modes.bolt_elongation.T) @ modes.bolt_elongation
+        J += modes.opening.T @ ((assembly.point_area * state.normal.stiffness)[:, None] * modes.opening)
+        motions = np.concatenate([modes.patch_displacement, self.modal_opening(state.normal)[None]])
+        derivatives = self.traction_derivatives(state)
+        for axis in range(3):
+            J += modes.patch_displacement[axis].T @ np.einsum(
+                "m,mc,cmk->mk", assembly.patch_area, derivatives[:, axis], motions
+            )
+        return np.asarray(J)
+
+    def modal_opening(self, normal: NormalState) -> Array:
+        """Derivative (m, k) [1] of the opening of the patches with respect to the modal coordinates."""
+        contact = self.assembly.contact
+        stiffness = contact.curve.derivatives(normal.patch_approach, 1)[1][:, None]
+        closed = stiffness > 0.0
+        pressure = (contact.pressure_transfer * normal.stiffness) @ self.assembly.modes.opening
+        return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
+
+    def traction_derivatives(self, state: TrialState) -> Array:
+        """Forward differences (m, 3, 4) [Pa/m] of tractions by tangential displacement (3) and opening."""
+        first = self.assembly.contact.curve.displacement[0]
+        size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload.patch_approach, 0.0) - first))
+        traction, columns = state.friction.traction, []
+        for motion in size * np.eye(4):
+            increment = state.tangential_increment + motion[:3]
+            friction = self.update_friction(state.normal.patch_approach - motion[3], increment)
+            columns.append((friction.traction - traction) / size)
+        return np.stack(columns, axis=-1)
+
+
+class ModalPredictor(NamedTuple):
+    """Modal coordinates (k) [m] at the end of a load step by the tangent (k, k) [N/m] at its start."""
+
+    modal_coordinates: Array
+    tangent: Array
+
+
+def solve_equilibrium(step: LoadStep) -> TrialState:
+    """Equilibrium at the end of a load step, which is divided where Newton's method does not converge.
+
+    Raises ValueError if there is no equilibrium, with the inputs, the load factor and the residual.
+    """
+    a, load_factor, increment = step.modal_coordinates, 0.0, 1.0
+    predictor = predict_by_tangent(step)
+    rate = predictor.modal_coordinates - a
+    while True:
+        target = min(load_factor + increment, 1.0)
+        state, converged = solve_newton(step, target, a + (target - load_factor) * rate, predictor.tangent)
+        if not converged:
+            increment *= 0.5
+            if increment < MIN_LOAD_STEP:
+                raise ValueError(
+                    f"{step.input_summary}: the sides find no equilibrium beyond {load_factor:.3g} of the "
+                    f"way, the residual is {state.residual_norm:.2g} N"
+                )
+        elif target == 1.0:
+            return state
+        else:
+            rate = (state.modal_coordinates - a) / (target - load_factor)
+            a, load_factor, increment = state.modal_coordinates, target, 2.0 * increment
+
+
+def predict_by_tangent(step: LoadStep) -> ModalPredictor:
+    """Predictor with the tangent stiffness at the start of a load step.
+
+    Raises ValueError if this tangent is singular.
+    """
+    assembly, a = step.assembly, step.modal_coordinates
+    normal = assembly.evaluate_normal(step.preload, step.start, a)
+    bolt_tangent = assembly.bolts.tangent(step.bolt_force, assembly.elongation(step.start, a))
+    H = assembly.tangent_stiffness(normal.stiffness, step.friction_tangent, bolt_tangent)
+    try:
+        change = np.linalg.solve(H[6:, 6:], H[6:, :6] @ (step.end - step.start))
+    except np.linalg.LinAlgError:
+        reason = f"{step.input_summary}: the sides find no equilibrium beyond 0 of the way"
+        raise ValueError(f"{reason}, their tangent stiffness is singular there") from None
+    return ModalPredictor(np.asarray(a - change), H[6:, 6:])
+
+
+def condense_stiffness(H: Array) -> Array:
+    """Stiffness (6, 6) [N/m, N, N.m] with the members in equilibrium: static condensation of H to q."""
+    return np.asarray(H[:6, :6] - H[:6, 6:] @ np.linalg.solve(H[6:, 6:], H[6:, :6]))
+
+
+def solve_newton(step: LoadStep, load_factor: float, a: Array, J: Array) -> tuple[TrialState, bool]:
+    """Last state of Newton's method at a load factor [1], and whether the method converged.
+
+    It starts at modal coordinates a (k) [m] with the tangent J (k, k) [N/m] of an earlier state. J is reused,
+    with Broyden's update, after an iteration that reduces the residual to TANGENT_REUSE_RATIO.
+    """
+    q = step.displacement(load_factor)
+    tolerance_factor = 1.0 if load_factor == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
+    state, last_norm, tangent_is_current = step.evaluate_trial(q, a), np.inf, False
+    corrections: list[Array] = []  # since J was computed
+    for iteration in range(MAX_NEWTON_ITERATIONS + 1):
+        norm = state.residual_norm
+        if norm <= tolerance_factor * state.tolerance:
+            return state, True
+        if iteration == MAX_NEWTON_ITERATIONS:
+            break
+        if not norm < TANGENT_REUSE_RATIO * last_norm:
+            J, corrections, tangent_is_current = step.modal_tangent(state), [], True
+        try:
+            correction = apply_broyden(np.asarray(-np.linalg.solve(J, state.residual)), corrections)
+        except np.linalg.LinAlgError:  # J is singular
+            break
+        corrections.append(correction)
+        state, is_full = search_line(step, q, state, correction, tangent_is_current)
+        last_norm = norm if is_full else 0.0  # 0: the next iteration computes J
+        tangent_is_current = False
+    return state, False
+
+
+def search_line(
+    step: LoadStep, q: Array, state: TrialState, correction: Array, tangent_is_current: bool
+) -> tuple[TrialState, bool]:
+    """State after a correction (k) [m] of the modal coordinates, and whether it is the full correction.
+
+    If the energy slope r . correction [J] at the end exceeds MAX_ENERGY_SLOPE_RATIO, the correction is
+    shortened by regula falsi, or dropped if the tangent is that of an earlier state. If the initial slope is
+    positive, too, regula falsi has no zero: the correction is shortened to MIN_LENGTH_RATIO.
+    """
+    length, energy_slope_0 = 1.0, float(state.residual @ correction)
+    for shortenings in range(MAX_LINE_SEARCH):
+        trial = step.evaluate_trial(q, state.modal_coordinates + length * correction)
+        energy_slope_1 = float(trial.residual @ correction)
+        if not energy_slope_1 > MAX_ENERGY_SLOPE_RATIO * abs(energy_slope_0):
+            return trial, shortenings == 0
+        if not tangent_is_current:
+            return state, False
+        has_zero = energy_slope_0 < 0.0 < energy_slope_1
+        zero = energy_slope_0 / (energy_slope_0 - energy_slope_1) if has_zero else 0.0
+        length *= max(zero, MIN_LENGTH_RATIO)
+    return trial, False
+
+
+def apply_broyden(correction: Array, corrections: Sequence[Array]) -> Array:
+    """Correction (k) [m] after Broyden's good update of J by earlier corrections (Kelley 1995, chapter 7)."""
+    for last, following in pairwise(corrections):
+        correction = correction + (last @ correction) / (last @ last) * following
+    if corrections:
+        last = corrections[-1]
+        correction = correction / (1.0 - last @ correction / (last @ last))
+    return np.asarray(correction)

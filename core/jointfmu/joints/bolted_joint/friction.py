@@ -1,0 +1,210 @@
+"""Friction of the patches: history variables, full stick, update of the sliders, consistent tangent."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ...mechanics.curve import Curve
+from ...mechanics.footprint.distribution import FrictionPatches
+from ...mechanics.history_layout import HistoryLayout
+from ...mechanics.jenkins import SliderUpdate
+from ...mechanics.sliders import (
+    FOUNDATION_SLIDERS,
+    Foundation,
+    height_offsets,
+    heights_after_liftoff,
+    slider_heights,
+    sum_slider_forces,
+)
+from ...quantity import Array
+from .kinematics import TANGENTIAL, tangential_displacement
+from .law import MAX_MODES
+
+History = Mapping[str, Array]
+"""{name: history variable}, see `history_layout`."""
+
+UNKNOWN, FULL_STICK, SLIP_1D, SLIP_2D = range(4)
+"""State of friction: before the first step; no slider has slipped; slip along x alone; slip in the plane."""
+STICK_TANGENT = np.array([1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
+"""Tangent (6) [1] of a patch in full stick over its stiffness: xx, xy, yy, xt, yt, tt."""
+
+
+def history_layout(patches: int) -> HistoryLayout:
+    """History variables of a joint with m patches.
+
+    state               : of friction; UNKNOWN: the path starts at the present approach with q = 0
+    loss                : [J] energy dissipated by friction
+    tangential          : (3) s_x, s_y [m] and theta_z [rad]
+    onset_approach      : (m) [m] of the patches at the end of full stick, or now in full stick
+    min_approach        : (m) [m] smallest approach since then, or since the patch closed again
+    approach            : (m) [m] of the patches
+    force               : (m, 2, n) [Pa] slider forces; in full stick as `full_stick_force` reads them
+    normal              : (3) s_z [m] and theta_x, theta_y [rad]; this and the following: of elastic members
+    modal_coordinates   : (MAX_MODES) [m]
+    tangent             : (m, 6) [Pa/m] of the patches, see `SliderUpdate`
+    """
+    one = (patches,)
+    return HistoryLayout(
+        {
+            "state": (),
+            "loss": (),
+            "tangential": (3,),
+            "onset_approach": one,
+            "min_approach": one,
+            "approach": one,
+            "force": (*one, 2, FOUNDATION_SLIDERS),
+            "normal": (3,),
+            "modal_coordinates": (MAX_MODES,),
+            "tangent": (*one, 6),
+        }
+    )
+
+
+def full_stick_force(force: Array) -> Array:
+    """Traction (m, 3) [Pa] of patches in full stick, from history variable `force` (m, 2, n).
+
+    The first slider has the sum of all sliders, and y of the second one the force around the centre. So the
+    heights of the sliders may follow the load.
+    """
+    return np.column_stack([force[..., 0], force[:, 1, 1]])
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionUpdate:
+    """Friction of m patches after a straight path.
+
+    state           : FULL_STICK, SLIP_1D or SLIP_2D
+    onset_approach, min_approach, approach : (m) [m], see `history_layout`
+    slider_update   : forces, loss and tangent of the sliders
+    stick_stiffness : (m) [Pa/m] of all sliders of a patch
+    """
+
+    state: int
+    onset_approach: Array
+    min_approach: Array
+    approach: Array
+    slider_update: SliderUpdate
+    stick_stiffness: Array
+
+    @property
+    def traction(self) -> Array:
+        """Traction (m, 3) [Pa] against the displacement along x, along y and around the centre."""
+        force = self.slider_update.force
+        return full_stick_force(force) if self.state == FULL_STICK else sum_slider_forces(force)
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """Friction law of the patches.
+
+    curve                : contact pressure [Pa] over approach [m]
+    stiffness_ratio      : K_T/K_N [1]
+    friction_coefficient : mu [1]
+    elastic              : members are elastic: slip is in the plane for any relative displacement
+    """
+
+    curve: Curve
+    stiffness_ratio: float
+    friction_coefficient: float
+    patches: FrictionPatches
+    elastic: bool
+
+    @cached_property
+    def _foundations(self) -> Callable[[bytes, bytes], Foundation]:
+        """`foundation` of two arrays as bytes; keeps the last ones."""
+        offsets = height_offsets(self.patches.preload_shape)
+
+        def build(*approaches: bytes) -> Foundation:
+            onset, smallest = (np.frombuffer(each) for each in approaches)
+            heights = heights_after_liftoff(slider_heights(self.curve, onset, offsets), smallest)
+            return Foundation(self.curve, self.stiffness_ratio, self.friction_coefficient, heights)
+
+        return lru_cache(maxsize=4)(build)
+
+    def foundation(
+        self, onset_approach: Array | None = None, min_approach: Array | None = None
+    ) -> Foundation:
+        """Sliders of the patches.
+
+        onset_approach : (m) [m] at the end of full stick; None: not known
+        min_approach   : (m) [m] smallest approach since then; None: onset_approach
+        """
+        onset = np.zeros(self.patches.area_share.size) if onset_approach is None else onset_approach
+        both = onset, onset if min_approach is None else min_approach
+        return self._foundations(*(np.ascontiguousarray(each).tobytes() for each in both))
+
+    def stick_tangent(self, approach: Array) -> Array:
+        """Tangent (m, 6) [Pa/m] of patches in full stick at approaches (m) [m]."""
+        return np.asarray(self.foundation().stick_stiffness(approach)[:, None] * STICK_TANGENT)
+
+    def update_friction(self, history: History, approach: Array, increment: Array) -> FrictionUpdate:
+        """Friction after a straight path to approaches (m) [m] by tangential displacements (m, 3) [m]."""
+        start = approach if history["state"] == UNKNOWN else history["approach"]
+        stick, force = self.foundation().stick_stiffness(approach), history["force"]
+        if history["state"] < SLIP_1D:
+            update = self.full_stick_update(force, start, approach, increment, stick)
+            if update is not None:
+                return FrictionUpdate(FULL_STICK, approach, approach, approach, update, stick)
+            onset = smallest = start
+        else:
+            onset = history["onset_approach"]
+            was_open = history["min_approach"] < self.curve.displacement[0]
+            smallest = np.where(was_open, start, np.minimum(history["min_approach"], start))
+        foundation = self.foundation(onset, smallest)
+        state = self._slip_state(history, increment)
+        if history["state"] < SLIP_1D:
+            force = foundation.distribute_stick_force(full_stick_force(force), start)
+        update = foundation.advance(force, start, approach, increment)
+        return FrictionUpdate(state, onset, smallest, approach, update, stick)
+
+    def full_stick_update(
+        self, force: Array, start: Array, end: Array, increment: Array, stick_stiffness: Array
+    ) -> SliderUpdate | None:
+        """Update in which all sliders stick; None if a patch exceeds the limit of full stick.
+
+        force      : (m, 2, n) [Pa], see `full_stick_force`
+        start, end : (m) [m] approaches
+        increment  : (m, 3) [m] tangential displacement
+        """
+        traction, sticks = self.foundation().full_stick_update(full_stick_force(force), start, end, increment)
+        if not np.all(sticks):
+            return None
+        force = np.zeros_like(force)
+        force[..., 0], force[:, 1, 1] = traction[:, :2], traction[:, 2]
+        return SliderUpdate(force, np.zeros_like(stick_stiffness), stick_stiffness[:, None] * STICK_TANGENT)
+
+    def _slip_state(self, history: History, increment: Array) -> int:
+        """SLIP_1D if all displacements and forces so far are along x, else SLIP_2D."""
+        in_plane = self.elastic or history["state"] == SLIP_2D or np.any(history["force"][:, 1, :2])
+        return SLIP_2D if in_plane or np.any(increment[:, 1:]) else SLIP_1D
+
+
+def unit_displacements(patches: FrictionPatches) -> list[Array]:
+    """Tangential displacements (m, 3) [1, m] by a unit s_x, s_y and theta_z."""
+    return [tangential_displacement(patches, unit) for unit in np.eye(6)[TANGENTIAL]]
+
+
+def directional_stiffness(tangent: Array, direction: Array) -> Array:
+    """Stiffness (m) of tangents (m, 6) [Pa/m] in directions (m, 3)."""
+    (xx, xy, yy, xt, yt, tt), (u, v, w) = tangent.T, direction.T
+    return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
+
+
+def consistent_tangent(patches: FrictionPatches, update: FrictionUpdate) -> list[float]:
+    """Stiffness per area [Pa/m], [Pa.m] against a further s_x, s_y and theta_z, for one sense of each.
+
+    In the direction of the traction of their patch, sliders at their limits continue to slip; in the opposite
+    direction they stick. The result is for the direction in which more of the stiffness is lost.
+    """
+    tangent, traction, stick = update.slider_update.tangent, update.traction, update.stick_stiffness
+    lost_tangent, result = stick[:, None] * STICK_TANGENT - tangent, []
+    for direction in unit_displacements(patches):
+        lost = patches.area_share * directional_stiffness(lost_tangent, direction)
+        translation = direction * [1.0, 1.0, 0.0]  # around its centre a patch loses the same both ways
+        signed = patches.area_share * directional_stiffness(lost_tangent, translation)
+        signed = np.where(np.sum(traction * translation, axis=1) < 0.0, -signed, signed)
+        stuck = patches.area_share @ (stick * np.sum(direction**2, axis=1))
+        result.append(stuck - 0.5 * (np.sum(lost) + abs(np.sum(signed))))
+    return result

@@ -1,0 +1,335 @@
+"""Bolted joint: interface between two sides with friction, bolts and, optionally, elastic members."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache, partial
+from typing import NamedTuple
+
+import numpy as np
+
+from ...contact.interface import solve_largest_spot
+from ...mechanics.curve import Curve, tabulate_approach
+from ...mechanics.footprint.bolts import PressureSource, pressure_distribution
+from ...mechanics.footprint.distribution import MAX_PATCHES, FrictionPatches, NodalField, PressureDistribution
+from ...mechanics.footprint.patch_reduction import reduce_patches
+from ...mechanics.footprint.point_reduction import reduce_points
+from ...mechanics.history_layout import HistoryLayout
+from ...quantity import Array, Number
+from .bodies import Modes
+from .bolts import BoltSprings, bolt_positions
+from .compliances import Compliances
+from .contact import Contact, NormalState, PreloadState, elastic_shear
+from .equilibrium import JointAssembly, LoadStep, solve_equilibrium
+from .friction import UNKNOWN, FrictionLaw, FrictionUpdate, History, consistent_tangent, history_layout
+from .kinematics import NORMAL, TANGENTIAL, point_displacement, tangential_displacement
+from .law import MAX_MODES, Bolted, ElasticBodies, interface_alone
+from .outputs import (
+    assembly_sums,
+    bolt_force_name,
+    bolt_gap_sums,
+    cycle_sums,
+    first_moments,
+    friction_sums,
+    joint_outputs,
+    normal_sums,
+    tangent_sums,
+)
+
+MAX_POINTS = 120
+"""Largest number of points that carry the normal force [1]."""
+ZERO_MOTION = (0.0, 0.0, 0.0)
+
+
+@lru_cache(maxsize=8)
+def contact_points(pattern: PressureSource) -> PressureDistribution:
+    """Points that carry the normal force of a joint."""
+    return reduce_points(pressure_distribution(pattern), MAX_POINTS)
+
+
+@lru_cache(maxsize=8)
+def friction_patches_of(pattern: PressureSource) -> FrictionPatches:
+    """Patches that carry the friction of a joint."""
+    stated = pattern.friction_patches() if isinstance(pattern, NodalField) else None
+    return stated or reduce_patches(pressure_distribution(pattern), MAX_PATCHES)
+
+
+class JointInputs(NamedTuple):
+    """Inputs of a bolted joint.
+
+    preload, moment : [N] of each bolt, and [N.m]
+    displacement    : q (6) of side 2 from the tightened state: s_x, s_y, s_z (positive apart) [m], and small
+                      rotation theta_x, theta_y, theta_z [rad] about the centroid of the contact
+    rates           : (6) [m/s, rad/s] of q
+    """
+
+    preload: float
+    moment: float
+    displacement: Array
+    rates: tuple[float, ...] = (0.0,) * 6
+
+    @property
+    def summary(self) -> str:
+        """Inputs that are not zero, as text; without rates."""
+        names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+        values = dict(zip(names, (self.preload, self.moment, *self.displacement), strict=True))
+        return ", ".join(f"{name} = {value:g}" for name, value in values.items() if value)
+
+
+@dataclass(frozen=True)
+class BoltedJointSpring:
+    """Forces and moments between two sides, by their relative displacement and its history.
+
+    Each point follows the pressure-approach curve p(delta) of the interface from its pressure at tightening:
+    the normal traction is the gradient of a potential, V' = p. Shear is carried by the sliders of
+    `FrictionLaw` on fewer patches, or without history by the potential of `elastic_shear`. The bolts act in
+    parallel with the interface and only pull, see `BoltSprings`: they carry the joint when it is open.
+
+    curve   : contact pressure [Pa] over approach [m]
+    points  : points that carry the normal force
+    patches : patches that carry the friction
+    modes   : of the members between their attachments; none if the members are rigid
+    """
+
+    joint: Bolted
+    curve: Curve
+    points: PressureDistribution
+    patches: FrictionPatches
+    modes: Modes
+
+    @classmethod
+    def of(cls, joint: Bolted) -> "BoltedJointSpring":
+        """Joint with the points and patches of its FMU.
+
+        Raises ValueError if its [bodies] were computed for another contact.
+        """
+        points, patches = contact_points(joint.pattern), friction_patches_of(joint.pattern)
+        if joint.elastic:
+            assert isinstance(joint.bodies, ElasticBodies)
+            modes = Modes.of(joint.bodies, points.area_share.size, patches.position)
+        else:
+            modes = _no_modes(joint, points, patches)
+        return cls(joint, tabulate_approach(joint), points, patches, modes)
+
+    @classmethod
+    def of_nodes(cls, joint: Bolted, nodes: PressureDistribution | None = None) -> "BoltedJointSpring":
+        """Interface alone, with a point and a patch at each node; None: the nodes of its pattern."""
+        points = pressure_distribution(joint.pattern) if nodes is None else nodes
+        joint, patches = interface_alone(joint), points.as_patches()
+        return cls(joint, tabulate_approach(joint), points, patches, _no_modes(joint, points, patches))
+
+    def on_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
+        """The same interface alone at other nodes."""
+        joint, patches = interface_alone(self.joint), nodes.as_patches()
+        modes = _no_modes(joint, nodes, patches)
+        return replace(self, joint=joint, points=nodes, patches=patches, modes=modes)
+
+    @cached_property
+    def contact(self) -> Contact:
+        """Contact of points and patches."""
+        return Contact(self.curve, self.points, self.patches, self.joint.elastic)
+
+    @cached_property
+    def friction(self) -> FrictionLaw:
+        """Friction law of the patches."""
+        joint = self.joint
+        return FrictionLaw(
+            self.curve, float(joint.shear_stiffness_ratio()), joint.mu, self.patches, joint.elastic
+        )
+
+    @cached_property
+    def bolts(self) -> BoltSprings:
+        """Bolts, which act in parallel with the contact."""
+        return BoltSprings.of(self.joint, self.curve.closing_end_load)
+
+    @cached_property
+    def assembly(self) -> JointAssembly:
+        """Contact, members and bolts."""
+        return JointAssembly(self.contact, self.modes, self.bolts, self.joint.A_0)
+
+    @cached_property
+    def _preload_state(self) -> Callable[[float, float], PreloadState]:
+        """`Contact.preload_state` of the joint; keeps the last ones."""
+        return lru_cache(maxsize=2)(partial(self.contact.preload_state, self.joint))
+
+    def preloaded_approach(self, preload: float, moment: float) -> Array:
+        """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m]."""
+        return self.contact.preloaded_approach(self.joint, preload, moment)
+
+    def checked_approach(self, preload: float, moment: float) -> Array:
+        """`preloaded_approach`; ValueError without contact, or if the pressure reaches the hardness."""
+        approach = self.preloaded_approach(preload, moment)
+        low, high = self.curve.displacement[[0, -1]]
+        if not (np.isfinite(preload + moment) and low < np.max(approach) < high):
+            raise ValueError(
+                f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
+                f"contact after embedding ({self.joint.embedding:g} N), and at most {self.curve.end[1]:g} Pa"
+            )
+        return approach
+
+    def tangent_stiffness(self, preload: float, moment: float = 0.0) -> Array:
+        """`JointAssembly.tangent_stiffness` H (6 + k, 6 + k) of the tightened joint."""
+        state = self._preload_state(preload, moment)
+        stiffness = self.curve.derivatives(state.approach, 1)[1]
+        stick = self.friction.stick_tangent(state.patch_approach)
+        return self.assembly.tangent_stiffness(stiffness, stick, self._bolt_tangent(preload, moment))
+
+    def _bolt_tangent(self, preload: float, moment: float) -> Array:
+        """Stiffness (b) [N/m] of the bolts at tightening."""
+        force = self.bolts.preload_force(self.joint, preload, moment)
+        return self.bolts.tangent(force, np.zeros_like(force))
+
+    def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
+        """Compliances of the tightened joint with elastic members."""
+        H = self.tangent_stiffness(preload, moment)
+        return Compliances.of(self.assembly, H, self._bolt_tangent(preload, moment))
+
+    @property
+    def history_layout(self) -> HistoryLayout:
+        """Layout of the history variables."""
+        return history_layout(self.patches.area_share.size)
+
+    def initial_history(self) -> Array:
+        """History variables of a joint that has not moved: zeros."""
+        return self.history_layout.virgin_history()
+
+    def evaluate(
+        self,
+        preload: float,
+        moment: float,
+        s_rel: tuple[float, float, float],
+        v_rel: tuple[float, float, float],
+        theta: tuple[float, float, float] = ZERO_MOTION,
+        omega: tuple[float, float, float] = ZERO_MOTION,
+    ) -> dict[str, Number]:
+        """Outputs of `advance` from the initial history, see `JointInputs`."""
+        inputs = JointInputs(preload, moment, np.array([*s_rel, *theta]), (*v_rel, *omega))
+        return self.advance(inputs, self.initial_history())[0]
+
+    def advance(self, inputs: JointInputs, history: Array) -> tuple[dict[str, Number], Array]:
+        """Outputs {name: value} and history variables at the end of a straight path to the inputs.
+
+        Raises ValueError if elastic members find no equilibrium.
+        """
+        joint, assembly, points, q = self.joint, self.assembly, self.points, inputs.displacement
+        before = self.history_layout.split(history)
+        preload = self._preload_state(float(inputs.preload), float(inputs.moment))
+        bolt_force = self.bolts.preload_force(joint, inputs.preload, inputs.moment)
+        state, a = None, np.zeros(0)
+        if joint.elastic:
+            state = solve_equilibrium(self._load_step(inputs, preload, bolt_force, before))
+            a, normal, friction = state.modal_coordinates, state.normal, state.friction
+        else:
+            normal, friction = assembly.evaluate_normal(preload, q, a), None
+            if joint.memory:
+                increment = tangential_displacement(self.patches, q - _displacement(before))
+                friction = self.friction.update_friction(before, normal.patch_approach, increment)
+
+        if friction is not None:
+            loss = float(before["loss"]) + joint.A_0 * float(
+                self.patches.area_share @ friction.slider_update.dissipated_energy
+            )
+            tangent = consistent_tangent(self.patches, friction)
+            shear = friction_sums(self.patches, friction.traction, tangent, loss / joint.A_0)
+            added, history = (0.0, 0.0), self._join_history(q, a, friction, loss)
+        else:
+            shear, added = self._elastic_shear_sums(preload, normal, q)
+
+        plastic, elastic = self.first_loading_work(normal.pressure)
+        amplitude = np.sqrt(np.sum(assembly.tangential_displacement(q, a) ** 2, axis=1))
+        foundation = self.friction.foundation()
+        sums: dict[str, Number] = {
+            **first_moments(points, "tightened", preload.pressure),
+            **normal_sums(points, normal.pressure, normal.stiffness, *added),
+            "plastic": points.area_share @ plastic,
+            "elastic": points.area_share @ elastic,
+            **shear,
+            **cycle_sums(foundation, self.patches.area_share, normal.patch_approach, amplitude),
+        }
+        elongation = assembly.elongation(q, a)
+        if state is not None:
+            sums |= assembly_sums(joint, assembly, state, bolt_force, sums["loop_energy"])
+        else:
+            sums |= bolt_gap_sums(self.bolts, joint.A_0, elongation, bolt_force, sums)
+        s_rel, theta = q.reshape(2, 3).tolist()
+        outputs = joint_outputs(joint, sums, s_rel, theta, inputs.rates, np.max(normal.pressure))
+        if joint.elastic:
+            forces = self.bolts.force(bolt_force, elongation)
+            outputs |= {bolt_force_name(j): force for j, force in enumerate(forces)}
+        return outputs, history
+
+    def _load_step(
+        self, inputs: JointInputs, preload: PreloadState, bolt_force: Array, before: History
+    ) -> LoadStep:
+        """Load step from history variables to the inputs."""
+        return LoadStep(
+            self.assembly,
+            preload,
+            bolt_force,
+            start=_displacement(before),
+            end=inputs.displacement,
+            modal_coordinates=before["modal_coordinates"][: len(self.modes.stiffness)],
+            friction_tangent=(
+                self.friction.stick_tangent(preload.patch_approach)
+                if before["state"] == UNKNOWN
+                else before["tangent"]
+            ),
+            update_friction=partial(self.friction.update_friction, before),
+            input_summary=inputs.summary,
+        )
+
+    def _elastic_shear_sums(
+        self, preload: PreloadState, normal: NormalState, q: Array
+    ) -> tuple[dict[str, Number], tuple[Number, Number]]:
+        """Sums of `elastic_shear`, and its terms (n) [Pa] in the pressure and (n) [Pa/m] in the stiffness."""
+        limit, derivatives = self.joint.mu * preload.pressure, self.curve.derivatives(normal.approach, 3)
+        u_x, u_y = point_displacement(self.points, q).T
+        t_x, t_y, xx, xy, yy, added_pressure, added_stiffness = elastic_shear(
+            limit, self.joint.shear_stiffness_ratio(), derivatives, u_x, u_y
+        )
+        none, nodes = np.zeros_like(limit), self.points.as_patches()
+        tangent = tangent_sums(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
+        sums = friction_sums(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
+        return sums, (added_pressure, added_stiffness)
+
+    def _join_history(self, q: Array, a: Array, friction: FrictionUpdate, loss: float) -> Array:
+        """History variables at relative displacement q (6) and modal coordinates a (k) [m].
+
+        loss : [J] energy dissipated so far
+        """
+        elastic = self.joint.elastic
+        return self.history_layout.join(
+            {
+                "state": friction.state,
+                "loss": loss,
+                "tangential": q[TANGENTIAL],
+                "onset_approach": friction.onset_approach,
+                "min_approach": friction.min_approach,
+                "approach": friction.approach,
+                "force": friction.slider_update.force,
+                "normal": q[NORMAL] if elastic else 0.0,
+                "modal_coordinates": np.pad(a, (0, MAX_MODES - a.size)),
+                "tangent": friction.slider_update.tangent if elastic else 0.0,
+            }
+        )
+
+    def first_loading_work(self, p: Array) -> tuple[Array, Array]:
+        """Plastic and elastic work [J] of the whole area at pressures (...) [Pa] (Zhao 2018, Eqs. 16, 18).
+
+        Below the pressure at which the contact has closed the values at that pressure are used: the law has
+        hardly an elastic spot there.
+        """
+        spots = self.joint.spots()
+        u = solve_largest_spot(self.joint, np.maximum(p, self.curve.closing_end_load))
+        return spots.total("plastic_work", u), spots.total("elastic_work", u)
+
+
+def _no_modes(joint: Bolted, points: PressureDistribution, patches: FrictionPatches) -> Modes:
+    """Modes of rigid members: none."""
+    return Modes.for_rigid_bodies(points.area_share.size, patches.area_share.size, len(bolt_positions(joint)))
+
+
+def _displacement(history: History) -> Array:
+    """Relative displacement q (6) [m, rad] of history variables; normal part: of elastic members only."""
+    q = np.empty(6)
+    q[TANGENTIAL], q[NORMAL] = history["tangential"], history["normal"]
+    return q

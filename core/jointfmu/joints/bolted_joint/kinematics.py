@@ -1,0 +1,42 @@
+"""Kinematics of the joint with rigid members: opening and tangential displacement over the interface.
+
+The relative displacement q (6) of side 2 from the tightened state has the components s_x, s_y, s_z [m] and
+the small rotation theta_x, theta_y, theta_z [rad] about the centroid of the contact.
+"""
+
+import numpy as np
+
+from ...mechanics.footprint.distribution import FrictionPatches, PressureDistribution
+from ...quantity import Array
+
+NORMAL, TANGENTIAL = slice(2, 5), [0, 1, 5]
+"""Components of q that open the contact: s_z, theta_x, theta_y; and those along it: s_x, s_y, theta_z."""
+
+
+def rigid_opening(position: Array, q: Array) -> Array:
+    """Opening (n) [m] at positions (n, 2) [m]."""
+    (x, y), (s_z, theta_x, theta_y) = position.T, q[NORMAL]
+    return np.asarray(s_z + theta_x * y - theta_y * x)
+
+
+def opening_jacobian(position: Array) -> Array:
+    """Derivative (n, 6) [1, m] of the opening at positions (n, 2) [m] with respect to q."""
+    J = np.zeros((len(position), 6))
+    J[:, 2], J[:, 3], J[:, 4] = 1.0, position[:, 1], -position[:, 0]
+    return J
+
+
+def point_displacement(points: PressureDistribution, q: Array) -> Array:
+    """Tangential displacement (n, 2) [m] of points along x and along y."""
+    (x, y), (s_x, s_y, theta_z) = points.position.T, q[TANGENTIAL]
+    return np.stack([s_x - theta_z * y, s_y + theta_z * x], axis=-1)
+
+
+def tangential_displacement(patches: FrictionPatches, q: Array) -> Array:
+    """Tangential displacement (m, 3) [m] of patches along x, along y and around their centres."""
+    return np.column_stack([point_displacement(patches, q), q[5] * patches.radius])
+
+
+def tangential_jacobian(patches: FrictionPatches) -> Array:
+    """Derivative (3, m, 6) [1, m] of the tangential displacement with respect to q."""
+    return np.stack([tangential_displacement(patches, unit).T for unit in np.eye(6)], axis=-1)

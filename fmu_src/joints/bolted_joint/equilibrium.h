@@ -1,0 +1,58 @@
+/* Repeats equilibrium.py of the package: static equilibrium of elastic bodies, contact, friction and bolts. */
+#ifndef JOINTFMU_EQUILIBRIUM_H
+#define JOINTFMU_EQUILIBRIUM_H
+
+#include <stdbool.h>
+
+#include "bodies.h"
+#include "bolts.h"
+#include "contact.h"
+#include "dense.h"
+#include "friction.h"
+#include "kinematics.h"
+#include "text.h"
+
+/* Preload, moment, rigid displacement, and the end of a history. */
+enum { PREDICTOR_KEY = 5 + 3 + MODES + 6 * MAX_PATCHES };
+
+/* Derivatives of the modal coordinates by q at the start of a load step, by its tangent; and what they depend on. */
+typedef struct {
+    bool is_known;
+    double key[PREDICTOR_KEY], modal_rates[N_DISPLACEMENTS][MODES];
+    Factorization factors; /* of the modal tangent */
+} ModalPredictor;
+
+typedef struct {
+    Contact *contact;
+    Bodies *bodies;
+    Bolts *bolts;
+    Friction *friction;
+} JointAssembly;
+
+typedef struct {
+    JointAssembly assembly;
+    ModalPredictor start, end;         /* at both ends of the last load step */
+    double condensed[N_DISPLACEMENTS]; /* diagonal of the condensed stiffness at its end [N/m, N.m] */
+    /* Work arrays, as Windows does not allow them on the stack. */
+    double modal_opening[MAX_PATCH_DISPLACEMENT_X][N_COLUMNS]; /* derivatives of the opening of the patches */
+    double weights[MAX_OPENING + MAX_BOLT_ELONGATION];
+    double weighted[MAX_OPENING + MAX_PATCH_DISPLACEMENT_X + MAX_BOLT_ELONGATION][N_COLUMNS];
+    double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
+    TractionDerivatives derivatives[MAX_PATCHES];
+    Factorization factors; /* of the modal tangent in Newton's method */
+    double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS]; /* since then [m], and their squares [m2] */
+} Equilibrium;
+
+/* Elongation [m] of bolt b at q and modal coordinates, or its rate. */
+static inline double bolt_elongation(const Bodies *bodies, int b, const double *q, const double *modal_coordinates)
+{
+    return rigid_elongation(b, q) + dense_dot(bodies->elongation_jacobian[b], modal_coordinates);
+}
+
+/* Equilibrium at the end of the load step from a history to the inputs, and the history there. Contact, bodies, bolts
+ * and friction are then those of the equilibrium. false: refused, with the reason. */
+bool solve_equilibrium(Equilibrium *equilibrium, const double *inputs, const double *history, double *after, Text *reason);
+/* Rates of the deformation along a seed, from those of points, patches and bolts at constant modal coordinates. */
+void solve_modal_rates(Equilibrium *equilibrium, const double *q_rate, const double *history, const double *after);
+
+#endif

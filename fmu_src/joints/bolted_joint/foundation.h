@@ -1,0 +1,140 @@
+/* Repeats `Foundation` in sliders.py of the package: the friction sliders of one patch, which follow from the normal
+ * law. Forces and stiffnesses are per area. */
+#ifndef JOINTFMU_FOUNDATION_H
+#define JOINTFMU_FOUNDATION_H
+
+#include "curve.h"
+#include "jenkins.h"
+
+enum {
+    N_HEIGHTS = N_BELOW + N_ABOVE + 3,
+    N_RANGES = N_HEIGHTS - 1,         /* of springs between two heights; each has two sliders */
+    FOUNDATION_SLIDERS = 2 * N_RANGES /* in the order of the heights, of each range first the one that slips earlier */
+};
+
+_Static_assert((int)FOUNDATION_SLIDERS <= (int)MAX_SLIDERS, "in one call");
+
+typedef struct {
+    const Curve *curve;
+    const CurveEnergy *energy; /* integral of the curve */
+    double mu, ratio;     /* friction coefficient, stiffness ratio K_T/K_N [1] */
+    const double *torsion_directions[2]; /* unit vectors of the sliders on the circle of the patch */
+    double offset;         /* of the heights [1], see `slider_heights` */
+    double onset_approach; /* reference approach of the heights [m] */
+    double min_approach;   /* smallest approach since then [m] */
+    int liftoff_height;    /* the height that moved down to it from `replaced_height` [m]; 0: none */
+    double replaced_height;
+    double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS]; /* [m], [Pa] and [Pa/m] of the curve there */
+    double normal_stiffness[N_RANGES]; /* of all springs of a range [Pa/m] */
+    double normal_force[N_RANGES];     /* of a range when its last spring touches [Pa] */
+    double force_deviation[N_RANGES];  /* of each slider from their mean normal force, from then on [Pa] */
+    /* Sliders of ranges in full contact: tangential stiffness K, 1/K, and the limit at zero approach, from which it
+     * increases by K mu/ratio. */
+    double K[FOUNDATION_SLIDERS], per_K[FOUNDATION_SLIDERS], limit[FOUNDATION_SLIDERS];
+    double stick_stiffness[N_RANGES]; /* sum of K of all sliders up to a range */
+} Foundation;
+
+/* A patch on the curve: approach [m], pressure [Pa] with two derivatives there, energy [J/m2]. */
+typedef struct {
+    double approach, y[3], energy;
+    int full_ranges, touched_ranges; /* numbers of ranges of which all, or some, springs touch */
+} PatchState;
+
+/* Increment of a patch: slider forces at the start, states at both ends, displacement [m] along x, along y and around
+ * the centre. */
+typedef struct {
+    const double *force[2];
+    const PatchState *start, *end;
+    double displacement[3];
+    bool is_1d;    /* all forces and displacements are along x */
+    bool is_first; /* for rates: the heights are set at its end */
+} PatchIncrement;
+
+/* Rates of an increment: of the approaches at both ends [m], of the displacement [m]. */
+typedef struct {
+    double ends[2], displacement[3];
+} IncrementRate;
+
+/* Number of ranges of which some springs touch during an increment. */
+static inline int touched_ranges_of(const PatchIncrement *path)
+{
+    const int start = path->start->touched_ranges, end = path->end->touched_ranges;
+    return start > end ? start : end;
+}
+
+/* Update of a patch: traction against the displacement along x, along y and around the centre [Pa]; tangent xx, xy, yy,
+ * xt, yt, tt for a further increment [Pa/m], t around the centre; heat [J/m2]. Or its rate. */
+typedef struct {
+    double traction[3], tangent[6], loss;
+} SliderUpdate;
+
+/* Both sliders of a range in the batch, from row `at` on. If the contact state of the range changes, two rows with half
+ * of the increment follow. */
+typedef struct {
+    int at;
+    bool stiffness_changes, contact_changes;
+    double K; /* at the start */
+    const double *torsion_directions[2];
+    double *force_end[2];
+    SliderUpdate *update;
+} Run;
+
+/* Arguments and results of the return mapping of sliders of several patches. */
+enum { BATCH_SIZE = 64 };
+typedef struct {
+    bool use_avx; /* the processor has AVX */
+    int n;
+    double force[2][BATCH_SIZE], displacement[2][BATCH_SIZE], retention[BATCH_SIZE], secant_stiffness[BATCH_SIZE];
+    double K[BATCH_SIZE], per_K[BATCH_SIZE], limit_start[BATCH_SIZE], limit_end[BATCH_SIZE];
+    double results[N_MAPPING][BATCH_SIZE];
+} SimdBatch;
+
+/* Derivatives of these arguments: of the displacement by one around the centre, of limit and displacement by opening. */
+typedef struct {
+    double torsion_directions[2][BATCH_SIZE], limit_rate[BATCH_SIZE], displacement_rate[2][BATCH_SIZE];
+} OpeningBatch;
+
+/* Sliders whose return mapping is not yet computed. */
+typedef struct {
+    SimdBatch batch;
+    OpeningBatch opening;
+    bool forces_only; /* up to the next `foundations_finish`: tractions, without tangents and losses */
+    int n;
+    Run runs[BATCH_SIZE / 2];
+} SliderWork;
+
+/* Set all heights for an onset approach; curve, energy, mu, ratio, directions and offset are given. */
+void foundation_set_heights(Foundation *foundation, double onset_approach);
+/* Move the first height above the smallest approach so far down to it. */
+void heights_after_liftoff(Foundation *foundation, double min_approach);
+/* Find the numbers of ranges in contact. */
+void find_ranges(const Foundation *foundation, PatchState *state);
+/* State at an approach; the search starts with a number of ranges in full contact. */
+PatchState patch_state(const Foundation *foundation, double approach, int near);
+/* Return-map all sliders for one increment. `force_end` gets the forces along x and along y of the sliders that touch
+ * during it; those along y are left out if it is along x under constant load. Results of sliders that slip are known
+ * after `foundations_finish`. */
+void foundation_advance(const Foundation *foundation, const PatchIncrement *path, double *const force_end[2],
+                        SliderWork *work, SliderUpdate *update);
+void foundations_finish(SliderWork *work);
+/* Derivatives of the traction after an increment by displacements along x, along y and around the centre, and by
+ * opening; those of ranges that change by differences over a step [m]. `trial_force` is room for slider forces. */
+void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step,
+                                     double *const trial_force[2], SliderWork *work, double derivatives[4][3]);
+/* Tangential stiffness in full stick. */
+double stick_stiffness(const Foundation *foundation, const PatchState *state);
+/* Update in full stick from a traction; false: it exceeds what FULL_STICK_RATIO allows. */
+bool full_stick_update(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
+                       SliderUpdate *update);
+/* Its rate, from rates of the increment, on the side to which `direction` points; true: the increment ends at a corner,
+ * where the other side has another rate. */
+bool full_stick_rates(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
+                      const IncrementRate *direction, const IncrementRate *rates, SliderUpdate *rate);
+/* Distribute a traction of full stick to the sliders, by stiffness. */
+void distribute_stick_force(const Foundation *foundation, const PatchState *state, const double traction[3],
+                            double *const force[2]);
+/* Rate of `foundation_advance`, as `full_stick_rates`. */
+bool foundation_rates(const Foundation *foundation, const PatchIncrement *path, const IncrementRate *direction,
+                      const IncrementRate *rates, SliderUpdate *rate);
+
+#endif

@@ -1,0 +1,70 @@
+"""Newton's method of the equilibrium, on residuals that are written out: no joint, no finite elements."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from jointfmu.joints.bolted_joint import equilibrium
+
+K = np.array([[4.0, 1.0], [-1.0, 3.0]])
+"""Stiffness [N/m] of two modal coordinates, not symmetric."""
+LOAD = np.array([1.0, 2.0])
+"""Force [N] on them at the end of the load step."""
+
+
+def state(a, residual):
+    return SimpleNamespace(
+        modal_coordinates=a, residual=residual, residual_norm=np.max(np.abs(residual)), tolerance=1e-12
+    )
+
+
+def load_step(residual, tangent=K):
+    """Load step with a residual [N] at a load factor and modal coordinates, from rest."""
+    return SimpleNamespace(
+        displacement=lambda load_factor: load_factor,
+        evaluate_trial=lambda load_factor, a: state(a, residual(load_factor, a)),
+        modal_tangent=lambda trial: tangent,
+        input_summary="s_rel_x = 1",
+    )
+
+
+def linear(load_factor, a):
+    return K @ a - load_factor * LOAD
+
+
+def test_newton_converges_in_the_last_iteration(monkeypatch):
+    monkeypatch.setattr(equilibrium, "MAX_NEWTON_ITERATIONS", 1)
+    found, converged = equilibrium.solve_newton(load_step(linear), 1.0, np.zeros(2), K)
+    assert converged
+    np.testing.assert_allclose(found.modal_coordinates, np.linalg.solve(K, LOAD), rtol=1e-12)
+
+
+@pytest.mark.parametrize("change", [0.0, -0.2, 0.2])
+def test_a_correction_that_raises_the_energy_is_shortened(change):
+    """The energy slope is positive at the start and hardly changes: regula falsi finds no zero."""
+    lengths = []
+
+    def residual(_, a):
+        lengths.append(a[0])
+        return np.array([1.0 + change * a[0], 0.0])
+
+    start = state(np.zeros(2), np.array([1.0, 0.0]))
+    correction = np.array([1.0, 0.0])
+    _, is_full = equilibrium.search_line(load_step(residual), 1.0, start, correction, True)
+    assert not is_full
+    np.testing.assert_allclose(lengths, 0.1 ** np.arange(equilibrium.MAX_LINE_SEARCH))
+
+
+def test_a_singular_tangent_at_the_start_is_no_equilibrium():
+    step = load_step(linear)
+    step.start, step.end, step.modal_coordinates = np.zeros(6), np.ones(6), np.zeros(2)
+    step.preload = step.bolt_force = step.friction_tangent = None
+    step.assembly = SimpleNamespace(
+        evaluate_normal=lambda *arguments: SimpleNamespace(stiffness=None),
+        bolts=SimpleNamespace(tangent=lambda *arguments: None),
+        elongation=lambda *arguments: None,
+        tangent_stiffness=lambda *arguments: np.zeros((8, 8)),
+    )
+    with pytest.raises(ValueError, match="s_rel_x = 1: the sides find no equilibrium beyond 0 of the way"):
+        equilibrium.solve_equilibrium(step)
