@@ -39,13 +39,18 @@ bool tabulate_model(Joint *joint, Text *reason)
     JointModel *model = &joint->model;
     double constants[7];
     model->contact.preload.is_current = false;
-    if (!set_spot_distribution(&model->contact.spots, joint->constants, reason) || !refine_curve(joint, tabulate, APPROACH_STEPS, reason))
+    if (!set_spot_distribution(&model->contact.spots, joint->constants, reason) ||
+        !refine_curve(joint, tabulate, APPROACH_STEPS, reason))
         return false;
     joint_constants(0, joint->constants, constants);
     set_parts(joint, constants);
     if (ELASTIC && (!model->friction.has_history || constants[5] != 0.0)) {
-        text_append(reason, model->friction.has_history ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
-                                                 : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
+        text_append(
+            reason,
+            model->friction.has_history
+                ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
+                : "memory = false beside sides = elastic: expected true, "
+                  "elastic sides go with friction that remembers");
         return false;
     }
     bodies_tabulate(&model->bodies);
@@ -79,7 +84,8 @@ static bool is_preload_state(const JointModel *model, const double *q)
 }
 
 /* Points and patches between elastic bodies. */
-static bool evaluate_elastic(JointModel *model, const double *inputs, const double *history, double *after, Text *reason)
+static bool evaluate_elastic(JointModel *model, const double *inputs, const double *history, double *after,
+                             Text *reason)
 {
     if (!solve_equilibrium(&model->equilibrium, inputs, history, after, reason))
         return false;
@@ -115,7 +121,8 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
     memset(sums->x, 0, sizeof sums->x);
     relative_displacement(inputs, q);
     preload(joint, inputs);
-    if (!(ELASTIC ? evaluate_elastic(model, inputs, history, after, reason) : evaluate_rigid(model, q, history, after, reason)))
+    if (!(ELASTIC ? evaluate_elastic(model, inputs, history, after, reason)
+                  : evaluate_rigid(model, q, history, after, reason)))
         return false;
     if (is_preload_state(model, q))
         use_preload_sums(sums, &model->contact);

@@ -133,8 +133,8 @@ typedef struct {
     double p[POINT_BATCH], k[POINT_BATCH], works[POINT_BATCH][N_LAW_STATE];
 } PointBatch;
 
-static inline bool evaluate_batch(const Contact *contact, const double *modal_opening, const double *q, int first, int n,
-                                  bool with_work, PointBatch *batch, Text *reason)
+static inline bool evaluate_batch(const Contact *contact, const double *modal_opening, const double *q, int first,
+                                  int n, bool with_work, PointBatch *batch, Text *reason)
 {
     const Curve *curve = contact->curve;
     const double begin = curve->start.x, end = curve->end.x;

@@ -56,8 +56,8 @@ void transfer_pressure(const Contact *contact, const double *points, double *pat
 /* Pressure and stiffness of the points at q and a modal opening (n) [m], their work too if `with_work`.
  * false: refused, with the reason. */
 bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *reason);
-/* Patch approach [m] that gives the transferred pressure. If all points of a patch are open: the approach of the nearest
- * point. Between rigid bodies it follows from q. */
+/* Patch approach [m] that gives the transferred pressure. If all points of a patch are open: the approach of the
+ * nearest point. Between rigid bodies it follows from q. */
 void evaluate_patches(Contact *contact, const double *modal_opening, const double *q);
 /* Derivatives of all points by their approaches, in `contact->rate`. */
 bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *reason);

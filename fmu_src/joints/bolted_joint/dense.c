@@ -80,31 +80,36 @@ void dense_solve(bool use_avx, const Factorization *factors, double *x)
     (use_avx ? solve_avx : solve_baseline)((const double(*)[MODES])factors->a, factors->pivots, x);
 }
 
-ALWAYS_INLINE void weigh(int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
+ALWAYS_INLINE void weigh(int n, const double *by, const double (*restrict row)[N_COLUMNS],
+                         double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i] * row[i][k];
 }
-DEFINE_BASELINE_AND_AVX(weigh, (int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
-               (n, by, row, result))
+DEFINE_BASELINE_AND_AVX(weigh,
+                        (int n, const double *by, const double (*restrict row)[N_COLUMNS],
+                         double (*restrict result)[N_COLUMNS]),
+                        (n, by, row, result))
 
 void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double (*result)[N_COLUMNS])
 {
     (use_avx ? weigh_avx : weigh_baseline)(n, by, row, result);
 }
 
-ALWAYS_INLINE void combine(int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
-                    const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
+ALWAYS_INLINE void combine(int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS],
+                           const double (*restrict y)[N_COLUMNS], const double (*restrict t)[N_COLUMNS],
+                           const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * t[i][k] + by[i][3] * z[i][k];
 }
 DEFINE_BASELINE_AND_AVX(combine,
-               (int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
-                const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
-               (n, by, x, y, t, z, result))
+                        (int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS],
+                         const double (*restrict y)[N_COLUMNS], const double (*restrict t)[N_COLUMNS],
+                         const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
+                        (n, by, x, y, t, z, result))
 
 void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*const rows[4])[N_COLUMNS],
                    double (*result)[N_COLUMNS])
@@ -114,8 +119,9 @@ void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*co
 
 /* Sums go in lanes, which a processor adds side by side. */
 
-ALWAYS_INLINE void products(int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
-                     bool all, double (*restrict h)[N_COLUMNS])
+ALWAYS_INLINE void products(int n, const double (*restrict weighted)[N_COLUMNS],
+                            const double (*restrict rows)[N_COLUMNS], int size, bool all,
+                            double (*restrict h)[N_COLUMNS])
 {
     for (int r = 0; r < size; r += L) /* in blocks, whose sums stay in registers */
         for (int c = 0; c <= (all ? size - L : r); c += L) {
@@ -134,8 +140,8 @@ DEFINE_BASELINE_AND_AVX(products,
                 bool all, double (*restrict h)[N_COLUMNS]),
                (n, weighted, rows, size, all, h))
 
-void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS],
-                    int size, bool all, double (*restrict h)[N_COLUMNS])
+void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS],
+                    const double (*restrict rows)[N_COLUMNS], int size, bool all, double (*restrict h)[N_COLUMNS])
 {
     (use_avx ? products_avx : products_baseline)(n, weighted, rows, size, all, h);
 }
@@ -151,7 +157,8 @@ ALWAYS_INLINE void add_rows(int n, const double *by, const double (*row)[N_COLUM
         for (int k = 0; k < MODES; k++)
             sum[k] += by[i] * row[i][k];
 }
-DEFINE_BASELINE_AND_AVX(add_rows, (int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum), (n, by, row, sum))
+DEFINE_BASELINE_AND_AVX(add_rows, (int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum),
+                        (n, by, row, sum))
 
 void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double *sum)
 {

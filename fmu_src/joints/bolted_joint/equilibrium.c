@@ -5,7 +5,8 @@
 
 #include "optimize_for_size.h"
 
-_Static_assert((int)HISTORY_MODAL_COORDINATES == (int)HISTORY_NORMAL + 3 && (int)HISTORY_TANGENT == (int)HISTORY_MODAL_COORDINATES + MODES &&
+_Static_assert((int)HISTORY_MODAL_COORDINATES == (int)HISTORY_NORMAL + 3 &&
+                   (int)HISTORY_TANGENT == (int)HISTORY_MODAL_COORDINATES + MODES &&
                    (int)N_HISTORY == (int)HISTORY_TANGENT + 6 * MAX_PATCHES,
                "the end of a history, as in the key of a predictor");
 
@@ -18,7 +19,8 @@ static void set_modal_opening(Equilibrium *e)
 {
     const Contact *contact = e->assembly.contact;
     for (int j = 0, row = 0; j < n_patches(); j++) {
-        const double stiffness = e->assembly.friction->end[j].y[1], compliance = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
+        const double stiffness = e->assembly.friction->end[j].y[1],
+                     compliance = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
         double sum[N_COLUMNS] = {0.0};
         for (; row < contact->transfer_end[j]; row++) {
             const int i = data.pressure_transfer[row][TRANSFER_POINT];
@@ -168,7 +170,8 @@ static void displacement_at(const LoadStep *step, double load_factor, double q[N
 }
 
 /* Deformation, bolt forces, pressures and patch approaches at q and modal coordinates; the works too if complete. */
-static bool evaluate_normal(Equilibrium *e, const double *q, const double *modal_coordinates, bool complete, Text *reason)
+static bool evaluate_normal(Equilibrium *e, const double *q, const double *modal_coordinates, bool complete,
+                            Text *reason)
 {
     Bodies *bodies = e->assembly.bodies;
     for (int b = 0; b < (int)data.n_bolt_elongation; b++)
@@ -298,10 +301,11 @@ static void apply_broyden(Equilibrium *e, int newest)
     squares[newest] = dense_dot(correction, correction);
 }
 
-/* Trial after a correction of the modal coordinates: shortened while the energy slope at its end is too large, or dropped
- * if the tangent is that of an earlier trial. false: refused. */
-static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction, bool tangent_is_current,
-                        bool complete, double *modal_coordinates, double *r, double *tolerance, bool *is_full, Text *reason)
+/* Trial after a correction of the modal coordinates: shortened while the energy slope at its end is too large, or
+ * dropped if the tangent is that of an earlier trial. false: refused. */
+static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction,
+                        bool tangent_is_current, bool complete, double *modal_coordinates, double *r, double *tolerance,
+                        bool *is_full, Text *reason)
 {
     double start[MODES], length = 1.0;
     const double slope_0 = dense_dot(r, correction);
@@ -351,8 +355,8 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_fac
             correction[k] = -r[k];
         dense_solve(e->assembly.bodies->use_avx, factors, correction);
         apply_broyden(e, corrections++);
-        if (!search_line(e, step, q, correction, tangent_is_current, is_last, modal_coordinates, r, &tolerance, &is_full,
-                         reason))
+        if (!search_line(e, step, q, correction, tangent_is_current, is_last, modal_coordinates, r, &tolerance,
+                         &is_full, reason))
             return REFUSED;
         last_norm = is_full ? norm : 0.0; /* 0: the next iteration computes the tangent */
         tangent_is_current = false;
@@ -420,8 +424,9 @@ bool solve_equilibrium(Equilibrium *e, const double *inputs, const double *histo
         return false;
     LoadStep step = {.inputs = inputs,
                      .history = history,
-                     .start = {history[HISTORY_TANGENTIAL], history[HISTORY_TANGENTIAL + 1], history[HISTORY_NORMAL], history[HISTORY_NORMAL + 1],
-                               history[HISTORY_NORMAL + 2], history[HISTORY_TANGENTIAL + 2]},
+                     .start = {history[HISTORY_TANGENTIAL], history[HISTORY_TANGENTIAL + 1], history[HISTORY_NORMAL],
+                               history[HISTORY_NORMAL + 1], history[HISTORY_NORMAL + 2],
+                               history[HISTORY_TANGENTIAL + 2]},
                      .after = after};
     double modal_coordinates[MODES];
     relative_displacement(inputs, step.end);
@@ -447,7 +452,8 @@ void solve_modal_rates(Equilibrium *e, const double *q_rate, const double *histo
     double r[MODES] = {0.0};
     for (int i = 0; i < n_points(); i++) {
         const PointRate *rate = &contact->rate[i];
-        const double pressure = rate->derivatives[1] * rate->approach - rate->preload_stiffness * rate->preload_approach;
+        const double pressure =
+            rate->derivatives[1] * rate->approach - rate->preload_stiffness * rate->preload_approach;
         add_scaled(contact->area * data.points[i][SHARE] * pressure, bodies->opening_jacobian[i], r);
     }
     for (int j = 0; j < n_patches(); j++)

@@ -40,7 +40,8 @@ typedef struct {
     double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
     TractionDerivatives derivatives[MAX_PATCHES];
     Factorization factors; /* of the modal tangent in Newton's method */
-    double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS]; /* since then [m], and their squares [m2] */
+    /* Since then [m], and their squares [m2]. */
+    double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS];
 } Equilibrium;
 
 /* Elongation [m] of bolt b at q and modal coordinates, or its rate. */
@@ -51,7 +52,8 @@ static inline double bolt_elongation(const Bodies *bodies, int b, const double *
 
 /* Equilibrium at the end of the load step from a history to the inputs, and the history there. Contact, bodies, bolts
  * and friction are then those of the equilibrium. false: refused, with the reason. */
-bool solve_equilibrium(Equilibrium *equilibrium, const double *inputs, const double *history, double *after, Text *reason);
+bool solve_equilibrium(Equilibrium *equilibrium, const double *inputs, const double *history, double *after,
+                       Text *reason);
 /* Rates of the deformation along a seed, from those of points, patches and bolts at constant modal coordinates. */
 void solve_modal_rates(Equilibrium *equilibrium, const double *q_rate, const double *history, const double *after);
 

@@ -89,7 +89,8 @@ typedef struct {
     double results[N_MAPPING][BATCH_SIZE];
 } SimdBatch;
 
-/* Derivatives of these arguments: of the displacement by one around the centre, of limit and displacement by opening. */
+/* Derivatives of these arguments: of the displacement by one around the centre, of limit and displacement by
+ * opening. */
 typedef struct {
     double torsion_directions[2][BATCH_SIZE], limit_rate[BATCH_SIZE], displacement_rate[2][BATCH_SIZE];
 } OpeningBatch;

@@ -5,7 +5,8 @@
 
 #include "optimize_for_size.h"
 
-_Static_assert((int)HISTORY_NORMAL == (int)HISTORY_FORCE + MAX_PATCHES * 2 * FOUNDATION_SLIDERS, "room for all patches");
+_Static_assert((int)HISTORY_NORMAL == (int)HISTORY_FORCE + MAX_PATCHES * 2 * FOUNDATION_SLIDERS,
+               "room for all patches");
 
 /* Slider forces of patch j along x in a history; those along y follow. */
 enum { PATCH_FORCES = 2 * FOUNDATION_SLIDERS };
@@ -38,8 +39,8 @@ static void set_patch_heights(Friction *friction, int j, const double *history, 
                 is_onset || was_open ? start : fmin(min_approach, start));
 }
 
-/* States of the patches at both ends of their increments; without a known state the increment has no change of approach.
- * States are kept where they are still right. */
+/* States of the patches at both ends of their increments; without a known state the increment has no change of
+ * approach. States are kept where they are still right. */
 static void find_states(Friction *friction, const Contact *contact, const double *history)
 {
     const bool is_known = history[HISTORY_STATE] != (double)UNKNOWN;
@@ -219,8 +220,8 @@ static inline void directional_stiffness(const double *patch, const double tange
                              radius * radius * tangent[5]);
 }
 
-/* Stiffness against S_X, S_Y, THETA_Z: with all sliders sticking; what it lacks if all sliders at their limits slip; and
- * the lack with the sign of the traction along the motion. */
+/* Stiffness against S_X, S_Y, THETA_Z: with all sliders sticking; what it lacks if all sliders at their limits slip;
+ * and the lack with the sign of the traction along the motion. */
 typedef struct {
     double stick[3], lack[3], signed_lack[3];
 } TangentSums;

@@ -1,8 +1,8 @@
 /* Repeats friction.py of the package: friction of all patches with its history variables.
  *
- * Histories are arrays of N_HISTORY numbers, whose parts begin at HISTORY_STATE, ... While all patches are in full stick, the
- * history has their tractions in place of slider forces: in the first slider along x and along y, and around the centre
- * of the patch in the second one along y. */
+ * Histories are arrays of N_HISTORY numbers, whose parts begin at HISTORY_STATE, ... While all patches are in full
+ * stick, the history has their tractions in place of slider forces: in the first slider along x and along y, and around
+ * the centre of the patch in the second one along y. */
 #ifndef JOINTFMU_FRICTION_H
 #define JOINTFMU_FRICTION_H
 

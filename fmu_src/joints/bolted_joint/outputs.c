@@ -155,7 +155,8 @@ void sum_patches(OutputSums *sums, Friction *friction, const double *after, doub
 static inline double energy_at(const Contact *contact, double approach, double *y)
 {
     const Curve *curve = contact->curve;
-    const double inside = approach < curve->start.x ? curve->start.x : (approach > curve->end.x ? curve->end.x : approach);
+    const double inside =
+        approach < curve->start.x ? curve->start.x : (approach > curve->end.x ? curve->end.x : approach);
     const int segment = curve_find_segment(curve, inside);
     const double t = (inside - curve->x[segment]) * curve->inverse_length[segment], beyond = approach - inside;
     segment_derivatives(curve, segment, t, 1, y);
@@ -209,7 +210,8 @@ static inline double patch_displacement(const Bodies *bodies, int j, const doubl
     return sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
 }
 
-void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q)
+void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies,
+                const double *q)
 {
     const double mu = friction->mu, ratio = friction->stiffness_ratio, per_reach = ratio / mu;
     double losses = 0.0, energies = 0.0;
@@ -278,7 +280,8 @@ OPTIMIZE_FOR_SIZE
 /* Elastic bodies */
 
 /* Stiffness of the joint, or its rate, without that of the bolts between rigid bodies, over the area. */
-static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLACEMENTS], double bolt_stiffness, double *x)
+static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLACEMENTS], double bolt_stiffness,
+                          double *x)
 {
     static const int sums[N_DISPLACEMENTS] = {SUM_TANGENT_X, SUM_TANGENT_Y, SUM_NORMAL_STIFFNESS,
                                               SUM_NORMAL_ABOUT_X, SUM_NORMAL_ABOUT_Y, SUM_TANGENT_Z};
@@ -318,7 +321,8 @@ void assembly_sums(OutputSums *sums, const Equilibrium *e, const double *q)
 
 static const double SAME_PRESSURE = 1e-11; /* relative difference of equal pressures: round-off and residual [1] */
 
-void add_point_rates(const Contact *contact, const Friction *friction, const double *q, const double *q_rate, double *dx)
+void add_point_rates(const Contact *contact, const Friction *friction, const double *q, const double *q_rate,
+                     double *dx)
 {
     for (int i = 0; i < n_points(); i++) {
         const PointRate *point_rate = &contact->rate[i];
@@ -329,8 +333,8 @@ void add_point_rates(const Contact *contact, const Friction *friction, const dou
             for (int d = 0; d < 4; d++)
                 slopes[d] = y[d + 1] * rate;
             set_shear_arguments(friction->mu * contact->preload.pressure[i], y, point, q, x);
-            set_shear_arguments(friction->mu * point_rate->preload_stiffness * point_rate->preload_approach, slopes, point,
-                                q_rate, x + N_E);
+            set_shear_arguments(friction->mu * point_rate->preload_stiffness * point_rate->preload_approach, slopes,
+                                point, q_rate, x + N_E);
             elastic_shear_seed(x, contact->c, shear);
             add_elastic_shear(dx, point, shear);
         }
@@ -371,8 +375,8 @@ void add_patch_rates(const Friction *friction, const IncrementRate *rates, doubl
 }
 
 /* Add the rates of the cycle of a patch. */
-static void add_cycle_rate(const Friction *friction, const Contact *contact, const Bodies *bodies, int j, const double *q,
-                           const IncrementRate *rates, double *dx)
+static void add_cycle_rate(const Friction *friction, const Contact *contact, const Bodies *bodies, int j,
+                           const double *q, const IncrementRate *rates, double *dx)
 {
     const PatchState *state = &friction->end[j];
     const double *u_rate = rates->displacement, approach_rate = rates->ends[1];

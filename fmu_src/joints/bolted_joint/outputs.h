@@ -32,7 +32,8 @@ void use_preload_sums(OutputSums *sums, const Contact *contact);
 /* Sums over the patches after an update of friction. */
 void sum_patches(OutputSums *sums, Friction *friction, const double *after, double area);
 /* Loss and elastic energy of a cycle with the present displacement of the patches as amplitude. */
-void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q);
+void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies,
+                const double *q);
 /* Gaps of the bolts between rigid bodies, and the stiffness that bolts at lift-off lack. */
 void sum_gaps(OutputSums *sums, Bolts *bolts, double area, const double *q);
 /* Condensed stiffness without that of the bolts between rigid bodies, elongation of the bolts, elastic energy. */
