@@ -1,9 +1,10 @@
-/* A joint between two flanges (phi1 w1 phi2 w2 in, tau1 tau2 out first) as MuJoCo's passive force and sensor;
- * further inputs stay at their start.
+/* MuJoCo plugin: a joint between two flanges (first inputs phi1, w1, phi2, w2; first outputs tau1, tau2) as passive
+ * force and sensor. Further inputs keep their start values.
  *
- * Compiled with the C sources of an FMU. Each plugin instance has an instance of the FMU; its path lies in
- * MuJoCo's plugin state (before, after, inputs, accepted), so that mjData can be copied, saved and set. Memory
- * that the parameters leave unused, as that of a hysteresis that is off, has no place there. */
+ * The plugin is compiled with the C sources of an FMU. Each plugin instance has an instance of the FMU. Its accepted
+ * path is stored in MuJoCo's plugin state (history at start and end, inputs at the end, flag of accepted inputs), so
+ * mjData can be copied, saved and set. History variables that the parameters leave unused, such as those of a
+ * hysteresis that is switched off, are not stored. */
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,40 +13,40 @@
 #include "instance.h"
 
 enum { PHI1, W1, PHI2, W2 };
-enum { PATH = N_MEMORY ? 2 * N_MEMORY + N_PATH + 1 : 0 }; /* at most */
-_Static_assert(N_INPUTS > W2 && N_OUTPUTS >= 2 && !MOVES, "a joint between two flanges");
+enum { MAX_PLUGIN_STATE = N_HISTORY ? 2 * N_HISTORY + N_PATH_VARIABLES + 1 : 0 }; /* numbers, at most */
+_Static_assert(N_INPUTS > W2 && N_OUTPUTS >= 2 && !IS_TIME_DEPENDENT, "a joint between two flanges");
 
 typedef struct {
     Instance *instance;
     int joints[2];
-    int unused; /* of the memory, its first numbers */
-    bool known;              /* the instance stands where it was evaluated last, with this path before it: */
-    mjtNum state[PATH + 1];  /* one more, for C */
-    char why[sizeof((Text *)0)->line]; /* of the last refusal */
+    int n_unused_history; /* number of history variables, the first ones, that stay zero */
+    bool is_current;      /* the FMU instance holds the evaluation that started from `plugin_state` */
+    mjtNum plugin_state[MAX_PLUGIN_STATE + 1];   /* C has no empty arrays */
+    char error_message[sizeof((Text *)0)->line]; /* last error of the FMU */
 } Coupling;
 
-/* Messages: MuJoCo's warnings, and one line for the error that follows */
+/* Log messages: warnings go to MuJoCo; the last error is kept for the MuJoCo error that follows */
 
-static void deliver(const Reporter *to, const char *name, Status status, const char *category, const char *line)
+static void log_message(const Logger *logger, const char *name, Status status, const char *category, const char *line)
 {
     (void)category;
-    Coupling *c = to->environment;
+    Coupling *c = logger->environment;
     if (status == ERROR)
-        snprintf(c->why, sizeof c->why, "%s", line);
+        snprintf(c->error_message, sizeof c->error_message, "%s", line);
     else
         mju_warning("%s: %s", name, line);
 }
 
 /* Configuration: joints for phi1 and phi2, and parameters by name */
 
-static bool find_joint(Coupling *c, const mjModel *m, int instance, const char *key, bool slides, int *joint)
+static bool find_joint(Coupling *c, const mjModel *m, int instance, const char *key, bool allow_slide, int *joint)
 {
     const char *name = mj_getPluginConfig(m, instance, key);
     *joint = name && *name ? mj_name2id(m, mjOBJ_JOINT, name) : -1;
-    if (*joint >= 0 && (m->jnt_type[*joint] == mjJNT_HINGE || (slides && m->jnt_type[*joint] == mjJNT_SLIDE)))
+    if (*joint >= 0 && (m->jnt_type[*joint] == mjJNT_HINGE || (allow_slide && m->jnt_type[*joint] == mjJNT_SLIDE)))
         return true;
-    snprintf(c->why, sizeof c->why, "%s = '%.80s' is not a hinge joint; expected the name of one", key,
-             name ? name : "");
+    snprintf(c->error_message, sizeof c->error_message, "%s = '%.80s' is not a hinge joint; expected the name of one",
+             key,              name ? name : "");
     return false;
 }
 
@@ -54,17 +55,17 @@ static bool set_parameter(Coupling *c, const char *text, uint32_t ref)
     const Variable *v = &variables[ref];
     char *end;
     double value = strtod(text, &end);
-    bool right = *end == '\0' && end != text;
-    if (v->boolean) {
+    bool is_valid = *end == '\0' && end != text;
+    if (v->is_boolean) {
         value = strcmp(text, "true") == 0;
-        right = value || strcmp(text, "false") == 0;
+        is_valid = value || strcmp(text, "false") == 0;
     }
-    if (right)
-        instance_put(c->instance, ref, value);
+    if (is_valid)
+        instance_set_parameter(c->instance, ref, value);
     else
-        snprintf(c->why, sizeof c->why, "%s = '%.80s' is not a %s", v->name, text,
-                 v->boolean ? "Boolean; expected true or false" : "number; expected one");
-    return right;
+        snprintf(c->error_message, sizeof c->error_message, "%s = '%.80s' is not a %s", v->name, text,
+                 v->is_boolean ? "Boolean; expected true or false" : "number; expected one");
+    return is_valid;
 }
 
 static bool set_parameters(Coupling *c, const mjModel *m, int instance)
@@ -74,9 +75,9 @@ static bool set_parameters(Coupling *c, const mjModel *m, int instance)
         if (text && *text && !set_parameter(c, text, ref))
             return false;
     }
-    c->instance->dirty = c->instance->parameters_changed = true;
+    c->instance->outputs_outdated = c->instance->parameters_changed = true;
     return instance_set_experiment(c->instance, "init", 0.0, 0.0, false, 0.0) == OK &&
-           instance_change(c->instance, "init", BOTH | INSTANTIATED, INITIALIZATION) == OK &&
+           instance_enter_mode(c->instance, "init", BOTH_INTERFACES | INSTANTIATED, INITIALIZATION) == OK &&
            instance_initialize(c->instance, "init") == OK;
 }
 
@@ -92,26 +93,26 @@ static Coupling *new_coupling(const char *name)
     Coupling *c = calloc(1, sizeof *c);
     if (!c)
         return NULL;
-    const Reporter reporter = {deliver, NULL, c};
-    c->instance = instance_new("init", 3, MODEL_EXCHANGE, name, data.token, false, reporter);
+    const Logger logger = {log_message, NULL, c};
+    c->instance = instance_create("init", 3, MODEL_EXCHANGE, name, data.token, false, logger);
     return c;
 }
 
 static int init(const mjModel *m, mjData *d, int instance)
 {
-    const char *given = mj_id2name(m, mjOBJ_PLUGIN, instance), *name = given && *given ? given : data.name;
+    const char *own_name = mj_id2name(m, mjOBJ_PLUGIN, instance), *name = own_name && *own_name ? own_name : data.name;
     Coupling *c = new_coupling(name);
     if (!c)
         return -1;
     if (!c->instance || !find_joint(c, m, instance, "phi1", true, &c->joints[0]) ||
         !find_joint(c, m, instance, "phi2", false, &c->joints[1]) || !set_parameters(c, m, instance)) {
-        char why[sizeof c->why];
-        memcpy(why, c->why, sizeof why);
+        char error_message[sizeof c->error_message];
+        memcpy(error_message, c->error_message, sizeof error_message);
         free_coupling(c);
-        mju_error("%s: %s", name, why);
+        mju_error("%s: %s", name, error_message);
         return -1;
     }
-    c->unused = (PATH - m->plugin_statenum[instance]) / 2;
+    c->n_unused_history = (MAX_PLUGIN_STATE - m->plugin_statenum[instance]) / 2;
     d->plugin_data[instance] = (uintptr_t)c;
     return 0;
 }
@@ -122,28 +123,28 @@ static void destroy(mjData *d, int instance)
     d->plugin_data[instance] = 0;
 }
 
-/* The path of the inputs */
+/* Accepted path of the inputs */
 
-/* How many numbers at the begin of the memory a first small motion leaves zero: what acts moves from there on. A
- * parameter that is refused is so again where the data are made. */
-static int unused(Coupling *c, const mjModel *m, int instance)
+/* Number of first history variables that a small first motion leaves zero: the features that they belong to are
+ * switched off. Parameters that are refused here are reported when MuJoCo makes its data. */
+static int count_unused_history(Coupling *c, const mjModel *m, int instance)
 {
     int n = 0;
     if (!c->instance || !set_parameters(c, m, instance))
         return 0;
-    c->instance->now.values[FIRST_INPUT + PHI1] = 1e-6;
-    c->instance->dirty = true;
+    c->instance->state.values[FIRST_INPUT + PHI1] = 1e-6;
+    c->instance->outputs_outdated = true;
     if (instance_evaluate(c->instance) != OK)
         return 0;
-    while (n < N_MEMORY && c->instance->tried[n] == 0.0)
+    while (n < N_HISTORY && c->instance->trial_history[n] == 0.0)
         n++;
     return n;
 }
 
 static int nstate(const mjModel *m, int instance)
 {
-    Coupling *c = PATH ? new_coupling(data.name) : NULL;
-    const int n = c ? PATH - 2 * unused(c, m, instance) : PATH;
+    Coupling *c = MAX_PLUGIN_STATE ? new_coupling(data.name) : NULL;
+    const int n = c ? MAX_PLUGIN_STATE - 2 * count_unused_history(c, m, instance) : MAX_PLUGIN_STATE;
     free_coupling(c);
     return n;
 }
@@ -155,66 +156,67 @@ static void reset(const mjModel *m, mjtNum *state, void *coupling, int instance)
         state[i] = 0.0;
 }
 
-#if N_MEMORY
+#if N_HISTORY
 static void read_path(const Coupling *c, const mjtNum *state)
 {
-    Path *path = &c->instance->now.path;
-    const size_t n = N_MEMORY - c->unused;
-    memcpy(path->memory[0] + c->unused, state, n * sizeof *state);
-    memcpy(path->memory[1] + c->unused, state + n, n * sizeof *state);
-    memcpy(path->knowns, state + 2 * n, sizeof path->knowns);
-    path->accepted = state[2 * n + N_PATH] != 0.0;
-    path->last = 1;
+    AcceptedPath *path = &c->instance->state.path;
+    const size_t n = N_HISTORY - c->n_unused_history;
+    memcpy(path->history[0] + c->n_unused_history, state, n * sizeof *state);
+    memcpy(path->history[1] + c->n_unused_history, state + n, n * sizeof *state);
+    memcpy(path->variables, state + 2 * n, sizeof path->variables);
+    path->has_accepted_inputs = state[2 * n + N_PATH_VARIABLES] != 0.0;
+    path->end_index = 1;
 }
 
 static void write_path(const Coupling *c, mjtNum *state)
 {
-    const Path *path = &c->instance->now.path;
-    const size_t n = N_MEMORY - c->unused;
-    memcpy(state, path->memory[1u - path->last] + c->unused, n * sizeof *state);
-    memcpy(state + n, path->memory[path->last] + c->unused, n * sizeof *state);
-    memcpy(state + 2 * n, path->knowns, sizeof path->knowns);
-    state[2 * n + N_PATH] = path->accepted;
+    const AcceptedPath *path = &c->instance->state.path;
+    const size_t n = N_HISTORY - c->n_unused_history;
+    memcpy(state, path->history[1u - path->end_index] + c->n_unused_history, n * sizeof *state);
+    memcpy(state + n, path->history[path->end_index] + c->n_unused_history, n * sizeof *state);
+    memcpy(state + 2 * n, path->variables, sizeof path->variables);
+    state[2 * n + N_PATH_VARIABLES] = path->has_accepted_inputs;
 }
 #endif
 
-/* Evaluate at the present angles and speeds, on the path of the state; if `accept`, the path goes on from them.
- * The first evaluation after a reset begins the path, as an FMU's initialization does. What was evaluated last, at
- * the end of a step and at the begin of the next one, is not evaluated again. */
+/* Outputs at the present angles and speeds, after the path in the plugin state. If `accept`, the inputs are accepted as
+ * the end of a load step. The first evaluation after a reset starts the path, as the initialization of an FMU does. An
+ * evaluation with the same inputs and path as the last one is not repeated: MuJoCo asks twice, at the end of a step and
+ * at the start of the next. */
 static const double *evaluate(const mjModel *m, mjData *d, int instance, bool accept)
 {
     Coupling *c = (Coupling *)d->plugin_data[instance];
     Instance *fmu = c->instance;
-    mjtNum *state = PATH ? d->plugin_state + m->plugin_stateadr[instance] : c->state;
+    mjtNum *state = MAX_PLUGIN_STATE ? d->plugin_state + m->plugin_stateadr[instance] : c->plugin_state;
     const size_t size = m->plugin_statenum[instance] * sizeof *state;
     double inputs[4];
     for (int i = 0; i < 2; i++) {
         inputs[2 * i] = d->qpos[m->jnt_qposadr[c->joints[i]]];
         inputs[2 * i + 1] = d->qvel[m->jnt_dofadr[c->joints[i]]];
     }
-    const bool same = c->known && !memcmp(inputs, fmu->now.values + FIRST_INPUT, sizeof inputs) &&
-                      !memcmp(c->state, state, size);
+    const bool same = c->is_current && !memcmp(inputs, fmu->state.values + FIRST_INPUT, sizeof inputs) &&
+                      !memcmp(c->plugin_state, state, size);
     if (same && !accept)
-        return fmu->now.values + FIRST_OUTPUT;
-    c->known = false;
-    memcpy(fmu->now.values + FIRST_INPUT, inputs, sizeof inputs);
-    fmu->dirty = true;
-#if N_MEMORY
+        return fmu->state.values + FIRST_OUTPUT;
+    c->is_current = false;
+    memcpy(fmu->state.values + FIRST_INPUT, inputs, sizeof inputs);
+    fmu->outputs_outdated = true;
+#if N_HISTORY
     read_path(c, state);
-    accept |= !fmu->now.path.accepted;
+    accept |= !fmu->state.path.has_accepted_inputs;
 #endif
-    if ((accept ? instance_accept(fmu) : instance_evaluate(fmu)) != OK)
-        mju_error("%s: %s", fmu->name, c->why);
-#if N_MEMORY
+    if ((accept ? instance_accept_inputs(fmu) : instance_evaluate(fmu)) != OK)
+        mju_error("%s: %s", fmu->name, c->error_message);
+#if N_HISTORY
     if (accept)
         write_path(c, state);
 #endif
-    memmove(c->state, state, size);
-    c->known = true;
-    return fmu->now.values + FIRST_OUTPUT;
+    memmove(c->plugin_state, state, size);
+    c->is_current = true;
+    return fmu->state.values + FIRST_OUTPUT;
 }
 
-/* What MuJoCo calls */
+/* Callbacks of MuJoCo */
 
 static int nsensordata(const mjModel *m, int instance, int sensor)
 {
@@ -236,11 +238,11 @@ static void compute(const mjModel *m, mjData *d, int instance, int capability)
 
 static void advance(const mjModel *m, mjData *d, int instance)
 {
-    if (N_MEMORY)
+    if (N_HISTORY)
         evaluate(m, d, instance, true);
 }
 
-/* When the library is loaded. */
+/* Runs when the library is loaded. */
 __attribute__((constructor)) static void register_plugin(void)
 {
     static char name[sizeof "jointfmu." + sizeof data.name];

@@ -1,80 +1,83 @@
-/* What the laboratory's page calls, over the functions that stand behind FMI 2 and 3 alike. Variables have the
- * value references of the FMU; results other than numbers are 0 where all went well. */
+/* Functions that the page of the laboratory calls, compiled with the C sources of an FMU to WebAssembly. `ref` is a
+ * value reference of the FMU. Functions that return int return 0 without an error. */
 #include "instance.h"
-#include "token.h" /* generated: that of the FMU */
+#include "token.h" /* generated: instantiation token of the FMU */
 
-#define SHOWN __attribute__((visibility("default")))
+#define EXPORTED __attribute__((visibility("default")))
 
-/* What the instances said since `lab_said`, a line each with its status in front. */
-static Text said;
+/* Messages logged since the last `lab_take_messages`: lines that begin with the status, 3: error, 1: warning, 0:
+ * other. */
+static Text messages;
 
-static void deliver(const Reporter *to, const char *name, Status status, const char *category, const char *line)
+static void log_message(const Logger *logger, const char *name, Status status, const char *category, const char *line)
 {
-    (void)to, (void)name, (void)category;
-    text_add(&said, status == ERROR ? "3" : status == WARNING ? "1" : "0");
-    text_add(&said, line);
-    text_add(&said, "\n");
+    (void)logger, (void)name, (void)category;
+    text_append(&messages, status == ERROR ? "3" : status == WARNING ? "1" : "0");
+    text_append(&messages, line);
+    text_append(&messages, "\n");
 }
 
-SHOWN const char *lab_said(void)
+/* Return the messages and clear them. */
+EXPORTED const char *lab_take_messages(void)
 {
-    static Text told;
-    told = said;
-    text_clear(&said);
-    return told.line;
+    static Text returned_messages;
+    returned_messages = messages;
+    text_clear(&messages);
+    return returned_messages.line;
 }
 
-SHOWN Instance *lab_new(void)
+EXPORTED Instance *lab_create(void)
 {
-    const Reporter reporter = {deliver, NULL, NULL};
-    return instance_new("lab_new", 3, CO_SIMULATION, "laboratory", TOKEN, false, reporter);
+    const Logger logger = {log_message, NULL, NULL};
+    return instance_create("lab_create", 3, CO_SIMULATION, "laboratory", TOKEN, false, logger);
 }
 
-/* Numbers of the data that are no variables; the page writes those of another file before `lab_new`. */
-SHOWN const double *lab_fixed(void)
+/* Parameters that are no FMU variables. The page overwrites them with those of another parameter file before
+ * `lab_create`. */
+EXPORTED const double *lab_hidden_parameters(void)
 {
-    return data.fixed;
+    return data.hidden_parameters;
 }
 
-/* Back to the state after `lab_new`; tables stay as long as the parameters come back as they were. */
-SHOWN void lab_reset(Instance *m)
+/* Set the state after `lab_create`; tables are kept if the parameters are then set to the same values. */
+EXPORTED void lab_reset(Instance *m)
 {
     instance_reset(m);
 }
 
-SHOWN int lab_set(Instance *m, uint32_t ref, double value)
+EXPORTED int lab_set(Instance *m, uint32_t ref, double value)
 {
-    if (ref >= N_VALUES || !variables[ref].boolean)
-        return instance_set(m, "lab_set", &ref, 1, &value);
-    const bool boolean = value != 0.0;
-    return instance_set_booleans(m, "lab_set", &ref, 1, &boolean);
+    if (ref >= N_VALUES || !variables[ref].is_boolean)
+        return instance_set_values(m, "lab_set", &ref, 1, &value);
+    const bool value_is_true = value != 0.0;
+    return instance_set_booleans(m, "lab_set", &ref, 1, &value_is_true);
 }
 
-/* Check parameters and inputs; from here on steps are allowed. */
-SHOWN int lab_begin(Instance *m)
+/* End the initialization: check parameters and inputs. Then steps are allowed. */
+EXPORTED int lab_initialize(Instance *m)
 {
-    return instance_change(m, "lab_begin", BOTH | INSTANTIATED, INITIALIZATION) == OK
-               ? (int)instance_initialize(m, "lab_begin")
+    return instance_enter_mode(m, "lab_initialize", BOTH_INTERFACES | INSTANTIATED, INITIALIZATION) == OK
+               ? (int)instance_initialize(m, "lab_initialize")
                : ERROR;
 }
 
-/* A step: the path of a joint with memory goes on to the present inputs. */
-SHOWN int lab_step(Instance *m, double size)
+/* Communication step [s]: the present inputs are accepted as the end of a load step. */
+EXPORTED int lab_step(Instance *m, double size)
 {
-    return instance_step(m, "lab_step", m->now.values[0], size);
+    return instance_do_step(m, "lab_step", m->state.values[0], size);
 }
 
-SHOWN double lab_get(Instance *m, uint32_t ref)
+EXPORTED double lab_get(Instance *m, uint32_t ref)
 {
     double value = 0.0;
-    instance_get(m, "lab_get", &ref, 1, &value);
+    instance_get_values(m, "lab_get", &ref, 1, &value);
     return value;
 }
 
-/* Derivative of an output by an input. */
-SHOWN double lab_derivative(Instance *m, uint32_t output, uint32_t input)
+/* Derivative of an output with respect to an input. */
+EXPORTED double lab_derivative(Instance *m, uint32_t output, uint32_t input)
 {
     double seed = 1.0, result = 0.0;
-    instance_derivative(m, "lab_derivative", &output, 1, &input, 1, &seed, &result);
+    instance_directional_derivative(m, "lab_derivative", &output, 1, &input, 1, &seed, &result);
     return result;
 }

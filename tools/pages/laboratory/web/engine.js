@@ -19,11 +19,11 @@ class Joint {
   /** set: the parameter set whose numbers that no slider moves stand in the module's data. */
   constructor(about, c, set) {
     c._initialize();
-    const fixed = new Float64Array(c.memory.buffer, c.lab_fixed(), about.fixed.length);
+    const fixed = new Float64Array(c.memory.buffer, c.lab_hidden_parameters(), about.fixed.length);
     about.fixed.forEach((name, i) => (fixed[i] = set.fixed[name] ?? fixed[i]));
     this.about = about;
     this.c = c;
-    this.instance = c.lab_new();
+    this.instance = c.lab_create();
     this.variables = new Map(about.variables.map((v, i) => [v.name, { ...v, reference: i + 1 }]));
     this.messages = new Set();
     this.starts = 0;
@@ -48,7 +48,7 @@ class Joint {
     this.starts++;
     this.c.lab_reset(this.instance);
     const taken = [...values].map(([name, value]) => this.set(name, value)).every(Boolean);
-    return this.told(this.c.lab_begin(this.instance)) && taken;
+    return this.told(this.c.lab_initialize(this.instance)) && taken;
   }
 
   /** On to other inputs, { name: value }; false if they are refused. */
@@ -82,7 +82,7 @@ class Joint {
 
   /** Whether a call went well; what the joint said goes to `messages`. */
   told(status) {
-    const bytes = new Uint8Array(this.c.memory.buffer, this.c.lab_said());
+    const bytes = new Uint8Array(this.c.memory.buffer, this.c.lab_take_messages());
     const text = bytes[0] ? new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0))) : "";
     for (const line of text.split("\n")) if (line) this.messages.add(this.asShown(line.slice(1)));
     return status === 0;
