@@ -46,7 +46,7 @@ static bool find_joint(Coupling *c, const mjModel *m, int instance, const char *
     if (*joint >= 0 && (m->jnt_type[*joint] == mjJNT_HINGE || (allow_slide && m->jnt_type[*joint] == mjJNT_SLIDE)))
         return true;
     snprintf(c->error_message, sizeof c->error_message, "%s = '%.80s' is not a hinge joint; expected the name of one",
-             key,              name ? name : "");
+             key, name ? name : "");
     return false;
 }
 
