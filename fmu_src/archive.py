@@ -12,9 +12,9 @@ from jointfmu.files.writing import ensure_folder
 
 @contextmanager
 def staging_folder(target: Path) -> Iterator[Path]:
-    """Temporary folder next to `target`; on success the file made in it replaces `target` atomically.
+    """Temporary folder next to a target file; on success the file made in it replaces the target atomically.
 
-    The file must have the name of `target`. If `target` is a symbolic link, its destination is replaced.
+    The file must have the name of the target. If the target is a symbolic link, its destination is replaced.
 
     Raises ValueError if the folder cannot be written. A parent folder created here is removed on failure.
     """

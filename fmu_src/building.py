@@ -34,7 +34,7 @@ def build(
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu` and return their paths.
 
-    names       : FMUs to build; if empty: all FMUs of the joint of `parameters`, or of all joints
+    fmu_names   : FMUs to build; if empty: all FMUs of the joint of `parameters`, or of all joints
     parameters  : None: the default parameter file of each joint
     variability : of all parameters, one of VARIABILITIES
     alias       : name of the FMU instead of its own; only for a single FMU

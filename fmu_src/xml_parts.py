@@ -18,9 +18,9 @@ VARIABILITIES = ("tunable", "fixed")
 class ListedVariable(NamedTuple):
     """Variable of a model description.
 
-    start      : start value; None if the variable is calculated, a bool for a Boolean
-    attributes : of a real number, as text: unit, displayUnit, min, max, nominal
-    rate_of    : value reference of the state whose time derivative this variable is; None: not a derivative
+    start         : start value; None if the variable is calculated, a bool for a Boolean
+    attributes    : of a real number, as text: unit, displayUnit, min, max, nominal
+    derivative_of : value reference of the state whose time derivative this variable is; None: no derivative
     """
 
     name: str
@@ -97,7 +97,7 @@ def make_model_structure(model: Model, variability: str, version: str = "2") -> 
     In FMI 2.0 the index of a variable equals its value reference.
 
     variability : of all parameters, one of VARIABILITIES
-    version     : of FMI, "2" or "3"
+    fmi_version : of FMI, "2" or "3"
     """
     outputs, parameters = [v.name for v in model.outputs], list(model.parameter_fields())
     names = [*(v.name for v in model.inputs), *outputs, *parameters]

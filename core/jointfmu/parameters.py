@@ -145,7 +145,7 @@ class ParameterFile:
 def load_parameter_file(path: str | Path, joint: str | None = None) -> ParameterFile:
     """Read and check a parameter file.
 
-    joint : kind of joint that the file must have; None: any
+    joint_name : kind of joint that the file must have; None: any
 
     Raises ValueError with one line that names the file, the entry, its value and what is allowed: a missing
     or broken file, a file of another joint, an unknown or missing name, a wrong unit, a value of the wrong
@@ -415,5 +415,5 @@ def _format_toml(value: Any) -> str:
 
 
 def load_default(joint: str, law: str | None = None) -> ParameterFile:
-    """Read the default parameter file of a joint; `law` None: with the joint's first law."""
+    """Read the default parameter file of a joint; `law_name` None: with the joint's first law."""
     return load_parameter_file(KINDS[joint].default_file(law), joint)

@@ -41,7 +41,7 @@ def track_progress(items: Iterable[T], bar_label: str, total: int | None = None)
 
 
 def set_step(step_text: str) -> None:
-    """Set the text of the current step, which `show_status` prints."""
+    """Set the status text that `show_status` prints: the current step of the work."""
     _status["step"] = step_text
 
 
@@ -143,8 +143,8 @@ def run_jobs(
     """Run a function for all jobs in several processes; yield (job, result) in the order of completion.
 
     Each process does one job at a time, so the job of a process that died is known. This job is repeated; its
-    result is None after MAX_ATTEMPTS. Exceptions of the function are raised here. Close the iterator if you
-    stop before its end: this ends the processes. `process_count` None: one process per core.
+    result is None after MAX_JOB_ATTEMPTS. Exceptions of the function are raised here. Close the iterator if
+    you stop before its end: this ends the processes. `process_count` None: one process per core.
     """
     waiting = iter(jobs)
     with ExitStack() as entered:

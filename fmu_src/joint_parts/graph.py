@@ -41,7 +41,7 @@ class Graph:
 
     parameter_symbols : {name: symbol} of the parameters: FMU variables in their order, then data values
     joint             : parameter set of the joint, with symbols as values
-    limits            : intervals of parameters that depend on other parameters
+    parameter_limits  : intervals of parameters that depend on other parameters
     constants         : expressions of the parameters, extracted from the functions
     constant_symbols  : symbols of these constants in the functions
     """
@@ -108,7 +108,7 @@ class Graph:
         )
 
     def extract_constants(self) -> None:
-        """Replace subexpressions of parameters alone by constants in all functions."""
+        """Replace subexpressions that depend on parameters alone by constants, in all functions."""
         everything = ca.cse(
             ca.densify(ca.vertcat(*(value for f in self.functions for value in f.result_expressions)))
         )
@@ -121,7 +121,7 @@ class Graph:
 
     @property
     def all_constants(self) -> ca.SX:
-        """Symbols of all constants of the C functions: theta, then the extracted expressions."""
+        """Symbols of all constants of the C functions: parameters, then the extracted expressions."""
         return ca.vertcat(*self.parameter_symbols.values(), *self.constant_symbols)
 
 
@@ -149,7 +149,7 @@ def build_graph(
 
 
 def make_symbols(name: str, count: int) -> list[ca.SX]:
-    """Make `count` symbols `name0`, `name1`, ..."""
+    """Make numbered symbols: `PREFIX0`, `PREFIX1`, ..."""
     return [ca.SX.sym(f"{name}{i}") for i in range(count)]
 
 
@@ -179,7 +179,7 @@ def _add_limit_functions(function_graph: Graph, model: Model) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _CompletedTerm:
-    """Term of the contact law whose range ends below log-area u: its integral is a constant."""
+    """Term of the contact law whose regime ends below the largest spot: its integral is a constant."""
 
     term: SmoothTerm
 

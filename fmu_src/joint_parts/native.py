@@ -27,9 +27,9 @@ APPROACH_FILES = (*INVERSION_FILES, "approach")
 class Definitions:
     """Constants of the C code.
 
-    counts : {name: integer}, written as an enum
-    macros : {name: number}, written as #define
-    arrays : {declaration: rows} of arrays of double
+    integer_constants : {name: integer}, written as an enum
+    real_constants    : {name: number}, written as #define
+    real_arrays       : {declaration: rows} of arrays of double
     """
 
     counts: Mapping[str, int] = field(default_factory=dict)
@@ -77,7 +77,7 @@ NUMBER_NAMES: ModuleConstants = {
     ),
 }
 COUNT_NAMES: ModuleConstants = {curve: ("MAX_REFINEMENT",), interface: ("MAX_ITERATIONS",)}
-"""Python constants that the C of every joint with tables needs: integers (NUMBER_NAMES: real numbers)."""
+"""Python constants in the C of every joint with tables: integers (REAL_CONSTANT_NAMES: real numbers)."""
 
 
 def define_constants(number_names: ModuleConstants, count_names: ModuleConstants) -> Definitions:
@@ -93,10 +93,10 @@ def define_constants(number_names: ModuleConstants, count_names: ModuleConstants
 class NativeDefinition:
     """Definition of the C code of a joint.
 
-    add_functions    : adds the functions that the C of the joint calls to a graph
-    shared_files     : stems of files in `runtime/law/` that it needs, besides the files of every FMU
-    make_definitions : (graph, model) -> constants of its C
-    history_layout   : layout of the history variables, of the largest size; `HISTORY_NAME` in C is an index
+    add_functions     : adds the functions that the C of the joint calls to a graph
+    shared_file_stems : stems of files in `runtime/law/` that it needs, besides the files of every FMU
+    make_definitions  : (graph, model) -> constants of its C
+    history_layout    : layout of the history variables, of the largest size; `HISTORY_NAME` in C is an index
     """
 
     add_functions: Callable[[Graph, Model], None]

@@ -35,7 +35,7 @@ def build(
 
     fmi_version : of FMI, "2" or "3"
     variability : of all parameters, one of VARIABILITIES
-    alias       : name of the FMU instead of `name`; empty: `name`
+    alias       : name of the FMU instead of `fmu_name`; empty: `fmu_name`
 
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
     if a package is missing, RuntimeError if the compiler fails.
@@ -83,9 +83,9 @@ def fmu_members(
 ) -> dict[str, bytes]:
     """{path: content} of the files that every native FMU has: description, sources, binaries.
 
-    files     : {name: text} of all C sources
-    token     : GUID (FMI 2.0) or instantiation token (FMI 3.0)
-    libraries : {platform of FMI 3.0: library}
+    source_texts        : {name: text} of all C sources
+    instantiation_token : GUID (FMI 2.0) or instantiation token (FMI 3.0)
+    libraries           : {platform of FMI 3.0: library}
     """
     units = select_units(sorted(files), fmi_version)
     sources = {path: text.encode() for path, text in files.items() if path in units or path.endswith(".h")}

@@ -132,7 +132,7 @@ def make_fmu_data(
 ) -> DataBlock:
     """Make the data block of an FMU; its token is a digest of sources, start values, name, parameter file.
 
-    has_file : whether the parameter file enters the digest; a system has no parameter file of its own
+    has_parameter_file : whether the parameter file enters the digest; a system has no own parameter file
     """
     start = _list_start_values(model, parameters)
     fixed = list(split.data_values.values())

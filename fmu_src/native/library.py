@@ -1,4 +1,4 @@
-"""Library of a native FMU for this machine alone: what programs open that need the joint and no FMU."""
+"""Shared library of a joint for this machine, for programs that evaluate the joint without an FMU."""
 
 import platform
 import sys
@@ -38,7 +38,7 @@ def machine_platform() -> str:
 
 
 def make_library(model: Model, parameters: ParameterFile) -> Library:
-    """Make the library that the FMU of a model would carry for this machine.
+    """Make the shared library that the native FMU of a model contains for this machine.
 
     It is compiled for this machine alone, unless a build has compiled it already.
 

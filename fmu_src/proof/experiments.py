@@ -43,9 +43,9 @@ UNCERTAINTY_HALF_WIDTH = 0.01
 class ReferenceExperiment:
     """Experiment with its results.
 
-    purpose  : one of `standard.PURPOSES`
-    settings : {variable: value} that differ from the start values of the FMU
-    stimulus : levels of the driven input
+    purpose         : one of `standard.PURPOSES`
+    variable_values : {variable: value} that differ from the start values of the FMU
+    stimulus        : levels of the driven input
     """
 
     purpose: str
@@ -88,7 +88,7 @@ def compute_experiments(model: Model, parameters: ParameterFile) -> list[Referen
 def list_shipped_variants(
     model: Model, parameters: ParameterFile
 ) -> list[tuple[ParameterFile, dict[str, object]]]:
-    """The parameter file, and the shipped files with the same C code, each with {FMU variable: other value}.
+    """Parameter files with the same C code: the given one, then shipped ones, each with {variable: value}.
 
     Hidden numbers (no FMU variables) keep the values of the parameter file. Shipped files that differ in
     other values, on which the C code depends, are left out.

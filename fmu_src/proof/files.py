@@ -62,9 +62,9 @@ def make_reference_files(
 ) -> dict[str, bytes]:
     """Make the files of FMI-LS-REF inside an FMU: {path: content}.
 
-    models    : parameter files, each with the values that differ from the first
-    study     : {parameter: distribution} of the uncertainty experiments
-    is_native : whether the FMU is native: then it supports model exchange and has a documentation page
+    shipped_variants  : parameter files, each with the values that differ from the first
+    uncertainty_study : {parameter: distribution} of the uncertainty experiments
+    is_native         : whether the FMU is native: then it has model exchange and a documentation page
     """
     members: dict[str, bytes] = {}
     related: list[RelatedFile] = []
@@ -142,7 +142,7 @@ def make_slug(name: str) -> str:
 def _declare_experiment(
     model: Model, root: Element, number: str, experiment: ReferenceExperiment, members: Mapping[str, bytes]
 ) -> dict[str, bytes]:
-    """Declare an experiment below `root`, and return its new files {path: content}.
+    """Declare an experiment below `root_element`, and return its new files {path: content}.
 
     members : files of other experiments; equal inputs are not stored twice
     """

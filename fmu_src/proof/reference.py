@@ -23,9 +23,9 @@ SIGNIFICANT_DIGITS = 10
 class Stimulus:
     """Stepwise variation of one input of an FMU.
 
-    input_name : name of the driven input
-    levels     : (n) values at the sampling instants, the first at the start
-    interval   : time between two sampling instants [s]
+    input_name        : name of the driven input
+    levels            : (n) values at the sampling instants, the first at the start
+    sampling_interval : time between two sampling instants [s]
     """
 
     input_name: str

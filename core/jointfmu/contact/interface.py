@@ -13,7 +13,8 @@ LOAD_TOLERANCE = 1e-13
 RATIO_QUANTITIES = ("eta_n", "eta_t", "elastic_fraction")
 """Names of the contact quantities that are ratios [1]; all others are sums over the nominal area."""
 MIN_LOG_AREA, MAX_LOG_AREA = -600.0, 300.0
-"""Range of log-areas u [1] in which laws are evaluated: 260 decades below the reference area, 130 above."""
+"""Range of u = ln(area of the largest spot/reference area) [1] in which laws are evaluated: 260 decades below
+the reference area, 130 above."""
 MIN_PRESSURE = 1e-200
 """Pressure [Pa] below which the load counts as zero."""
 MIN_LOAD_SLOPE, MAX_LOAD_SLOPE = 0.5, 2.5
@@ -32,7 +33,7 @@ _BLOCK_SIZE = 16384
 
 
 class InterfaceLaw(Protocol):
-    """Interface law: contact quantities of two rough surfaces as functions of the largest spot."""
+    """Interface law: load, stiffness and real area of two rough surfaces by the largest contact spot."""
 
     @property
     def A_0(self) -> float:
@@ -43,10 +44,13 @@ class InterfaceLaw(Protocol):
         """Hardness of the softer body [Pa]."""
 
     def spots(self) -> SpotDistribution:
-        """Load, stiffness and area of a spot in each regime, and the size distribution of the spots."""
+        """Contact spots: size distribution; load, stiffness and area of a spot as functions of its size."""
 
     def state(self, largest_log_area: Number) -> dict[str, Number]:
-        """Contact quantities, {symbol: value}, for a largest spot of log-area u."""
+        """Contact quantities {symbol: value}: load, stiffness, area, ...
+
+        largest_log_area : u = ln(area of the largest spot/reference area) [1]
+        """
 
 
 @runtime_checkable
@@ -60,7 +64,9 @@ class ValidatedLaw(Protocol):
 def newton_step(
     spots: SpotDistribution, largest_log_area: Number, log_load: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """One safeguarded Newton step for ln F(u) = log_load.
+    """One safeguarded Newton step for the largest spot that carries a load F: ln F(u) = log_load.
+
+    u is the log-area of the largest spot [1].
 
     Returns step, lower and upper bound of the root (all relative to u), and residual [1]. The slope of ln F
     over u lies between MIN_LOAD_SLOPE m and MAX_LOAD_SLOPE, so every evaluation brackets the root.
@@ -115,7 +121,7 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
 
 
 def find_checked_spots(law: InterfaceLaw) -> SpotDistribution:
-    """Size distribution of a law.
+    """Size distribution of the contact spots of a law, after a check of its range.
 
     Raises ValueError if its reference area or its load over- or underflows (D near 1).
     """
@@ -177,15 +183,19 @@ def evaluate(law: InterfaceLaw, largest_log_area: Number) -> dict[str, Number]:
 
 
 def evaluate_at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
-    """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa], see `evaluate`."""
+    """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa].
+
+    See `evaluate_at_log_area`.
+    """
     return evaluate(law, solve_largest_spot(law, pressure))
 
 
 def evaluate_at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
-    """Contact quantities of the nominal area A_0 for a largest spot with the area (...) [m2], see `evaluate`.
+    """Contact quantities of the nominal area A_0 for a largest spot with the area (...) [m2].
 
-    The area is that of the paper: truncated for Zhao 2018, real for Hu 2023 and Yu 2022. Raises ValueError
-    for a law without spot areas, and for an area that is not positive, or outside the representable range.
+    See `evaluate_at_log_area`. The area is that of the paper: truncated for Zhao 2018, real for Hu 2023 and
+    Yu 2022. Raises ValueError for a law without spot areas, and for an area that is not positive, or outside
+    the representable range.
     """
     a = np.asarray(area, dtype=np.float64)
     spots = find_checked_spots(law)

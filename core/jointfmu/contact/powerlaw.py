@@ -59,12 +59,18 @@ def integrate_gauss(function: Callable[[Number], Number], lower: Number, upper: 
 
 
 class RegimeTerm(Protocol):
-    """One regime of a spot law, between two log-areas [1]; an end None is infinite."""
+    """Quantity of a contact spot (load, stiffness, area) in one regime, for example elastic contact.
+
+    The regime lies between two log-areas t = ln(area/reference area) [1].
+    """
 
     @property
-    def lower(self) -> Number: ...
+    def lower(self) -> Number:
+        """Log-area [1] at which the regime begins; None: minus infinity."""
+
     @property
-    def upper(self) -> Number: ...
+    def upper(self) -> Number:
+        """Log-area [1] at which the regime ends; None: infinity."""
 
     def spot_value(self, log_area: Number) -> Number:
         """Quantity of a single spot at its log-area t; zero outside the regime."""
@@ -78,7 +84,10 @@ class RegimeTerm(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class PowerTerm:
-    """Power law coefficient exp(exponent t) for log-areas `lower < t <= upper`; an end None is infinite."""
+    """Quantity of a contact spot as a power of its area: coefficient exp(exponent t), t its log-area.
+
+    It is 0 outside `lower_log_area < t <= upper_log_area`; a bound None is infinite.
+    """
 
     coefficient: Number
     exponent: Number
@@ -100,7 +109,10 @@ class PowerTerm:
 
 @dataclass(frozen=True, slots=True)
 class SmoothTerm:
-    """Smooth function of the log-area on `[lower, upper]`, integrated by Gauss-Legendre quadrature."""
+    """Quantity of a contact spot as a smooth function of its log-area, summed by Gauss-Legendre quadrature.
+
+    It is 0 outside `[lower_log_area, upper_log_area]`.
+    """
 
     function: Callable[[Number], Number]
     lower: Number
@@ -170,12 +182,15 @@ class SlipTerm:
 
 
 def clip_limit(regime_bound: Number, largest_log_area: Number, open_end: Number = None) -> Number:
-    """Smaller of a bound of a regime and u; `open_end` if the bound is None (infinite)."""
+    """Integration limit: smaller of the bound of a regime and the log-area u of the largest spot.
+
+    `value_if_infinite` replaces a bound None (infinite).
+    """
     return open_end if regime_bound is None else np.minimum(regime_bound, largest_log_area)
 
 
 def regime_indicator(log_area: Number, lower: Number, upper: Number) -> Number:
-    """1 where `lower < t <= upper`, else 0 [1]."""
+    """Indicator of a regime [1]: 1 for log-areas t in (lower, upper], else 0."""
     is_above = 1.0 if lower is None else np.where(log_area > lower, 1.0, 0.0)
     is_below = 1.0 if upper is None else np.where(log_area <= upper, 1.0, 0.0)
     return is_above * is_below
@@ -183,12 +198,12 @@ def regime_indicator(log_area: Number, lower: Number, upper: Number) -> Number:
 
 @dataclass(frozen=True, slots=True)
 class SpotDistribution:
-    """Quantities of a spot (load, stiffness, area) in each regime, with the size distribution of the spots.
+    """Contact spots of a surface: size distribution; load, stiffness and area of a spot in each regime.
 
     reference_area : [m2] area a_ref of a spot with the log-area 0
     size_exponent  : [1]  exponent m of the size distribution
     size_prefactor : [1]  prefactor w of the size distribution
-    regime_terms   : {quantity: regimes}; always contains `load` [N]
+    regime_terms   : {quantity of a spot: its terms, one per regime}; always contains `load` [N]
     onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
     has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
     """
@@ -238,7 +253,7 @@ class SpotDistribution:
         return ends if self.onset_log_area is None else [*ends, self.onset_log_area]
 
     def log_total(self, quantity: str, largest_log_area: Number) -> tuple[Number, Number]:
-        """Logarithm ln Q of the sum, and its derivative with respect to u; from one evaluation."""
+        """Logarithm ln Q(u) of the sum over all spots, and its derivative with respect to u."""
         integral = self._integral(quantity, largest_log_area)
         largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
         growth = largest * np.exp(-self.size_exponent * largest_log_area) / integral

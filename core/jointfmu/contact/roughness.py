@@ -61,14 +61,16 @@ def predicted_stiffness(pressure: Number, h: Number) -> Number:
 
 
 def conflicting_heights(name: str) -> tuple[str, ...]:
-    """Names of heights that exclude the height `name`: another height of the same surface, and `h`."""
+    """Names of the heights that must not be stated beside a height: others of the same surface, and `h`."""
     if name == "h":
         return tuple(other for other in HEIGHT_FIELDS if other != "h")
     return ({"a": "Rq", "q": "Ra"}[name[1]] + name[2], "h")
 
 
 def check_heights(heights: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
-    """Check {name: height [m]}, floats or arrays; return it with floats. `prefix` precedes names in errors.
+    """Check heights {name: height [m]}, floats or arrays, and return them with floats.
+
+    name_prefix : precedes the names in errors
 
     Raises ValueError, one line, for an unknown name, a value that is not a number or outside its interval, or
     two heights of one surface.

@@ -123,7 +123,7 @@ class FmuMembers(Mapping[str, bytes]):
 
     @contextmanager
     def open_for_reading(self) -> Iterator[None]:
-        """Open the archive once for all members that the body reads."""
+        """Context in which the archive stays open, to read several members."""
         with open_archive(self._path) as self._archive:
             try:
                 yield
@@ -155,5 +155,5 @@ def _check_text_size(path: str | Path, member: zipfile.ZipInfo) -> None:
 
 
 def extract_members(archive: zipfile.ZipFile, folder: str | Path, include: Callable[[str], bool]) -> None:
-    """Unpack the members of a checked archive for whose names `include` is true."""
+    """Unpack those members of a checked archive whose names the function `is_included` accepts."""
     archive.extractall(folder, [name for name in archive.namelist() if include(name)])

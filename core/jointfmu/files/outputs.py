@@ -1,7 +1,8 @@
 """Checks before output files are overwritten.
 
 A file of another kind is never overwritten. A file that the program did not write is overwritten only if the
-user forces it. The program recognises its own files by their content: `PROGRAM_MARK`, `FileKind.is_own`.
+user forces it. The program recognises its own files by their content: `PROGRAM_MARK`,
+`FileKind.is_program_file`.
 """
 
 import os
@@ -32,7 +33,7 @@ _FOREIGN_ENDINGS = re.compile(
 
 
 def _is_marked(path: Path) -> bool:
-    """Whether the head of a file, or of the description in an FMU or SSP archive, contains the mark."""
+    """Whether the head of a file, or of the description in an FMU or SSP archive, contains PROGRAM_MARK."""
     with path.open("rb") as file:
         head = file.read(_MARK_SEARCH_SIZE)
     if head.startswith(b"PK"):
@@ -50,9 +51,9 @@ def _is_marked(path: Path) -> bool:
 class FileKind:
     """Kind of an output file.
 
-    noun    : name of the kind in messages
-    endings : file name endings of this kind, lower case
-    is_own  : function, path -> whether the program wrote this file
+    name_in_messages : name of the kind in messages
+    endings          : file name endings of this kind, lower case
+    is_program_file  : function, path -> whether the program wrote this file
     """
 
     noun: str

@@ -15,7 +15,7 @@ _FORBIDDEN_CHARACTERS = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u206
 def check_text(subject: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
     """Raise ValueError, one line, if a text is too long or has a control character.
 
-    subject : what the text is, for the error
+    text_role : what the text is, for the error
     """
     if len(text) > max_length:
         raise ValueError(f"{subject} has {len(text)} characters; allowed are at most {max_length}")

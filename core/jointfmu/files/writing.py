@@ -64,7 +64,7 @@ def is_standard_output(path: str | Path) -> bool:
 
 
 def _output_descriptor(status: os.stat_result) -> int | None:
-    """File descriptor, 1 or 2, of this process whose file has the status `status`; None if neither has."""
+    """Descriptor, 1 or 2, of the output of this process that is the file with a status; None: neither."""
     for descriptor in (1, 2):
         with suppress(OSError):  # this process has closed it
             if os.path.samestat(status, os.fstat(descriptor)):
@@ -156,7 +156,7 @@ def check_writable(path: Path, folder: Path) -> None:
 
 
 def _create_temporary_file(path: str | Path, target: Path) -> Path:
-    """Create an empty temporary file in the folder of `target`, and this folder if necessary.
+    """Create an empty temporary file in the folder of `target_path`, and this folder if necessary.
 
     Raises ValueError, which names `path`.
     """

@@ -11,7 +11,7 @@ from .model import Model, Variable
 
 @dataclass(frozen=True, slots=True)
 class RoughSurface:
-    """Fractal parameters `PREFIX.D` and `PREFIX.G` that can be determined from a measured surface.
+    """Surface of a joint; its fractal parameters `PREFIX.D`, `PREFIX.G` can be fitted to measured heights.
 
     is_areal  : True: D_s and G_s of the surface; False: D and G of a profile
     direction : direction of the profile on a textured surface, "x" or "y"; None: the one with less scatter
@@ -94,7 +94,7 @@ class JointKind:
         return self.package.startswith(f"{__package__}.")
 
     def tabulate(self, parameters: object) -> object:
-        """Tabulate a parameter set, as the first model does."""
+        """Joint with the tables computed from a parameter set, see `TabulatedJoint`."""
         return self.models[0].tabulate(parameters)
 
     def default_file(self, law: str | None = None) -> Path:

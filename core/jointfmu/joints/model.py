@@ -19,27 +19,27 @@ History = NDArray[np.float64]
 
 
 class TabulatedLaw(Protocol):
-    """Tabulated law, load over displacement, that ends at a largest displacement."""
+    """Load-displacement curve of a joint, tabulated up to a largest displacement."""
 
     @property
     def end(self) -> tuple[float, float]:
-        """Displacement and load at the end of the table."""
+        """Displacement and load at the last point of the table."""
 
 
 class TabulatedJoint(Protocol):
-    """Tabulated joint: a parameter set with the table computed from it.
+    """Joint ready for evaluation: parameter values, and the load-displacement table computed from them.
 
-    The functions of `Model` take it as their argument; C code is generated from its parameter set. A joint
-    that needs no table may use the parameter set itself; its model then has no validity limits.
+    The functions of `Model` take it as their first argument. A joint that needs no table may use its
+    parameter set itself; its model then has no validity limits.
     """
 
     @property
     def joint(self) -> object:
-        """Parameter set, a frozen dataclass of quantities."""
+        """Values of the parameters, a frozen dataclass; C code is generated from them."""
 
     @property
     def curve(self) -> TabulatedLaw:
-        """Table from which the outputs are interpolated."""
+        """Table of load over displacement, from which the outputs are interpolated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +69,11 @@ class LoadRamp:
     """Load ramp of one input, the default experiment: the input grows in steps.
 
     end_value, value_step : largest value and increment of the input for the default parameters
-    step_duration : [s] time between two steps
-    settings    : {parameter: value} for experiments that show a change over time
-    find_range  : function (tabulated joint, start values) -> onset and end value suited to its parameters;
-        None: `onset_value` and `end_value` hold for all parameters
-    onset_value : value of the input at which the load starts to act
+    step_duration    : [s] time between two steps
+    parameter_values : {parameter: value} for experiments that show a change over time
+    find_range       : function (tabulated joint, start values) -> onset and end value suited to its
+        parameters; None: `onset_value` and `end_value` hold for all parameters
+    onset_value      : value of the input at which the load starts to act
     """
 
     input_name: str
@@ -97,7 +97,7 @@ class LoadRamp:
 class LoadCycle:
     """Load cycle that shows hysteresis: the input oscillates about its start value, from the virgin state.
 
-    settings : {parameter or input: value} for which the loop encloses an area
+    variable_values : {parameter or input: value} for which the loop encloses an area
     """
 
     input_name: str
@@ -203,7 +203,7 @@ class Model:
     def with_parameters(self, joint: str, parameters: object) -> "Model":
         """Model for a parameter set, which may have another law, and additional outputs.
 
-        joint : kind of the joint that the parameter set belongs to; raises ValueError if it is another one
+        joint_name : joint of the parameter set; raises ValueError if the model is of another joint
         """
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")

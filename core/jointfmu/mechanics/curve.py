@@ -188,9 +188,9 @@ def _find_segment(nodes: Array, abscissas: Array) -> NDArray[np.intp]:
 def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], data_error: float = 0.0) -> Curve:
     """Join pieces of a curve; estimate the interpolation error.
 
-    pieces     : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of
+    curve_pieces : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of
         nodes. The last node of a piece is the first of the next. The derivative may jump from piece to piece.
-    data_error : [1] relative error of the data themselves
+    data_error   : [1] relative error of the data themselves
 
     The error is half the largest relative deviation from the curve through every second node: the order of
     convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
@@ -212,8 +212,8 @@ def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], data_error: 
 def refine_curve(tabulate: Callable[[int], Curve], initial_steps: int) -> Curve:
     """Refine a table until its error is at most MAX_ERROR.
 
-    tabulate      : function, number of steps -> table
-    initial_steps : initial number of steps, doubled up to MAX_REFINEMENT times as many
+    tabulate_curve : function, number of steps -> table
+    initial_steps  : initial number of steps, doubled up to MAX_REFINEMENT times as many
 
     Raises RuntimeError if the table then is still inaccurate, or has more than MAX_TABLE_NODES nodes.
     """

@@ -60,10 +60,11 @@ def slider_heights(curve: Curve, reference: ArrayLike, height_offset: ArrayLike)
     They are dense just below the reference approach, where the first springs slip, and near the first
     contact, where the last springs slip.
 
-    curve         : pressure over approach
-    reference     : (...) [m] reference approach; another one is used if its load is too small or too large
-    height_offset : (...) in (0, 1) [1] moves the heights. Parallel foundations with different offsets slip at
-                    different displacements, so the errors of their stepwise slip cancel in the sum.
+    curve                     : pressure over approach
+    stated_reference_approach : (...) [m]; another one is used if its load is too small or too large
+    height_offset             : (...) in (0, 1) [1] moves the heights. Parallel foundations with different
+                                offsets slip at different displacements, so the errors of their stepwise slip
+                                cancel in the sum.
     """
     reference_approach = np.asarray(reference, dtype=np.float64)
     offset_column = np.asarray(height_offset, dtype=np.float64)[..., None]
@@ -484,7 +485,7 @@ def cycle_energies(
     Differences cancel for small amplitudes: then use `small_cycle_energies`.
 
     friction_coefficient, stiffness_ratio, amplitude : mu [1], kappa = K_T/K_N [1], a [m]
-    load, slipped_load, energy : result of `Foundation.slipped_pressure`
+    load, slipped_load, pressure_integral : result of `Foundation.slipped_pressure`
     """
     reach = amplitude * (stiffness_ratio / friction_coefficient)
     return _cycle_energies(
@@ -533,7 +534,7 @@ def partial_contact(
     stiffness_ratio: Number,
     friction_coefficient: Number,
 ) -> tuple[Number, ...]:
-    """Partial contact of a range of springs: the approach exceeds its lower height by `width` [m].
+    """Partial contact of a range of springs: the approach exceeds its lower height by `approach_excess` [m].
 
     load, stiffness : [Pa], [Pa/m] of the curve minus its tangent at the lower height
     d2p             : [Pa/m2] derivative of the stiffness
@@ -582,11 +583,11 @@ def retention_and_stiffness(
     If the approach grows, springs come into contact without force: the force is retained. If it decreases,
     springs lift off and lose their force: it decreases in proportion to the stiffness.
 
-    start, end : (stiffness [Pa/m], its derivative with respect to the approach [Pa/m2]) at both ends
-    approach_change     : [m] change of the approach
+    start_stiffness, end_stiffness : (stiffness [Pa/m], its derivative by the approach [Pa/m2]) at both ends
+    approach_change : [m] change of the approach
     stiffness_integral : [Pa] integral of the stiffness over the approach: ratio/mu times the mean change of
         the friction limits
-    is_small   : whether to compute the mean stiffness from `start` and `end` (fourth order), because
+    is_small_change : whether to compute the mean stiffness from both ends (fourth order), because
         stiffness_integral cancels
     """
     (stiffness_start, slope_start), (stiffness_end, slope_end) = start, end
@@ -618,8 +619,8 @@ def varying_stiffness_loss(
 
     force, new_force : at the start and at the end of the increment
     tangential_displacement : displacement increment
-    stiffness        : [Pa/m] at both ends
-    slip             : slip force of the return mapping, see `ReturnMapping`
+    stiffness : [Pa/m] at both ends
+    slip_force : slip force of the return mapping, see `ReturnMapping`
     has_contact_change : whether the contact state changes. Then the work is computed by Simpson's rule with
         the force in the middle of the increment (middle_force), else by Hermite's rule from both ends.
     """

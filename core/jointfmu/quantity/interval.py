@@ -98,7 +98,7 @@ class Interval:
 
 
 def _next_float(start: float, towards: float) -> float:
-    """Next float after `start` in the direction of `towards`; next to zero the smallest normal float."""
+    """Next float after a value in the direction of another one; next to zero the smallest normal float."""
     if start == 0.0:
         return sys.float_info.min if towards > 0.0 else -sys.float_info.min
     return nextafter(start, towards)
@@ -117,7 +117,7 @@ def erf(x: Number) -> Number:
 
 
 def select(condition: Any, value: Number, otherwise: Number) -> Number:
-    """`value` where the condition holds, else `otherwise`, elementwise; types stay for a scalar condition."""
+    """`value` where a condition holds, else `other_value`, elementwise; a scalar condition keeps the type."""
     if isinstance(condition, bool | np.bool_):
         return value if condition else otherwise
     return np.where(condition, value, otherwise)

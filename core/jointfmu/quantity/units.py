@@ -87,7 +87,7 @@ def base_exponents(unit: str) -> dict[str, int]:
 
 
 def conversion_factor(unit: str, target: str) -> float:
-    """Conversion factor from `unit` to `target`. Raises ValueError if they measure different quantities."""
+    """Conversion factor between two units. Raises ValueError if they measure different quantities."""
     (size, exponents), (target_size, target_exponents) = _parse_unit(unit), _parse_unit(target)
     if exponents != target_exponents:
         raise ValueError(f"unit {target!r} does not measure what {unit!r} does")
@@ -103,7 +103,7 @@ def unit_sizes(unit: str, *other_units: str) -> UnitSizes:
 
 
 def unit_size_in(unit: str, sizes: UnitSizes) -> float:
-    """Size of a unit, in the first unit of `sizes`; any unit of the same quantity is accepted.
+    """Size of a unit, in the first unit of `accepted_units`; any unit of the same quantity is accepted.
 
     Raises ValueError if the unit is unknown or measures another quantity.
     """

@@ -1,6 +1,6 @@
-"""What the builders know of the bolted joint: its points as data, and what the page shows of its friction.
+"""Builder data of the bolted joint: points, patches and modes as data of the FMU; charts of the friction.
 
-Whatever gives the pressure, its C has a field of points.
+The C code reads the points of the contact as data, for any model of the pressure.
 """
 
 from collections.abc import Mapping
@@ -26,13 +26,13 @@ from ...joint_parts.terminals import make_rotation_flange, make_translation_flan
 
 _SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
 BOLTS = 64
-"""Bolts of a joint with rigid sides that compiled parts have room for [1]; more need a compiler."""
+"""Largest number of bolts [1] of a joint with rigid sides in compiled models; more need a compiler."""
 _ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
-"""A field of one point."""
+"""Nodal field with a single point, with which the C code is generated."""
 
 
 def _parameter_values(joint: Bolted) -> Mapping[str, object]:
-    """The joint with one point, as its C is generated, and the place of its bolts."""
+    """Parameter values with which the C code is generated: one contact point, mean positions of the bolts."""
     own = {name: value for name, value in flatten_parameters(joint).items() if not name.startswith(_SECTIONS)}
     spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))
     points: dict[str, object] = {
@@ -42,7 +42,7 @@ def _parameter_values(joint: Bolted) -> Mapping[str, object]:
 
 
 def _one_mode(bolts: int) -> dict[str, object]:
-    """Bodies of one mode, one patch and so many bolts."""
+    """Section [bodies] with one mode, one friction patch and a number of bolts, all displacements zero."""
     stated = [item.name for item in fields(ElasticBodies) if item.default is MISSING]
     values: dict[str, tuple[float, ...]] = dict.fromkeys(stated, (0.0,))
     values |= {"stiffness": (1.0,), **dict.fromkeys(("stretch", "bolt_x", "bolt_y"), (0.0,) * bolts)}
@@ -50,6 +50,7 @@ def _one_mode(bolts: int) -> dict[str, object]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
+    """Tables of points, patches, sliders, bolts and modes in the data block."""
     patches = friction_patches_of(joint.pattern)
     return {
         "points": DataTable(_rows(contact_points(joint.pattern)), MAX_POINTS),
@@ -61,9 +62,10 @@ def _tables(joint: Bolted) -> Mapping[str, DataTable]:
 
 
 def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
-    """Modes in rows of all of them, as whole numbers of two bytes.
+    """Tables of the elastic members: modal stiffness, bolts, modal displacements, pressure transfer.
 
-    A joint with rigid sides has room for one row, and for BOLTS bolts.
+    A row has the displacements of one point, patch or bolt by all modes, as 2-byte integers. A joint with
+    rigid sides reserves one row for each table, and MAX_RIGID_SIDE_BOLTS rows for the bolts.
     """
     modes, most = Modes.for_rigid_bodies(0, 0, 0), (1, 1, 1, 1)
     bolts = bolt_positions(joint)
@@ -91,31 +93,34 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
 
 
 def _pressure_transfer_table(transfer: Any) -> Any:
-    """Patch, point, and its part in units of the last digit (n, 4)."""
+    """Rows (n, 4) of index of the patch, index of the point, share in units of the last decimal, and 0."""
     patch, point = np.nonzero(transfer)
     digits = np.round(transfer[patch, point] * 10.0**TRANSFER_DECIMALS)
     return np.column_stack([patch, point, digits, 0 * patch])
 
 
 def _padded(rows: Any) -> Any:
-    """Of MAX_MODES modes, in units of the last digit."""
+    """Modal displacements in units of the last decimal, padded with zeros to MAX_MODES modes."""
     return np.pad(np.round(rows * 10.0**MODE_DECIMALS), ((0, 0), (0, MAX_MODES - rows.shape[1])))
 
 
 def _rows(shape: PressureDistribution) -> Any:
-    """Share, x, y, equal, tilt (n, 5)."""
+    """Rows (n, 5) of area share, x, y, and both pressure ratios of each point."""
     return np.column_stack([shape.area_share, shape.position, shape.preload_shape, shape.moment_shape])
 
 
 LOOP_PRELOAD_RATIO = 0.3
-"""Preload of the loops over the end of the load ramp [1]."""
+"""Preload of the drawn friction loops over the preload at the end of the load ramp [1]."""
 AMPLITUDES = (0.06, 0.12, 0.22, 0.4)
-"""Of the loops that are drawn, over the shift at which the mean spot slips [1]."""
+"""Amplitudes of the drawn loops over the displacement at which a point with the mean approach slips [1]."""
 _POINTS = 13
 
 
 def _loops(spring: Any, end: float) -> list[chart.Panel]:
-    """Loops of several amplitudes, and their loss factor over the amplitude; `end` of the ramp [N]."""
+    """Charts of friction loops with several amplitudes, and of their loss factor over the amplitude.
+
+    ramp_end_preload : preload at the end of the load ramp [N]
+    """
     left = spring.joint.embedding
     preload = left + LOOP_PRELOAD_RATIO * (end - left)
     approach = spring.preloaded_approach(preload, 0.0)
@@ -124,7 +129,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 
     def force(shift: Array) -> Array:
-        """Of first shear [N]."""
+        """Shear force [N] in first loading at displacements (...) [m]."""
         return np.asarray(spring.joint.A_0 * (foundation.virgin_traction(approach, shift[:, None]) @ share))
 
     lines = []

@@ -1,4 +1,4 @@
-"""The bolted joint in C: its functions and constants; its points are data."""
+"""Functions and constants of the bolted joint for C code generation; its points are data of the FMU."""
 
 import casadi as ca
 
@@ -13,6 +13,7 @@ from ...joint_parts.sliders import SLIDER_FILES, add_slider_functions
 
 
 def _functions(g: Graph, model: Model) -> None:
+    """Add the functions that the C code of the bolted joint calls."""
     joint = g.joint
     add_law_functions(
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
@@ -35,18 +36,19 @@ def _functions(g: Graph, model: Model) -> None:
     p_max = ca.SX.sym("p_max")
     out = outputs.joint_outputs(joint, sums, shift, turn, rates, p_max)
     doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
-    y = [out[o.name] for o in model.outputs if o.name in out]  # forces of bolts come from the modes
+    y = [out[o.name] for o in model.outputs if o.name in out]  # bolt forces follow from the modes
     g.add_with_derivative("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
 
 
 def _tightening(g: Graph) -> None:
+    """Add the functions of the pressures under preload and moment."""
     equal, tilt, mean, shift = make_symbols("node", 4)
     preload, moment = make_symbols("v", 2)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
     g.add_with_derivative(
         "bolt_pressures", doc, [preload, moment], law.bolt_pressures(g.joint, preload, moment)
     )
-    doc = "preload -> what embedding leaves of it"
+    doc = "preload -> preload after embedding"
     g.add_with_derivative("working_preload", doc, [preload], [law.working_preload(g.joint, preload)])
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
     pressure = law.shaped_pressure(equal, tilt, mean, shift)
@@ -54,51 +56,62 @@ def _tightening(g: Graph) -> None:
 
 
 def _shear(g: Graph) -> None:
+    """Add the functions of shear without history, and of the friction sliders of a patch."""
     x = make_symbols("x", 7)
-    doc = "limit, pressure and its derivatives, shift -> traction, tangent xx, xy, yy, lifted, stiffer"
+    doc = (
+        "friction limit, pressure and its derivatives, displacement -> traction, tangent xx, xy, yy, "
+        "added pressure and stiffness"
+    )
     y = contact.elastic_shear(x[0], g.joint.shear_stiffness_ratio(), x[1:5], x[5], x[6])
     g.add_with_derivative("elastic_shear", doc, x, y)
     add_slider_functions(g)
     _loops(g)
     _rest(g)
     load, stiffness, bend, width, ratio, friction = make_symbols("x", 6)
-    doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
+    doc = "load, stiffness, its slope, excess of the approach -> stiffness, its slope, limits of both sliders"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.partial_contact(load, stiffness, bend, width, ratio, friction)
     g.add_with_derivative("partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
     small, first, slope, last, then, change, rise = make_symbols("x", 7)
-    doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
+    doc = (
+        "whether small, stiffness and its slope at both ends, change of the approach, integral of the "
+        "stiffness -> fraction retained, secant stiffness"
+    )
     kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
     x = [small, first, slope, last, then, change, rise]
     g.add_with_derivative("retention_and_stiffness", doc, x, kept, constant_count=1)
     across, slip = make_symbols("x", 2)
     force, moved, shift, ends, middle = (make_symbols(name, 2) for name in "qfukm")
-    doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
+    doc = (
+        "whether the contact changes, force at both ends, displacement, stiffness at both ends, "
+        "slip force, middle force -> loss"
+    )
     loss = sliders.varying_stiffness_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
     g.add_with_derivative("varying_stiffness_loss", doc, x, [loss], constant_count=3)
 
 
 def _rest(g: Graph) -> None:
-    """A foundation at rest."""
+    """Add the function of a foundation in full stick."""
     stiff, now, falls = make_symbols("x", 3)
-    doc = "whether the load falls; stiffness before and after -> part kept, gain"
+    doc = "whether the load decreases, stiffness at both ends -> fraction retained, secant stiffness"
     y = sliders.stick_retention(stiff, now, falls)
     g.add_with_derivative("stick_retention", doc, [falls, stiff, now], y, constant_count=1)
 
 
 def _loops(g: Graph) -> None:
-    """Loss and energy of loops at constant load."""
+    """Add the functions of energy loss and elastic energy of a cycle at constant load."""
     x = make_symbols("x", 6)
-    doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
+    doc = "mu, K_T/K_N, amplitude, load, load at the slipped height, integral between -> loss, elastic energy"
     g.add_with_derivative("cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2)
     (mu, ratio, size), now, then = make_symbols("x", 3), make_symbols("n", 3), make_symbols("t", 3)
-    doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
+    doc = "mu, K_T/K_N, amplitude, three derivatives of the load at both heights -> loss, elastic energy"
     y = sliders.small_cycle_energies(mu, ratio, size, now, then)
     g.add_with_derivative("small_cycle_energies", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
+    """Constants for the C code of the bolted joint."""
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     columns = ("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS")
     counts |= {name: k for k, name in enumerate(columns)}
@@ -114,7 +127,8 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     numbers = {name: float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
     counts |= {"N_BELOW": sliders.HEIGHTS_BELOW, "N_ABOVE": sliders.HEIGHTS_ABOVE}
-    counts |= {name: getattr(friction, name) for name in ("UNKNOWN", "FULL_STICK", "SLIP_1D", "SLIP_2D")}
+    counts |= {"UNKNOWN": friction.UNKNOWN, "FULL_STICK": friction.FULL_STICK}
+    counts |= {"SLIP_1D": friction.SLIP_1D, "SLIP_2D": friction.SLIP_2D}
     counts |= {
         "MODES": law.MAX_MODES,
         "ELASTIC": int(g.joint.elastic),

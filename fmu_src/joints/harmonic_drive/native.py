@@ -94,7 +94,7 @@ COUNT_NAMES: ModuleConstants = {
     hysteresis: ("MAX_LIMIT_ITERATIONS", "HYSTERESIS_SLIDERS"),
     friction: ("FRICTION_SLIDERS",),
 }
-"""Python constants of the drive that have the same names in C: integers (NUMBER_NAMES: real numbers)."""
+"""Python constants of the drive with the same names in C: integers (REAL_CONSTANT_NAMES: real numbers)."""
 
 
 def _make_definitions(function_graph: Graph, model: Model) -> Definitions:

@@ -41,7 +41,7 @@ def compile_ahead(fmu_names: Sequence[str], output_folder: Path) -> list[Path]:
 
 
 def list_structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
-    """Yield a model and parameters for each structure of an FMU, which has its own C code."""
+    """Yield model and parameters once for each set of choices and laws that gives an FMU its own C code."""
     if model.name in PARTNERS:
         yield model, partner_parameters(model.name)
         return

@@ -83,7 +83,7 @@ def get_compiled_model(
 def cached_result(dependency: str, model: Model, compute_result: Callable[[], bytes]) -> bytes:
     """Bytes that `compute_result` computes from a model, read from the cache if the sources are unchanged.
 
-    dependency : text of everything else on which the result depends
+    dependency_text : text of everything else on which the result depends
 
     Raises ValueError if other users may write to the cache, and what `compute_result` raises.
     """
@@ -99,7 +99,7 @@ def cached_result(dependency: str, model: Model, compute_result: Callable[[], by
 
 
 def _read_cached(file: Path) -> bytes:
-    """Content of a cached file; empty if it is missing. Raises ValueError as `check_access`."""
+    """Content of a cached file; empty if it is missing. Raises ValueError as `check_cache_access`."""
     with suppress(OSError):
         check_access(file)
         return file.read_bytes()

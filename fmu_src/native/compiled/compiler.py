@@ -50,7 +50,7 @@ def compile_libraries(
 
     sources        : {file name: text} of all C files and headers; the FMI headers come from fmpy
     source_names   : names of the .c files to compile
-    stem           : file name of the libraries without extension; empty: `name`
+    library_stem   : file name of the libraries without extension; empty: `fmu_name`
     linker_options : compiler options for a further library
 
     zig caches compiled units, also for later builds. Equal sources give equal bytes.
@@ -177,7 +177,7 @@ def _write_source_folder(files: Mapping[str, str]) -> Path:
 
 
 def _run_zig(target: str, folder: Path, *arguments: str) -> str:
-    """Run zig in a folder and return its output; `target` names the result in the RuntimeError."""
+    """Run zig in a folder and return its output; `result_name` is the name of the result in errors."""
     process = subprocess.run(
         [sys.executable, "-m", "ziglang", *arguments],
         cwd=folder,

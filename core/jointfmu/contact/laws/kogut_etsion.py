@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class PlasticStage(NamedTuple):
-    """One stage of the fit: factor m and exponent n of the area, factor c and exponent d of the load [1]."""
+    """One elastic-plastic stage: factor m, exponent n of the area; factor c, exponent d of the load [1]."""
 
     area_factor: float
     area_exponent: float
@@ -26,7 +26,7 @@ PLASTIC_DEFORMATION_RATIO = 110.0
 
 @dataclass(frozen=True, slots=True)
 class AreaPowers:
-    """Load and stiffness of one stage as powers of the spot area a.
+    """Load and stiffness of a spot in one elastic-plastic stage, as powers of its area a.
 
     load = f_c load_factor (a/a_c)^load_exponent,
     stiffness = (f_c/w_c) stiffness_factor (a/a_c)^stiffness_exponent
@@ -39,7 +39,7 @@ class AreaPowers:
 
 
 def eliminate_deformation(stage: PlasticStage) -> AreaPowers:
-    """Load and stiffness of a stage as powers of the area, with exponents d/n and (d - 1)/n [1]."""
+    """Express load and stiffness of a stage by the area instead of w: exponents d/n and (d - 1)/n."""
     p, q = stage.load_exponent / stage.area_exponent, (stage.load_exponent - 1.0) / stage.area_exponent
     return AreaPowers(
         stage.load_factor * stage.area_factor**-p,

@@ -12,7 +12,7 @@ import numpy as np
 from ...quantity import Number, erf, select
 
 _MAX_IMAGE_VARIANCE = 0.2
-"""Variance of the pressure over squared hardness [1] up to which the series of images converges faster."""
+"""Variance of the pressure over squared hardness [1] up to which the series of image sources is faster."""
 
 
 def contact_area_shares(
@@ -57,7 +57,10 @@ def _mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number
 
 
 def _image_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
-    """Area share in elastic contact, and its load over the hardness [1]: series of images."""
+    """Area share in elastic contact, and its load over the hardness [1]: series of image sources.
+
+    Arguments as in `_diffusion_mode_series`; it converges faster for small variance.
+    """
     spread = np.sqrt(2.0 * variance_ratio)
     share: Number = 0.0
     load: Number = 0.0

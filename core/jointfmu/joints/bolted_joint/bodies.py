@@ -13,14 +13,16 @@ from ...quantity import Array
 from .law import MODAL_SERIES, ElasticBodies
 
 MODE_DECIMALS = 4
-"""Decimals of the displacements by a mode [1], which are at most 1: the accuracy of the reduction."""
+"""Decimals to which the displacements of a mode are rounded [1]; the displacements are at most 1."""
 POSITION_TOLERANCE = 1e-6
-"""Largest distance [m] of a patch from the one for which the modes were computed."""
+"""Largest distance [m] of a friction patch from its position when the modes were computed."""
 
 
 @dataclass(frozen=True)
 class Modes:
-    """Stiffness of k modes, and the displacements by them: of n points, m patches and b bolts.
+    """Deformation modes of the members: stiffness of k modes, and displacements per modal coordinate.
+
+    The displacements are those of n contact points, m friction patches and b bolts.
 
     stiffness          : (k) [N/m]
     opening            : (n, k) [1] of the points
@@ -35,12 +37,15 @@ class Modes:
 
     @classmethod
     def for_rigid_bodies(cls, points: int, patches: int, bolts: int) -> "Modes":
-        """No mode, for numbers of points, patches and bolts."""
+        """No modes: rigid members, for numbers of points, patches and bolts."""
         return cls(np.zeros(0), np.zeros((points, 0)), np.zeros((3, patches, 0)), np.zeros((bolts, 0)))
 
     @classmethod
     def of(cls, bodies: ElasticBodies, points: int, patches: Array) -> "Modes":
-        """Modes of a parameter file, for a number of points and patches at (m, 2) [m].
+        """Modes of the section [bodies] of a parameter file.
+
+        point_count     : number n of contact points
+        patch_positions : (m, 2) [m] of the friction patches
 
         Raises ValueError if they were computed for another contact.
         """

@@ -18,23 +18,23 @@ from ...quantity import Array
 from .law import Bolted, ElasticBodies, working_preload
 
 LIFT_OFF_RATIO = 1e-9
-"""Force over the load at which the contact closes [1] up to which a bolt stands at lift-off: its stiffness is
-the mean of both sides. Round-off of the equilibrium is far below it."""
+"""Largest force of a bolt at lift-off, over the load at which the contact closes [1]. At lift-off the
+stiffness is the mean of the values before and after. Round-off of the equilibrium is far below this force."""
 AT_LIFT_OFF = 0.5
-"""Part of its stiffness [1] that a bolt at lift-off has. A bolt without preload is there in the tightened
-state."""
+"""Stiffness of a bolt at lift-off over its full stiffness [1]. A bolt without preload is at lift-off in the
+tightened state."""
 ONE_ROW = 1e-6
 """Distance across the rows over the size of the bolt pattern [1] up to which bolts form one row."""
 
 
 @dataclass(frozen=True)
 class BoltSprings:
-    """The bolts of a joint as springs between its sides, which only pull.
+    """Bolts of a joint: springs between its two sides that carry tension only.
 
-    position  : (b, 2) [m] of the bolts, from the centroid of the contact
-    count     : bolts at each position [1]: not 1 where `n_bolts` differs from the number of positions
-    stiffness : [N/m] of each bolt
-    lift_off  : [N] largest force of a bolt that stands at lift-off
+    position           : positions (b, 2) [m] of the bolts, from the centroid of the contact
+    bolts_per_position : bolts at each position [1]; not 1 if `n_bolts` differs from the number of positions
+    stiffness          : [N/m] of each bolt
+    lift_off_force     : [N] largest force of a bolt that stands at lift-off
     """
 
     position: Array
@@ -53,7 +53,7 @@ class BoltSprings:
 
     @cached_property
     def lever(self) -> Array:
-        """(b) [1/m] force that a moment adds to each bolt over the moment, see `moment_lever`."""
+        """Force that a moment adds to each bolt, over the moment (b) [1/m], see `bolt_force_per_moment`."""
         return moment_lever(self.position) / self.count
 
     def preload_force(self, joint: Bolted, preload: float, moment: float) -> Array:
@@ -61,7 +61,7 @@ class BoltSprings:
         return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.lever, 0.0))
 
     def gap(self, preload_force: Array, elongation: Array) -> Array:
-        """Gap h (b) [m] under the heads at elongations (b) [m] from tightened forces (b) [N]."""
+        """Gap h (b) [m] under the heads, by bolt forces at tightening (b) [N] and elongations (b) [m]."""
         if self.stiffness == 0.0:
             return np.zeros_like(elongation)
         return np.maximum(-(preload_force + self.stiffness * elongation), 0.0) / self.stiffness
@@ -80,7 +80,7 @@ class BoltSprings:
 def bolt_positions(joint: Bolted) -> Array:
     """Positions (b, 2) [m] of the bolts of a joint, from the centroid of its contact.
 
-    A field without a list of its bolts has four positions with the means that it states.
+    A nodal field without a list of bolts gets four positions with the means of x, y, ... that it states.
     """
     if isinstance(joint.bodies, ElasticBodies):
         return np.stack([joint.bodies.bolt_x, joint.bodies.bolt_y], axis=-1)
@@ -103,8 +103,10 @@ def moment_lever(position: Array) -> Array:
 
 
 def _rectangle(x: float, y: float, x2: float, y2: float, xy: float) -> Array:
-    """Corners (4, 2) [m] of the parallelogram whose means of x, y, x^2, y^2, x y are these: the positions
-    themselves of one bolt, two bolts, and four bolts on a rectangle along x and y."""
+    """Corners (4, 2) [m] of a parallelogram with given means of x, y, x^2, y^2 and x y.
+
+    For one bolt, two bolts, and four bolts on a rectangle along x and y these are the bolt positions.
+    """
     across = np.sqrt(max(x2 - x * x, 0.0))
     shear = (xy - x * y) / across if across > 0.0 else 0.0
     along = np.sqrt(max(y2 - y * y - shear * shear, 0.0))

@@ -13,17 +13,17 @@ COMPONENTS = ("interface", "members", "bolts")
 MIN_INTERFACE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
 RELATIVE_ROUND_OFF = 1e-9
-"""Stiffness of the bolts over that of the joint [1] up to which it is round-off of their positions."""
+"""Stiffness of the bolts over that of the joint [1] that counts as zero: round-off of the bolt positions."""
 
 
 class Compliances(NamedTuple):
     """Compliances of a tightened joint along and about x, y, z, each with the other five motions held.
 
-    components           : (3, 6) [m/N, rad/(N.m)] twice the energy in interface, members and bolts at a unit
-                           force or moment
-    interface_compliance : (6) [m/N, rad/(N.m)] of the interface alone between rigid members, without bolts
-    bolt_stiffness       : (6) [N/m, N.m/rad] of the bolts alone between rigid members
-    bolt_force           : (b, 6) [1, 1/m] force of each bolt at a unit force or moment, other motions free
+    component_compliances : (3, 6) [m/N, rad/(N.m)] twice the energy in interface, members and bolts at a unit
+                            force or moment
+    interface_compliance  : (6) [m/N, rad/(N.m)] of the interface alone between rigid members, without bolts
+    bolt_stiffness        : (6) [N/m, N.m/rad] of the bolts alone between rigid members
+    bolt_force            : (b, 6) [1, 1/m] force of each bolt at a unit force or moment, other motions free
     """
 
     components: Array
@@ -35,8 +35,8 @@ class Compliances(NamedTuple):
     def of(cls, assembly: JointAssembly, H: Array, bolt_tangent: Array) -> "Compliances":
         """Compliances of a tightened joint.
 
-        H            : tangent stiffness (6 + k, 6 + k) of the assembly, see `JointAssembly.tangent_stiffness`
-        bolt_tangent : (b) [N/m] of the bolts, part of H
+        tangent_stiffness : H (6 + k, 6 + k) of the assembly, see `JointAssembly.tangent_stiffness`
+        bolt_tangent      : (b) [N/m] of the bolts, part of H
         """
         K, follow = condense_stiffness(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
         rigid, bolt = assembly.elongation_jacobian[:, :6], bolt_tangent[:, None]
@@ -87,8 +87,8 @@ class Compliances(NamedTuple):
     def opening_load(self, tension: float) -> float:
         """Force [N] along z at which the contact around the most loaded bolt opens, by linear theory.
 
-        tension : [N] of a bolt at tightening. The share of this contact in the force on the interface is that
-                  of its bolt in the force on all bolts.
+        tightening_force : [N] of a bolt. The contact around a bolt has the same share of the force on the
+                           interface as the bolt has of the force on all bolts.
         """
         force = self.bolt_force[:, 2]
         share = force.max() / force.sum() if np.any(force) else 1.0 / len(force)

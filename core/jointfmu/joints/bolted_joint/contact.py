@@ -17,20 +17,20 @@ from .kinematics import rigid_opening
 from .law import Bolted, preload_pressure
 
 MIN_PRESSURE_RATIO = 0.01
-"""Pressure over the mean pressure [1] that is added to that of points and patches when the normal force is
-distributed: so those without contact take part."""
+"""Pressure over the mean pressure [1] added to all points and patches when the normal force is distributed,
+so that open points and patches take part."""
 BALANCE_ITERATIONS = 100
-"""Iterations of the balance [1], with all patches and again with the patches that are kept."""
+"""Number of Sinkhorn iterations [1]: with all patches, and again with the selected patches of each point."""
 MIN_TRANSFER_SHARE, MAX_PATCHES_PER_POINT = 0.02, 8
 """Smallest share of the force of a point for a patch [1], and largest number of patches of a point [1]."""
 TRANSFER_DECIMALS = 4
-"""Decimals of these shares."""
+"""Decimals to which the shares of `force_transfer` are rounded [1]."""
 MAX_SQUARE_DISTANCE_RATIO = 300.0
 """Largest square distance from a patch over the mean square distance [1]; it replaces larger ones."""
 
 
 class PreloadState(NamedTuple):
-    """Contact of the tightened joint.
+    """Contact state of the tightened joint.
 
     approach, pressure : (n) [m] and (n) [Pa] of the points
     patch_approach     : (m) [m]
@@ -42,7 +42,7 @@ class PreloadState(NamedTuple):
 
 
 class NormalState(NamedTuple):
-    """Contact at a relative displacement.
+    """Normal contact state at a relative displacement of the sides.
 
     approach            : (n) [m] of the points
     pressure, stiffness : p (n) [Pa] and dp/d(approach) (n) [Pa/m] of the points
@@ -59,9 +59,9 @@ class NormalState(NamedTuple):
 class Contact:
     """Contact interface: points carry the contact pressure, patches the friction.
 
-    curve    : contact pressure [Pa] over approach [m]
-    elastic  : members are elastic: the patches take the normal force of the points around them. Between rigid
-               members each patch has its own pressure at tightening, and opens at its own position.
+    curve               : contact pressure [Pa] over approach [m]
+    has_elastic_members : the patches take the normal force of the points around them. Between rigid members
+                          each patch has its own pressure at tightening, and opens at its own position.
     """
 
     curve: Curve
@@ -71,7 +71,7 @@ class Contact:
 
     @cached_property
     def pressure_transfer(self) -> Array:
-        """Pressure of the patches over the pressure of the points (m, n) [1]."""
+        """Matrix (m, n) [1] from the pressures of the points to those of the patches."""
         return pressure_transfer(self.points, self.patches)
 
     def patch_approach(self, approach: Array) -> Array:
@@ -134,21 +134,21 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
 
 
 def pressure_transfer(points: PressureDistribution, patches: FrictionPatches) -> Array:
-    """Pressure of the patches over the pressure of the points (m, n) [1], by `force_transfer`."""
+    """Matrix (m, n) [1] from the pressures of the points to those of the patches, by `force_transfer`."""
     return force_transfer(points, patches) * points.area_share / patches.area_share[:, None]
 
 
 def elastic_shear(
     limit: Number, rho: Number, derivatives: Sequence[Number], u_x: Number, u_y: Number
 ) -> tuple[Number, ...]:
-    """Shear of a point without history, from the potential per area
+    """Shear traction of a contact point without friction history, from the potential per area
 
         S = t u^2/(1 + R),    R = sqrt(1 + (t u/l)^2),    t = rho k.
 
-    limit       : l [Pa], mu times the pressure at tightening: asymptote of the traction t u/R
-    rho         : K_T/K_N [1]
-    derivatives : pressure [Pa] over the approach and its first three derivatives; k is the first
-    u_x, u_y    : tangential displacement [m]
+    friction_limit       : l [Pa], mu times the pressure at tightening: asymptote of the traction t u/R
+    stiffness_ratio      : K_T/K_N [1]
+    pressure_derivatives : pressure [Pa] over the approach and its first three derivatives; k is the first
+    u_x, u_y             : tangential displacement [m]
 
     Returns the traction along x and y [Pa], its derivatives xx, xy, yy with respect to the displacement
     [Pa/m], and two terms by shear: in the normal traction [Pa], rho k' u^2/(R (1 + R)) <= l^2 k'/(rho k^2),

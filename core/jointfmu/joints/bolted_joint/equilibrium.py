@@ -33,7 +33,8 @@ RELATIVE_TOLERANCE = 1e-13
 """Residual over the sum of all forces [1] that counts as equilibrium: the round-off of the sum. The load at
 which the contact closes is part of the sum: all other forces vanish if the joint is open."""
 CANCELLATION_RATIO = 0.02
-"""Share of the force by rigid-body opening alone in this sum [1]: modal opening cancels nearly all of it."""
+"""Factor on the force by rigid-body opening in the sum of RELATIVE_TOLERANCE [1]: modal opening cancels
+nearly all of this force."""
 INTERMEDIATE_TOLERANCE_FACTOR = 1e7
 """Tolerance inside a divided load step over the tolerance at its end [1]."""
 MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH = 16, 6
@@ -43,7 +44,7 @@ TANGENT_REUSE_RATIO = 0.03
 MAX_ENERGY_SLOPE_RATIO = 0.5
 """Energy slope at the end of a correction over its initial size [1], above which the step is too long."""
 MIN_LENGTH_RATIO = 0.1
-"""Length of a shortened correction over the length tried before [1]."""
+"""Smallest length of a shortened correction, over the length of the previous trial [1]."""
 MIN_LOAD_STEP = 1e-4
 """Increment of the load factor [1] below which a load step is given up."""
 DIFFERENCE_STEP = 1e-7
@@ -56,12 +57,12 @@ class TrialState:
     """Contact, friction and residual at trial modal coordinates.
 
     modal_coordinates    : a (k) [m]
-    normal               : contact of points and patches
+    normal_state         : contact of points and patches
     tangential_increment : displacement (m, 3) [m] of the patches since the start of the load step
-    friction             : tractions, tangent and history variables of the patches
+    friction_update      : tractions, tangent and history variables of the patches
     elongation           : (b) [m] of the bolts since tightening
     residual             : r (k) [N]
-    tolerance            : largest entry of r [N] that counts as equilibrium
+    residual_tolerance   : largest entry of r [N] that counts as equilibrium
     """
 
     modal_coordinates: Array
@@ -82,7 +83,7 @@ class TrialState:
 class JointAssembly:
     """Members, contact interface and bolts. Jacobians G = [G_q G_a] are with respect to q and a.
 
-    area : nominal area of the interface [m2]
+    nominal_area : nominal area of the interface [m2]
     """
 
     contact: Contact
@@ -165,13 +166,13 @@ class JointAssembly:
 class LoadStep:
     """Straight path of the relative displacement, from the last equilibrium to the prescribed inputs.
 
-    preload, bolt_force : contact, and force (b) [N] of the bolts, at tightening
-    start, end          : q (6) [m, rad] at load factors 0 and 1
-    modal_coordinates   : a (k) [m] at the start
-    friction_tangent    : (m, 6) [Pa/m] of the patches at the start
-    update_friction     : friction law with the history at the start, called with the patch approach (m) [m]
-                          and the tangential displacement (m, 3) [m] since the start
-    input_summary       : inputs at the end, for the error message
+    preload_state, preload_bolt_force    : contact, and force (b) [N] of the bolts, at tightening
+    start_displacement, end_displacement : q (6) [m, rad] at load factors 0 and 1
+    modal_coordinates                    : a (k) [m] at the start
+    friction_tangent                     : (m, 6) [Pa/m] of the patches at the start
+    update_friction                      : friction law with the history at the start, a function of the patch
+                                           approach (m) [m] and tangential displacement (m, 3) [m] since then
+    input_summary                        : inputs at the end, for the error message
     """
 
     assembly: JointAssembly
@@ -230,7 +231,7 @@ class LoadStep:
         return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
 
     def traction_derivatives(self, state: TrialState) -> Array:
-        """Forward differences (m, 3, 4) [Pa/m] of tractions by tangential displacement (3) and opening."""
+        """Finite differences (m, 3, 4) [Pa/m] of tractions by tangential displacement (3) and opening."""
         first = self.assembly.contact.curve.displacement[0]
         size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload.patch_approach, 0.0) - first))
         traction, columns = state.friction.traction, []
@@ -298,7 +299,7 @@ def condense_stiffness(H: Array) -> Array:
 
 
 def solve_newton(step: LoadStep, load_factor: float, a: Array, J: Array) -> tuple[TrialState, bool]:
-    """Last state of Newton's method at a load factor [1], and whether the method converged.
+    """Newton's method at a load factor [1]: last trial state, and whether the method converged.
 
     It starts at modal coordinates a (k) [m] with the tangent J (k, k) [N/m] of an earlier state. J is reused,
     with Broyden's update, after an iteration that reduces the residual to TANGENT_REUSE_RATIO.

@@ -34,16 +34,16 @@ STICK_TANGENT = np.array([1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
 def history_layout(patches: int) -> HistoryLayout:
     """History variables of a joint with m patches.
 
-    state               : of friction; UNKNOWN: the path starts at the present approach with q = 0
-    loss                : [J] energy dissipated by friction
-    tangential          : (3) s_x, s_y [m] and theta_z [rad]
-    onset_approach      : (m) [m] of the patches at the end of full stick, or now in full stick
-    min_approach        : (m) [m] smallest approach since then, or since the patch closed again
-    approach            : (m) [m] of the patches
-    force               : (m, 2, n) [Pa] slider forces; in full stick as `full_stick_force` reads them
-    normal              : (3) s_z [m] and theta_x, theta_y [rad]; this and the following: of elastic members
-    modal_coordinates   : (MAX_MODES) [m]
-    tangent             : (m, 6) [Pa/m] of the patches, see `SliderUpdate`
+    state             : friction state; NO_HISTORY: the path starts at the present approach with q = 0
+    loss              : [J] energy dissipated by friction
+    tangential        : (3) s_x, s_y [m] and theta_z [rad]
+    onset_approach    : (m) [m] of the patches at the end of full stick, or now in full stick
+    min_approach      : (m) [m] smallest approach since then, or since the patch closed again
+    approach          : (m) [m] of the patches
+    force             : (m, 2, n) [Pa] slider forces; in full stick as `full_stick_force` reads them
+    normal            : (3) s_z [m] and theta_x, theta_y [rad]; this and the following: of elastic members
+    modal_coordinates : (MAX_MODES) [m]
+    tangent           : (m, 6) [Pa/m] of the patches, see `SliderUpdate`
     """
     one = (patches,)
     return HistoryLayout(
@@ -63,7 +63,7 @@ def history_layout(patches: int) -> HistoryLayout:
 
 
 def full_stick_force(force: Array) -> Array:
-    """Traction (m, 3) [Pa] of patches in full stick, from history variable `force` (m, 2, n).
+    """Traction (m, 3) [Pa] of patches in full stick, from the history variable `packed_forces` (m, 2, n).
 
     The first slider has the sum of all sliders, and y of the second one the force around the centre. So the
     heights of the sliders may follow the load.
@@ -73,11 +73,11 @@ def full_stick_force(force: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class FrictionUpdate:
-    """Friction of m patches after a straight path.
+    """Friction of m patches after a straight displacement path.
 
-    state           : FULL_STICK, SLIP_1D or SLIP_2D
+    friction_state : FULL_STICK, SLIP_1D or SLIP_2D
     onset_approach, min_approach, approach : (m) [m], see `history_layout`
-    slider_update   : forces, loss and tangent of the sliders
+    slider_update : forces, loss and tangent of the sliders
     stick_stiffness : (m) [Pa/m] of all sliders of a patch
     """
 
@@ -102,7 +102,7 @@ class FrictionLaw:
     curve                : contact pressure [Pa] over approach [m]
     stiffness_ratio      : K_T/K_N [1]
     friction_coefficient : mu [1]
-    elastic              : members are elastic: slip is in the plane for any relative displacement
+    has_elastic_members  : members are elastic: slip is in the plane for any relative displacement
     """
 
     curve: Curve
@@ -113,7 +113,7 @@ class FrictionLaw:
 
     @cached_property
     def _foundations(self) -> Callable[[bytes, bytes], Foundation]:
-        """`foundation` of two arrays as bytes; keeps the last ones."""
+        """Cached `foundation`: function of onset approach and smallest approach, as bytes."""
         offsets = height_offsets(self.patches.preload_shape)
 
         def build(*approaches: bytes) -> Foundation:
@@ -164,9 +164,9 @@ class FrictionLaw:
     ) -> SliderUpdate | None:
         """Update in which all sliders stick; None if a patch exceeds the limit of full stick.
 
-        force      : (m, 2, n) [Pa], see `full_stick_force`
-        start, end : (m) [m] approaches
-        increment  : (m, 3) [m] tangential displacement
+        packed_forces                : (m, 2, n) [Pa], see `full_stick_force`
+        start_approach, end_approach : (m) [m] approaches
+        tangential_increment         : (m, 3) [m] tangential displacement
         """
         traction, sticks = self.foundation().full_stick_update(full_stick_force(force), start, end, increment)
         if not np.all(sticks):
@@ -193,7 +193,7 @@ def directional_stiffness(tangent: Array, direction: Array) -> Array:
 
 
 def consistent_tangent(patches: FrictionPatches, update: FrictionUpdate) -> list[float]:
-    """Stiffness per area [Pa/m], [Pa.m] against a further s_x, s_y and theta_z, for one sense of each.
+    """Tangent stiffness per area [Pa/m], [Pa.m] for further displacements s_x, s_y and rotation theta_z.
 
     In the direction of the traction of their patch, sliders at their limits continue to slip; in the opposite
     direction they stick. The result is for the direction in which more of the stiffness is lost.

@@ -118,7 +118,7 @@ class BoltedJointSpring:
         return cls(joint, tabulate_approach(joint), points, patches, _no_modes(joint, points, patches))
 
     def on_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
-        """The same interface alone at other nodes."""
+        """Copy of the interface alone, with a point and a patch at each of other nodes."""
         joint, patches = interface_alone(self.joint), nodes.as_patches()
         modes = _no_modes(joint, nodes, patches)
         return replace(self, joint=joint, points=nodes, patches=patches, modes=modes)
@@ -148,7 +148,7 @@ class BoltedJointSpring:
 
     @cached_property
     def _preload_state(self) -> Callable[[float, float], PreloadState]:
-        """`Contact.preload_state` of the joint; keeps the last ones."""
+        """Cached `Contact.preload_state`: function of preload [N] and moment [N.m]."""
         return lru_cache(maxsize=2)(partial(self.contact.preload_state, self.joint))
 
     def preloaded_approach(self, preload: float, moment: float) -> Array:
@@ -156,7 +156,10 @@ class BoltedJointSpring:
         return self.contact.preloaded_approach(self.joint, preload, moment)
 
     def checked_approach(self, preload: float, moment: float) -> Array:
-        """`preloaded_approach`; ValueError without contact, or if the pressure reaches the hardness."""
+        """Approach (n) [m] of the points, see `preloaded_approach`.
+
+        Raises ValueError if all points are open, or if the pressure reaches the hardness.
+        """
         approach = self.preloaded_approach(preload, moment)
         low, high = self.curve.displacement[[0, -1]]
         if not (np.isfinite(preload + moment) and low < np.max(approach) < high):
@@ -167,7 +170,7 @@ class BoltedJointSpring:
         return approach
 
     def tangent_stiffness(self, preload: float, moment: float = 0.0) -> Array:
-        """`JointAssembly.tangent_stiffness` H (6 + k, 6 + k) of the tightened joint."""
+        """Tangent stiffness (6 + k, 6 + k) of the tightened joint, see `JointAssembly.tangent_stiffness`."""
         state = self._preload_state(preload, moment)
         stiffness = self.curve.derivatives(state.approach, 1)[1]
         stick = self.friction.stick_tangent(state.patch_approach)
@@ -201,7 +204,7 @@ class BoltedJointSpring:
         theta: tuple[float, float, float] = ZERO_MOTION,
         omega: tuple[float, float, float] = ZERO_MOTION,
     ) -> dict[str, Number]:
-        """Outputs of `advance` from the initial history, see `JointInputs`."""
+        """Outputs {name: value} of a joint that has not moved before; arguments as in `JointInputs`."""
         inputs = JointInputs(preload, moment, np.array([*s_rel, *theta]), (*v_rel, *omega))
         return self.advance(inputs, self.initial_history())[0]
 
@@ -260,7 +263,7 @@ class BoltedJointSpring:
     def _load_step(
         self, inputs: JointInputs, preload: PreloadState, bolt_force: Array, before: History
     ) -> LoadStep:
-        """Load step from history variables to the inputs."""
+        """Load step from the last equilibrium, by its history variables, to the inputs."""
         return LoadStep(
             self.assembly,
             preload,
@@ -294,7 +297,7 @@ class BoltedJointSpring:
     def _join_history(self, q: Array, a: Array, friction: FrictionUpdate, loss: float) -> Array:
         """History variables at relative displacement q (6) and modal coordinates a (k) [m].
 
-        loss : [J] energy dissipated so far
+        total_loss : [J] energy dissipated so far
         """
         elastic = self.joint.elastic
         return self.history_layout.join(
@@ -324,7 +327,7 @@ class BoltedJointSpring:
 
 
 def _no_modes(joint: Bolted, points: PressureDistribution, patches: FrictionPatches) -> Modes:
-    """Modes of rigid members: none."""
+    """Empty set of modes, for rigid members."""
     return Modes.for_rigid_bodies(points.area_share.size, patches.area_share.size, len(bolt_positions(joint)))
 
 

@@ -29,7 +29,7 @@ from ...quantity import (
 MAX_MODES = 16
 """Largest number of modes of the members [1]."""
 MODAL_SERIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
-"""Entries of [bodies] with the displacements by the modes."""
+"""Entries of [bodies] with the modal displacements."""
 ELASTIC_NEEDS = {
     "memory": "elastic sides need friction with memory",
     "damping": "the dashpots act between rigid sides only",
@@ -220,16 +220,16 @@ class RoughBoltedJoint(Bolts, RoughnessLaw):
 
 
 Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint
-"""A bolted joint with any law."""
+"""Parameter set of a bolted joint with either interface law."""
 
 
 def interface_alone(joint: Bolted) -> Bolted:
-    """The joint with rigid members: its interface and bolts."""
+    """Copy of a joint with rigid members: only the interface and the bolts deform."""
     return replace(joint, sides="rigid") if joint.elastic else joint
 
 
 def bolt_pattern(joint: Bolted) -> BoltedFrame:
-    """Frame of a joint with the pressure of a pattern of bolts.
+    """Bolted frame of a joint: section [pattern] of its parameter file.
 
     Raises ValueError if the joint has a plate or a nodal field instead.
     """
@@ -245,7 +245,7 @@ def bolt_pattern(joint: Bolted) -> BoltedFrame:
 AREA_TOLERANCE = 0.01
 """Largest difference of A_0 from the area that the plate or the frame has without its holes [1]."""
 ROW_DISTANCE_TOLERANCE = 1e-3
-"""Largest difference of row_distance from that of the bolts [1]."""
+"""Largest relative difference [1] between row_distance and the distance of the bolt rows."""
 
 
 def contradictions(joint: Bolted) -> Iterator[str]:
@@ -299,13 +299,19 @@ def slip_force(joint: Bolted, working_force: Number) -> Number:
 
 
 def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Number, Number]:
-    """Pressures [Pa] for which preload_shape and moment_shape of a node are 1."""
+    """Mean pressure [Pa] by the preload, and mean pressure [Pa] of a bolt row by the moment.
+
+    They are the pressures of a node with preload_pressure_ratio = 1 or moment_pressure_ratio = 1.
+    """
     left = working_preload(joint, preload)
     return left * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
 
 
 def shaped_pressure(preload_shape: Number, moment_shape: Number, mean: Number, shift: Number) -> Number:
-    """Pressure [Pa] of a node by `bolt_pressures`; 0 where it is open."""
+    """Pressure [Pa] of a node: sum of the pressures by preload and by moment; 0 if the node is open.
+
+    mean_pressure, moment_pressure : [Pa] result of `bolt_pressures`
+    """
     return np.maximum(mean * preload_shape + shift * moment_shape, 0.0)
 
 

@@ -72,7 +72,7 @@ def normal_sums(
     added_pressure: Number = 0.0,
     added_stiffness: Number = 0.0,
 ) -> dict[str, Number]:
-    """Sums of pressure (n) [Pa] and stiffness (n) [Pa/m], and of what shear adds to both."""
+    """Sums of pressure (n) [Pa] and stiffness (n) [Pa/m], with the terms that shear adds to both."""
     p, k = pressure, stiffness
     x, y = points.position.T
     return {
@@ -109,7 +109,7 @@ def cycle_sums(foundation: Foundation, share: Array, approach: Array, amplitude:
 def bolt_gap_sums(
     bolts: BoltSprings, area: float, elongation: Array, bolt_force: Array, sums: Mapping[str, Number]
 ) -> dict[str, Number]:
-    """Sums of rigid members that the gaps under the heads of the bolts change.
+    """Changed sums of a joint with rigid members, if bolt heads have lifted off.
 
     elongation : (b) [m] since tightening
     bolt_force : (b) [N] at tightening
@@ -128,7 +128,7 @@ def bolt_gap_sums(
 def assembly_sums(
     joint: Bolted, assembly: JointAssembly, state: TrialState, bolt_force: Array, loop_energy: Number
 ) -> dict[str, Number]:
-    """Sums that elastic members change: stiffness of the whole joint, elongation by the modes, energy.
+    """Sums of a joint with elastic members: stiffness of the complete joint, modal elongation, energy.
 
     bolt_force  : (b) [N] at tightening
     loop_energy : [J/m2] of the friction patches
@@ -167,7 +167,7 @@ def joint_outputs(
     rates: Sequence[Number],
     p_max: Number,
 ) -> dict[str, Number]:
-    """Outputs {name: value} from the SUMS.
+    """Outputs {name: value} of the joint, from the sums over the contact named in SUM_NAMES.
 
     displacement, rotation : s_rel (3) [m] and theta (3) [rad] of side 2
     rates                  : v_rel and omega (6) [m/s, rad/s]
@@ -231,8 +231,8 @@ def _tension(
 ) -> tuple[Number, Number, Number]:
     """Forces f_z, m_x, m_y [N, N.m] of bolts without gaps, each elongated by s_z + theta_x y - theta_y x.
 
-    stiffness : [N/m] of all bolts
-    means     : means of their x, y [m], x^2, y^2, x y [m2]
+    stiffness      : [N/m] of all bolts
+    position_means : means of their x, y [m], x^2, y^2, x y [m2]
     """
     x, y, x2, y2, xy = means
     return (

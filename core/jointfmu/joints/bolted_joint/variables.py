@@ -15,11 +15,11 @@ from .law import Bolted, BoltedJoint, working_preload
 from .outputs import bolt_force_name
 
 LINEAR = 0.5**0.5
-"""Used share of the friction limit [1] without memory, at which the linear shear force reaches the limit."""
+"""Shear force over friction limit [1] at which, without history, a linear force would reach the limit."""
 _PRELOAD = 30e3
-"""Smallest end of the ramp [N] without a stated preload: bolts are tightened close to yield."""
+"""Smallest preload at the end of the ramp [N], if none is stated: bolts are tightened close to yield."""
 _LOOP_PRELOAD = 9e3
-"""Smallest preload [N] of loops without a stated preload: that of the published pressures."""
+"""Smallest preload of the load cycle [N], if none is stated: preload of the published pressures."""
 _NORMAL_INPUTS = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
 _INTERFACE = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
@@ -55,7 +55,7 @@ def _row_moment(joint: Any, preload: Number) -> Number:
 
 
 def _variant(model: Model, joint: Bolted) -> Model:
-    """Model of a joint: its loop has a preload above the loss by embedding; see also `_with_bolt_forces`."""
+    """Model of a parameter set: load cycle with a preload above its loss by embedding, bolt force outputs."""
     assert model.load_cycle
     loop = replace(model.load_cycle, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
     return _with_bolt_forces(replace(model, load_cycle=loop), joint)

@@ -122,7 +122,7 @@ def tabulate_pair(mesh: MeshParameters) -> tuple[Curve, float]:
 
 
 def _tabulate_pair(mesh: MeshParameters, flanks: Curve, divisions: int) -> Curve:
-    """Table of a tooth pair; each segment of the flanks' curve is divided into `divisions` steps."""
+    """Table of a tooth pair; each segment of the flanks' curve is divided into `steps_per_segment` steps."""
     nodes = flanks.displacement
     closing_index = int(np.searchsorted(nodes, 0.0))
     t = np.linspace(0.0, 1.0, CLOSING_STEPS * divisions + 1)
@@ -220,9 +220,9 @@ def pairs_in_contact(
 ) -> tuple[Number, Number]:
     """Number of tooth pairs in contact [1] at phases (...) [1] of the mesh cycle, and its derivative [1].
 
-    Each transverse section of a helical mesh is a spur mesh, see `_section_pairs`. The phases of the sections
-    are spread evenly over `overlap_ratio` cycles, so the number of pairs is the mean over this range. Its
-    mean over a cycle stays the contact ratio; its fluctuation is smaller than that of a spur mesh.
+    Each transverse section of a helical mesh is a spur mesh, see `_pairs_in_section`. The phases of the
+    sections are spread evenly over `overlap_ratio` cycles, so the number of pairs is the mean over this
+    range. Its mean over a cycle stays the contact ratio; its fluctuation is smaller than that of a spur mesh.
     """
     helical = overlap_ratio > _MIN_OVERLAP_RATIO
     length = np.where(helical, overlap_ratio, 1.0)

@@ -2,7 +2,7 @@ r"""Harmonic drive with any law of its stiffness: parameters, kinematic error an
 
 Kinematic error: deviation of the output angle from phi1/ratio, periodic in the angle of the wave generator.
 
-    phi_error = sum of error_n sin(n phi1 + error_n_phase),   n = HARMONICS
+    phi_error = sum of error_n sin(n phi1 + error_n_phase),   n = KINEMATIC_ERROR_HARMONICS
 
 phi1 is measured from the housing, which holds the circular spline. Each of the two lobes of the wave
 generator passes every tooth once per turn, so errors of the teeth have two periods per turn. The wind-up is
@@ -145,12 +145,12 @@ class Drive(ABC):
     @property
     @abstractmethod
     def law(self) -> object:
-        """Interface law of the contact pair; None if the midline has no interface law."""
+        """Interface law of flexspline and bearing; None if the stiffness follows from no interface law."""
 
     @property
     @abstractmethod
     def max_table_torque(self) -> Number:
-        """Torque [N.m] at the end of the tabulated midline."""
+        """Torque [N.m] at the end of the table of torque over wind-up."""
 
     @property
     def ramp_torque(self) -> Number:
@@ -187,7 +187,7 @@ class Drive(ABC):
 
 
 def error_amplitudes(drive: Drive) -> list[Number]:
-    """Amplitudes [rad] of the kinematic error, one for each of HARMONICS."""
+    """Amplitudes [rad] of the kinematic error, one for each of KINEMATIC_ERROR_HARMONICS."""
     return [getattr(drive, f"error_{n}") for n in HARMONICS]
 
 

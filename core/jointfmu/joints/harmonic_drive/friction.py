@@ -110,10 +110,10 @@ class FrictionSliders(Sliders):
     ) -> SliderUpdate:
         """Advance the sliders on a straight path to phi1.
 
-        history    : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
-        phi1       : (...) [rad] angle of the wave generator at the end
-        w1         : (...) [rad/s] speed there, used only in the first step
-        end_limits : limits of positive and of negative friction (...) [N.m] there, see `friction_limits`
+        history             : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
+        phi1                : (...) [rad] angle of the wave generator at the end
+        w1                  : (...) [rad/s] speed there, used only in the first step
+        end_friction_limits : limits (...) [N.m] of positive and negative friction, see `friction_limits`
 
         The sign of the elastic predictor of a slider selects the limit that holds for it. The first step
         initializes the sliders: they advance by PRIOR_ROTATION_TIME w1, whatever phi1 is, without loss.

@@ -19,7 +19,9 @@ _SCAN_LENGTH = 0.5e-3
 
 @dataclass(frozen=True, kw_only=True)
 class ContactPairDrive(Drive):
-    """Parameters of a harmonic drive with a contact pair, except those of the pair's interface law.
+    """Parameters of a harmonic drive whose stiffness follows from the contact of flexspline and bearing.
+
+    The parameters of the interface law are added by subclasses.
 
     Fields with calibration=True were fitted to published points.
     """
@@ -156,7 +158,7 @@ class HarmonicDrive(ContactPairDrive):
 
     @property
     def law(self) -> Hu2023:
-        """Corrected law of Hu 2023 for the whole contact pair. The midline does not use it.
+        """Corrected law of Hu 2023 for the whole contact pair. The stiffness of the drive does not use it.
 
         Its base radius r_m is half of the scan length: with r_m of the paper no spot would have stiffness.
         """

@@ -61,7 +61,7 @@ class SplineNode(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class PrescribedDrive(Drive):
-    """Harmonic drive whose midline is a quintic spline through nodes.
+    """Harmonic drive with a spline for its midline: torque over wind-up without hysteresis.
 
     The parts K_FTS and K_TS of the stiffness are unknown. K_FTS is set to twice the largest K_WTS: so K_TS
     equals K_FTS where the drive is stiffest, and is finite everywhere. There is no contact pressure: it is 0.
@@ -185,7 +185,7 @@ class CatalogueDrive(PrescribedDrive):
         ]
 
     def _play_nodes(self) -> list[SplineNode]:
-        """Nodes of the first line with the play in series, denser at small torque."""
+        """Nodes of the first line of the catalogue with the lost motion in series; denser at small torque."""
         end_torque = np.minimum(
             PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque
         )
@@ -201,7 +201,7 @@ class CatalogueDrive(PrescribedDrive):
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredMidline:
-    """Points of a measured midline without the point at zero load; torque and angle increase.
+    """Measured points of the midline (torque over wind-up), without zero load; torque and angle increase.
 
     Raises ValueError if both columns do not have the same number of points, 2 to MAX_TABLE_POINTS, or do not
     increase.
@@ -228,7 +228,7 @@ class MeasuredMidline:
 
 
 class MeasuredDrive(PrescribedDrive):
-    """Harmonic drive with a measured midline, which already contains the lost motion."""
+    """Harmonic drive with measured torque over wind-up (midline), which already contains the lost motion."""
 
     def find_limits(self) -> list[ParameterLimit]:
         """Intervals of parameters that depend on other parameters."""

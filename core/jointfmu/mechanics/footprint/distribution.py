@@ -18,11 +18,11 @@ PRESSURE_DECIMALS = 11
 class PressureDistribution:
     """Pressure distribution of a bolted contact at n nodes.
 
-    area_share    : (n)    [1] share of the node in the nominal area, with the sum 1
-    position      : (n, 2) [m] relative to the centroid of the contact
-    preload_shape : (n)    [1] pressure over mean pressure for equal bolt forces
-    moment_shape  : (n)    [1] pressure by a moment about x: bolt forces +1 in the row y > 0 and -1 in the row
-                    y < 0, over the mean pressure of one row
+    area_share             : (n)    [1] share of the node in the nominal area, with the sum 1
+    position               : (n, 2) [m] relative to the centroid of the contact
+    preload_pressure_ratio : (n)    [1] pressure over mean pressure for equal bolt forces
+    moment_pressure_ratio  : (n)    [1] pressure by a moment about x (bolt forces +1 in the row y > 0, -1 in
+                             the row y < 0) over the mean pressure of one row
     """
 
     area_share: Array
@@ -73,8 +73,8 @@ class FrictionPatches(PressureDistribution):
 def moment_pressure(area_share: Array, y: Array, preload_shape: Array) -> Array:
     """Pressure (n) [1/m] by a moment of 1 N.m on an area of 1 m2, linear in the distance from the centre.
 
-    It is p (y - y_p)/sum(area_share p (y - y_p)^2), with p = preload_shape and y_p the centre of pressure.
-    area_share, y [m], preload_shape : (n) as in PressureDistribution
+    It is p (y - y_p)/sum(area_share p (y - y_p)^2): p = preload_pressure_ratio, y_p centre of pressure.
+    area_share, y [m], preload_pressure_ratio : (n) as in PressureDistribution
 
     Raises ValueError if all nodes in contact have the same y.
     """
@@ -102,7 +102,7 @@ def position_means(points: Array) -> PositionMeans:
 
 @dataclass(frozen=True, slots=True)
 class MergedDistribution:
-    """Nodes with different pressures, merged from a PressureDistribution; area_share and pressures as there.
+    """Pressure distribution in which nodes of equal pressure are merged; fields as in PressureDistribution.
 
     mean_square_x, mean_square_y : (n) [m2] mean squared distances from the centroid along and across the bolt
         rows
@@ -124,7 +124,7 @@ MAX_PATCHES = 22
 
 
 def nodal_field_entries(distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
-    """{entry of a nodal field: values} for the points, or for friction patches."""
+    """Entries {name: values} of a nodal field in a parameter file, for points or for friction patches."""
     rows = dict(
         zip(
             _POINT_ENTRIES,

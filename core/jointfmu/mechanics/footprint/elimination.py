@@ -78,7 +78,7 @@ def solve_linear(matrix: Array, right_side: Array) -> Array:
 
 
 def weight_changes(weights: Array, functions: Array, residual: Array) -> Array:
-    """Changes (n) of weights (n) that change the weighted sums of functions (m, n) by amounts `residual` (m).
+    """Changes (n) of weights (n) that give required changes (m) of the weighted sums of functions (m, n).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """

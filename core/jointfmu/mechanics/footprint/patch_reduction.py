@@ -89,7 +89,7 @@ _SEQUENCE_STEPS = successive_powers(1.0 / 1.0969815577985598, 7)
 CIRCLE_POINTS = round_to_digits(
     np.exp(2j * np.pi * (np.arange(CIRCLE_POINT_COUNT) + 0.25) / CIRCLE_POINT_COUNT).view(float)
 ).reshape(-1, 2)
-"""Points (CIRCLE_POINT_COUNT, 2) [1] on the unit circle that represent the sliders of a patch."""
+"""Points (SLIDER_CIRCLE_POINT_COUNT, 2) [1] on the unit circle that represent the sliders of a patch."""
 
 
 def reduce_patches(
@@ -99,8 +99,8 @@ def reduce_patches(
 
     start_points : distribution from which the initial patches are selected; None: `distribution`
 
-    Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
-    share), and the second moments of share.
+    Kept to round-off: the sums and first moments of share, preload_pressure_ratio and moment_pressure_ratio
+    (weighted by share), and the second moments of share.
 
     Raises ValueError if max_patch_count is too small to keep these sums.
     """
@@ -141,7 +141,7 @@ def _divide_nodes(distribution: PressureDistribution, centres: Array) -> Frictio
     """Divide the nodes among m patches by Lloyd's method.
 
     Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
-    this is repeated DIVISION_ITERATIONS times.
+    this is repeated LLOYD_ITERATIONS times.
 
     centres : (m, 2) initial positions of the patches
     """
@@ -273,9 +273,9 @@ class _SlipCases:
 
 @dataclass(frozen=True, slots=True)
 class _TargetSums:
-    """Target of the fit: sums over all nodes. Points (6, n) are share, x, y, both pressure shapes, radius.
+    """Target of the fit: sums over all nodes. Points (6, n): share, x, y, both pressure ratios, radius.
 
-    cases             : cases whose friction is fitted
+    slip_cases        : cases whose friction is fitted
     max_coordinates   : (2) [1] largest |x| and |y|
     friction_weights  : (m) [1] weights of the sums of friction
     exact_sum_weights : (12) [1] weights of the sums that must be exact
@@ -336,7 +336,7 @@ class _TargetSums:
 
 
 def _correct_exact_sums(points: Array, max_coordinates: Array, exact_sums: Array) -> Array:
-    """Correct shares and pressure shapes of points (6, n) slightly, so that their sums (12) are exact."""
+    """Correct shares and pressure ratios of points (6, n) slightly, so that their sums (12) are exact."""
     share, x, y, equal, tilt, radius = points
     place = _scaled_exact_functions(points, max_coordinates)[:6]
     share = share + weight_changes(share, place, exact_sums[:6] - weighted_sums(place, share))
@@ -360,8 +360,8 @@ def _scaled_exact_functions(points: Array, max_coordinates: Array) -> Array:
 class _LinearProblem:
     """Linearised least-squares problem: residual of the sums as a function of relative changes of the points.
 
-    residual : (m) residual of the sums [1]
-    change_scale    : (5, n) sizes [1] to which the changes are relative
+    sum_residual : (m) residual of the sums [1]
+    change_scale : (5, n) sizes [1] to which the changes are relative
     normal_matrix : (5 n, 5 n) J^T J [1] of the Jacobian J
     gradient : (5 n) gradient [1] of half the sum of squared residuals
     """
@@ -402,7 +402,7 @@ class _LinearProblem:
 
 
 def _fit_points(points: Array, target: _TargetSums) -> Array:
-    """Fit points (6, n) by the Levenberg-Marquardt method with MAX_ITERATIONS iterations."""
+    """Fit points (6, n) by the Levenberg-Marquardt method with FIT_ITERATIONS iterations."""
     here, damping = _LinearProblem.linearise(points, target, *target.find_residual(points)), INITIAL_DAMPING
     for _ in range(MAX_ITERATIONS):
         trial = _correct_exact_sums(

@@ -52,10 +52,10 @@ def reduce_points(distribution: PressureDistribution, max_point_count: int) -> P
     """Reduce a pressure distribution to at most `max_point_count` of its nodes with other shares.
 
     Returns the distribution itself if it has no more nodes.
-    Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
-    share), and the second moments of share.
+    Kept to round-off: the sums and first moments of share, preload_pressure_ratio and moment_pressure_ratio
+    (weighted by share), and the second moments of share.
     Kept exactly: the largest pressure at any preload and moment, if max_point_count is at least
-    MIN_COUNT_FOR_PEAK_NODES, and the symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
+    MIN_POINTS_FOR_PEAK_NODES, and the symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
 
     Raises ValueError if max_point_count is too small to keep the sums.
     """
@@ -205,7 +205,7 @@ def exact_sum_functions(x: Array, y: Array, preload_shape: Array, moment_shape: 
 
 
 def _scaled_exact_functions(distribution: PressureDistribution) -> Array:
-    """Functions (12, n) of `exact_sum_functions` for the nodes, scaled to the order of 1."""
+    """Functions (12, n) of the nodes whose sums are kept, see `exact_sum_functions`; of the order of 1."""
     steep = max(float(np.max(np.abs(distribution.moment_shape))), 1.0)
     return exact_sum_functions(
         *_scale_positions(distribution), distribution.preload_shape, distribution.moment_shape / steep
@@ -213,7 +213,7 @@ def _scaled_exact_functions(distribution: PressureDistribution) -> Array:
 
 
 def largest_moment_factor(distribution: PressureDistribution) -> float:
-    """Factor [1] on moment_shape at which opening removes MAX_LOST_FORCE_SHARE of the preload force."""
+    """Factor [1] on the pressure by moment at which opening removes MAX_LOST_FORCE_SHARE of the force."""
     low, high = 0.0, 2.0 / float(np.max(np.abs(distribution.area_share * distribution.moment_shape)))
     for _ in range(50):
         middle = 0.5 * (low + high)

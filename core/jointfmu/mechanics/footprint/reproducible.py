@@ -108,7 +108,7 @@ def euclidean_norm(vector: Array) -> float:
 
 
 def successive_powers(base: float, count: int) -> Array:
-    """Powers base, base^2, ... (count)."""
+    """Powers (count) of a number: base, base^2, ..., base^count."""
     return np.multiply.accumulate(np.full(count, base))
 
 
