@@ -83,8 +83,8 @@ def head_loads(body: ElasticBody, assembly: Assembly) -> Array:
 class JointSolution:
     """Equilibrium of a bolted joint under bolt forces.
 
-    bolt_force : (bolts) [N]
-    contact    : pressure and displacement
+    bolt_force       : (bolts) [N]
+    contact_solution : pressure and displacement
     """
 
     joint: BoltedContact
@@ -159,9 +159,9 @@ def insert_contact_field(
 ) -> tuple[ParameterFile, PressureDistribution]:
     """Insert the computed pressure field into the parameters of a joint.
 
-    Returns the parameters, and the pressure shape at all nodes.
+    A second field, solved under another moment, gives the change of pressure with a moment about x.
 
-    A second field gives the change of pressure with a moment about x.
+    Returns the parameters, and the normalised pressure distribution at all nodes.
 
     solution : equilibrium at this preload [N] per bolt and moment [N.m]; the other field is solved from it
     """

@@ -15,7 +15,7 @@ from ..published.validation import ValidatedPoint, compare_point
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFrequencies:
-    """Measured natural frequencies of a bolted assembly: constant `FREQUENCIES` of a kind of joint.
+    """Measured natural frequencies of a bolted assembly: constant MEASURED_FREQUENCIES of a joint.
 
     reference_file : file of published numbers in models/reference/; `where` of each number gives `preload`
                      [N] per bolt, `moment` [N.m] about x and `mode`, counted from 1
