@@ -60,15 +60,16 @@ class BoltLayout(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class FieldAdapter:
-    """Functions of a kind of joint for pressure fields: the constant `FIELD` in field.py of its folder.
+    """Functions of a joint for pressure fields: the constant FIELD_ADAPTER in `field.py` of its folder.
 
-    nodal_pressures : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per
-        bolt and moments (m) [N.m]: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
+    nodal_pressures : nodal pressure (m, n) [Pa] for parameters, a normalised pressure distribution
+        (n), preloads (m) [N] per bolt and moments (m) [N.m]:
+        (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
     tangential_stiffness_ratio : tangential over normal stiffness [1] for parameters, the same at every
         pressure
     bolt_layout : bolt positions, hole and head sizes for parameters, as far as they have them
     insert_elastic_bodies : parameter file with elastic bodies, from a parameter file, an assembly, the
-        preload [N] per bolt, the name of the attachment and the pressure shape of all nodes
+        preload [N] per bolt, the name of the attachment and the normalised pressure at all nodes
     describe_joint : {name: (value, unit, meaning)} of the complete joint for such a file and preload
     """
 

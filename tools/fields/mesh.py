@@ -126,7 +126,7 @@ def _cell_faces(cell_type: str) -> list[tuple[int, ...]]:
 
 
 def _unshared_faces(faces: NodeIndices, face_node_count: int) -> NodeIndices:
-    """Select the faces, of (k, size), that occur only once."""
+    """Select the faces that occur only once, from faces (k, nodes of a face)."""
     keys = np.sort(faces[:, : CORNER_COUNTS[face_node_count]], axis=1)
     _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[count == 1])])
