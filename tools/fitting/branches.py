@@ -171,7 +171,8 @@ class Loops:
 def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     """Cut measured runs into branches at the turning points of the motion.
 
-    runs : (prefix of error messages, motion, force) of each run, samples in the order of the measurement
+    measured_runs : (prefix of error messages, motion, force) of each run, samples in the order of the
+                    measurement
 
     Samples before the first turning point are left out, because their history is unknown. Samples beyond the
     previous turning point are left out, because there a smaller loop has closed.

@@ -110,7 +110,7 @@ def _fit_windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, 
 
     Yields for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
 
-    w : angular frequency [rad/s] with which the first window is chosen
+    angular_frequency : angular frequency [rad/s] with which the first window is chosen
     """
     size, s = float(np.ptp(motion)), 0.02 * w
     begin = time[int(np.argmax(np.abs(motion - np.median(motion))))]
@@ -176,8 +176,8 @@ def _standard_deviations(
 ) -> tuple[float, float]:
     """Standard deviations of w and s, dimensionless with the length of the window.
 
-    A, B  : amplitudes of cosine and sine
-    noise : standard deviation of the residuals
+    cosine_amplitude, sine_amplitude : amplitudes of cosine and sine
+    residual_deviation               : standard deviation of the residuals
     """
     ones, _, cos, sin = _design_matrix(window_parameters, window_time).T
     d_angle, d_decay = B * cos - A * sin, -(A * cos + B * sin)  # derivatives of u in angle and decay

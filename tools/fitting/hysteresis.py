@@ -8,7 +8,7 @@ Ciavarella 1998). After a turning point u_k the force changes by
 with the elastic force E, and the friction force B in first loading. The rule holds until the motion passes
 the previous turning point: there the smaller loop closes.
 
-A free vibration follows the law from turning point to turning point (`HysteresisLaw.decay`). A forced
+A free vibration follows the law from turning point to turning point (`HysteresisLaw.free_decay`). A forced
 vibration uses the first harmonic (harmonic balance): at the amplitude a the joint is a spring K(a) with the
 loss factor eta(a) of its loop,
 
@@ -74,7 +74,7 @@ class HysteresisLaw:
         )
 
     def shift_rest(self, rest_motion: float) -> "HysteresisLaw":
-        """Copy of the law, shifted so that its elastic force is zero at the motion `rest_motion`."""
+        """Copy of the law whose elastic force is zero at the motion `rest_motion`, instead of at zero."""
         if self.elastic_spring is None:
             return self
         force, energy = self.elastic_spring.force, self.elastic_spring.energy
