@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 class DriveJoint(Joint):
     """Harmonic drive.
 
-    `wind_up`, `torque` and `stiffness` describe the midline, without hysteresis and with the wave generator
+    `wind_up`, `torque` and `stiffness` describe the midline of the hysteresis loop, with the wave generator
     locked. Above max_torque the midline continues with its last tangent; then `messages` of `evaluate` and
     `follow` have a warning.
 
