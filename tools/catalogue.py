@@ -1,4 +1,4 @@
-"""Catalogue of bought joints: published numbers of makers, defined by a joint's module `catalogue.py`."""
+"""Catalogue of bought joints with their manufacturers' numbers: `catalogue.py` in the folder of a joint."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
