@@ -59,7 +59,7 @@ class BoltedContact:
         moment: float,
         initial_solution: ContactSolution | None = None,
     ) -> "JointSolution":
-        """Solve for a preload [N] per bolt and a moment [N.m] about x, optionally from another solution."""
+        """Solve for a preload [N] per bolt and a moment [N.m] about x; the start may be another solution."""
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.bolt_head_loads, strict=True)]

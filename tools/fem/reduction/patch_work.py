@@ -177,7 +177,7 @@ class LinearContact:
 
 @dataclass(frozen=True)
 class PatchFit:
-    """Least-squares problem: friction of m patches that equals the friction of all quadrature points.
+    """Least-squares problem: fit the friction of m patches to the friction at all quadrature points.
 
     friction_law          : friction law of the interface
     shear_states          : states in shear in which the friction is compared
