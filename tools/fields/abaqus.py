@@ -96,7 +96,7 @@ def _result_on_deck(
     length_unit: float,
     pressure_unit: float,
 ) -> NodalResult:
-    """Contact result of listed pressures on the mesh of an input deck."""
+    """Build the nodal result from listed pressures and the mesh of an input deck."""
     instances = sorted({instance for instance, _ in values.pressure})
     if len(instances) > 1:
         text = (

@@ -81,7 +81,7 @@ class FieldAdapter:
 
 
 def field_adapters() -> dict[str, FieldAdapter]:
-    """{name of the joint kind: adapter} of all joints whose pressure may be a field."""
+    """{joint: its functions for pressure fields}, for all joints whose pressure may be a field."""
     modules = {name: load_tool_module(kind, "field") for name, kind in KINDS.items()}
     return {name: module.FIELD for name, module in modules.items() if module is not None}
 

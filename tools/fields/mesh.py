@@ -192,7 +192,7 @@ class FiniteElementMesh:
         return np.array([listed_values.get(name, np.nan) for name in self.node_numbers.tolist()])
 
     def unknown_nodes(self, node_numbers: Iterable[int]) -> set[int]:
-        """Node numbers that the mesh does not have."""
+        """Select the node numbers that the mesh does not define."""
         return set(node_numbers) - set(self.node_numbers.tolist())
 
     def nodal_result(
