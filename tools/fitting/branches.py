@@ -61,7 +61,7 @@ class Loops:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Noise group (n) of each sample: the index of its run."""
+        """Group (n) of each sample: index of its run. All samples of a group have the same noise level."""
         return self.run_index
 
     @property

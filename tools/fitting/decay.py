@@ -150,7 +150,7 @@ def _fit_window(start_values: Array, window_time: Array, signal: Array) -> Array
 
 
 def _window_residual(window_parameters: Array, window_time: Array, signal: Array) -> Array:
-    """Residuals (n) of the linear fit of c, d, A, B to a signal (n).
+    """Residuals (n) of a decaying oscillation; offset, drift and amplitudes are fitted linearly to a signal.
 
     window_parameters : w, s and their rates (4)
     """
@@ -159,7 +159,7 @@ def _window_residual(window_parameters: Array, window_time: Array, signal: Array
 
 
 def _design_matrix(window_parameters: Array, window_time: Array) -> Array:
-    """Design matrix (n, 4) of c, d, A, B: ones, time, decaying cosine, decaying sine.
+    """Design matrix (n, 4) of a decaying oscillation: ones, time, decaying cosine, decaying sine.
 
     window_parameters : w, s and their rates (4)
     """

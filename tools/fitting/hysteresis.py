@@ -236,12 +236,12 @@ class FreeVibration:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Noise group (2 n) of each residual: 0 for frequencies, 1 for damping ratios."""
+        """Group (2 n) of residuals with the same noise level: 0 for frequencies, 1 for damping ratios."""
         return np.repeat([0, 1], self.decay_points.amplitude.size)
 
     @property
     def residual_scale(self) -> Array:
-        """Standard deviations (2 n) [1] of the misfits, up to a factor for each noise group."""
+        """Standard deviations (2 n) [1] of the misfits, up to a factor for each of the `noise_groups`."""
         return np.concatenate([self.decay_points.frequency_deviation, self.decay_points.damping_deviation])
 
     def misfit(self, oscillator: Oscillator) -> Array:
@@ -270,7 +270,7 @@ class ForcedResponse:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Noise group (n) of each amplitude: 0, because all have the same noise."""
+        """Group (n) of residuals with the same noise level: all amplitudes are in group 0."""
         return np.zeros(self.amplitude.size, dtype=np.int64)
 
     @property
