@@ -256,7 +256,7 @@ def _make_parameter(
 
 
 def describe_interval(interval: tuple[float, float]) -> str:
-    """Text of an interval for the source of a parameter."""
+    """Format an interval as text, for the entry `source` of a parameter."""
     return f"{100.0 * CONFIDENCE_LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
 
 

@@ -196,8 +196,8 @@ def fit_log(
     """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
     fitted_names   : of LOG_PARAMETERS
-    torque_changes : (k, n) [N.m] changes of the torque by k independent standard deviations of the load; they are
-                     added to the covariance of the fit
+    torque_changes : (k, n) [N.m] changes of the torque by k independent standard deviations of the load; they
+                     are added to the covariance of the fit
 
     Raises RuntimeError if the fit does not converge.
     """
