@@ -1,11 +1,11 @@
 """Parameters of a drive from the torsional stiffness in a catalogue (K1, K2, K3, T1, T2).
 
 Two laws. `catalogue` (`make_line_drive_from_row`): three lines, taken from the row without a fit; for
-comparison the law `hu2023` is fitted too. `hu2023` (`fit_pair`): smooth law of the contact pair. The fit
-meets the angle at T1, T2 and the rated torque, and approximates the lines elsewhere up to max_torque. Its
-unknowns are those of a fit to a measured curve. `torque_smoothing`, the torque below which the pressure does
-not yet grow, is T1, where the stiffness of the catalogue starts to rise. It becomes a fourth unknown if three
-unknowns do not meet the angles.
+comparison the law `hu2023` is fitted too. `hu2023` (`fit_contact_pair_law`): smooth law of the contact pair
+of flexspline and flexible bearing. The fit meets the angle at T1, T2 and the rated torque, and approximates
+the lines elsewhere up to max_torque. Its unknowns are those of a fit to a measured curve. `torque_smoothing`,
+the torque below which the pressure does not yet grow, is T1, where the stiffness of the catalogue starts to
+rise. It becomes a fourth unknown if three unknowns do not meet the angles.
 """
 
 from collections.abc import Mapping, Sequence
@@ -200,7 +200,9 @@ def make_line_drive_from_row(
     numbers: Mapping[str, SourcedNumber] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
-    """Make the drive with the three lines of a row. Arguments as for `fit_pair`, but no parameter is fitted.
+    """Make the drive with the three lines of a row; no parameter is fitted.
+
+    Arguments as for `fit_contact_pair_law`.
 
     Raises ValueError if `fitted_names` has a name, and for numbers outside their limits.
     """
