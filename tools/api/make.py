@@ -146,9 +146,9 @@ def create_maker(
 
     The signature and the docstring of the function list the options of the drawing.
 
-    name         : name of the function
-    example      : call of the function and its result, as in a doctest
-    first_option : option that may be passed as the first positional argument
+    function_name   : name of the function
+    doctest_example : call of the function and its result, as in a doctest
+    first_option    : option that may be passed as the first positional argument
     """
     drawing: NewJointCommand = load_tool_module(kind, "new").NEW  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY

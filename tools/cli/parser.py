@@ -18,7 +18,7 @@ COMMAND_GROUPS = {
     "check": ("prove", "validate"),
     "study": ("uncertainty", "sweep"),
 }
-"""{heading: commands}. The function `add` of the module `commands.COMMAND` declares each command."""
+"""{heading: commands}. The function `add_command` of the module `commands.COMMAND` declares each command."""
 COMMANDS = tuple(name for names in COMMAND_GROUPS.values() for name in names)
 COMPLETION_SHELLS = ("bash", "zsh")
 COMMAND_MODULES = {

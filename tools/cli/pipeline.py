@@ -94,12 +94,12 @@ class JobResult:
 
 
 def report_name(fmu: Path) -> str:
-    """Name of an FMU in the report: flavour/name."""
+    """Name of an FMU in the report: folder of its build (fmi2, fmi3, python)/file name."""
     return f"{fmu.parent.name}/{fmu.stem}"
 
 
 def run_job(out_folder: Path) -> JobResult:
-    """Build, prove and check all flavours; write report, laboratory page and ramps to out_folder/report.
+    """Build, prove and check the FMUs of all flavours; write report and laboratory page to out_folder/report.
 
     The report shows the ramps of the flavour `fmi2`. The ramps of the other flavours must be equal to them.
     """

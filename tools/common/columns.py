@@ -191,7 +191,7 @@ def split_cells(line: str, delimiter: str | None) -> list[str]:
 
 
 def check_cell_count(path: Path, line_number: int, cells: Sequence[str], count: int) -> None:
-    """Raise ValueError with the line number if a row does not have `count` cells."""
+    """Raise ValueError with the line number if a row does not have `expected_count` cells."""
     if len(cells) != count:
         raise ValueError(f"{path}: line {line_number} has {len(cells)} columns, expected {count}")
 

@@ -1,7 +1,7 @@
 """Plausibility of a stiffness: comparison with the estimate from roughness, validity of the interface law.
 
-Every command that reports a stiffness also reports this result, by `assess_law` at pressures. For a joint
-under loads `jointfmu_tools.common.pressure` computes the pressures first.
+Every command that reports a stiffness also reports its plausibility. `assess_law` assesses a law at nominal
+pressures. For a joint under loads, `jointfmu_tools.common.pressure` computes these pressures.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,9 +24,9 @@ MAX_STIFFNESS_RATIO = 3.0
 class StiffnessComparison:
     """Stiffness of an interface law, compared with the estimate p/(GAMMA h) from roughness.
 
-    h         : [m] rms height of both surfaces combined
-    pressure  : (n) [Pa] > 0
-    stiffness : (n) [N/m3] stiffness per area of the law, times the scale of the joint
+    rms_height : [m] rms height of both surfaces combined
+    pressure   : (n) [Pa] > 0
+    stiffness  : (n) [N/m3] stiffness per area of the law, times the scale of the joint
     """
 
     h: float
@@ -101,7 +101,7 @@ def assess_law(
 ) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa]. Zero and infinite ones are ignored.
 
-    h               : [m] combined rms height of both surfaces; None: unknown
+    rms_height      : [m] combined rms height of both surfaces; None: unknown
     peak_pressure   : [Pa] largest pressure, if `pressures` are mean values
     stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one per pressure
     check_limits    : also warn about pressures outside the range of validity

@@ -1,6 +1,6 @@
 """Nominal contact pressure of a joint under load, and the judgement of its stiffness at a load.
 
-The module `pressure` in a joint's folder defines the pressure by its constant PRESSURE.
+The module `pressure` in a joint's folder defines the pressure by its constant NOMINAL_PRESSURE.
 """
 
 from collections.abc import Callable, Sequence
@@ -99,7 +99,7 @@ def warn_missing_members(file: ParameterFile) -> list[str]:
 def warn_overload(name: str, load: float, capacity: tuple[float, str] | None) -> list[str]:
     """Warning if a load [N] is above the load capacity; else empty.
 
-    capacity : (largest load [N], name of this limit), or None if not known
+    load_capacity : (largest load [N], name of this limit), or None if not known
     """
     if capacity is None or load <= capacity[0]:
         return []

@@ -59,7 +59,7 @@ class BoltedContact:
         moment: float,
         initial_solution: ContactSolution | None = None,
     ) -> "JointSolution":
-        """Solve for a preload [N] per bolt and a moment [N.m] about x, optionally from another solution."""
+        """Solve for a preload [N] per bolt and a moment [N.m] about x; the start may be another solution."""
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.bolt_head_loads, strict=True)]
@@ -83,8 +83,8 @@ def head_loads(body: ElasticBody, assembly: Assembly) -> Array:
 class JointSolution:
     """Equilibrium of a bolted joint under bolt forces.
 
-    bolt_force : (bolts) [N]
-    contact    : pressure and displacement
+    bolt_force       : (bolts) [N]
+    contact_solution : pressure and displacement
     """
 
     joint: BoltedContact
@@ -159,9 +159,9 @@ def insert_contact_field(
 ) -> tuple[ParameterFile, PressureDistribution]:
     """Insert the computed pressure field into the parameters of a joint.
 
-    Returns the parameters, and the pressure shape at all nodes.
+    A second field, solved under another moment, gives the change of pressure with a moment about x.
 
-    A second field gives the change of pressure with a moment about x.
+    Returns the parameters, and the normalised pressure distribution at all nodes.
 
     solution : equilibrium at this preload [N] per bolt and moment [N.m]; the other field is solved from it
     """

@@ -88,13 +88,14 @@ class Interface:
 class ContactModel:
     """Contact problem of two elastic bodies, for any loads.
 
-    bodies         : side 1 (below z = 0) and side 2; side 2 alone if side 1 and its loads are the mirror
-                     image
-    interface      : quadrature of the contact area
-    pressure_law   : pressure as a function of the approach
-    gap            : distance [m] of the unloaded faces at positions x, y (...) [m]; None: the faces are plane
-    fixed_unknowns : unknowns of each body that stay zero and may carry load. None: the fewest that stop its
-                     rigid-body motions; the loads must balance without them
+    bodies            : side 1 (below z = 0) and side 2; side 2 alone if side 1 and its loads are the mirror
+                        image
+    contact_interface : quadrature of the contact area
+    pressure_law      : pressure as a function of the approach
+    initial_gap       : distance [m] of the unloaded faces at positions x, y (...) [m]; None: the faces are
+                        plane
+    fixed_unknowns    : unknowns of each body that stay zero and may carry load. None: the fewest that stop
+                        its rigid-body motions; the loads must balance without them
     """
 
     bodies: tuple[ElasticBody, ...]
@@ -215,7 +216,7 @@ class ContactSolution:
     loads           : (n) [N] on each body
     displacement    : (n) [m] of each body, three values per node
     approach_offset : [m] approach at zero displacement where the gap is zero
-    minimum         : minimum of the energy
+    energy_minimum  : minimum of the energy
     """
 
     model: ContactModel

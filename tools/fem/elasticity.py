@@ -171,7 +171,7 @@ class ElasticBody:
     def rigid_motions(self, centre: tuple[float, float] = (0.0, 0.0)) -> Array:
         """Displacements (n, 6) of unit translations [m/m] along, and unit rotations [m/rad] about, x, y, z.
 
-        centre : (x, y) [m] of the centre of rotation, which lies in the plane z = 0
+        rotation_centre : (x, y) [m] of the centre of rotation, which lies in the plane z = 0
         """
         x, y, z = self.nodes - np.array([[*centre, 0.0]]).T
         unit, zero = np.ones_like(x), np.zeros_like(x)

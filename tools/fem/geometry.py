@@ -76,7 +76,7 @@ Bolts = BoltGrid | BoltList
 
 
 def _equidistant_coordinates(count: int) -> Array:
-    """`count` equidistant coordinates from -1 to 1; 0 for a single one."""
+    """`count` equidistant coordinates from -1 to 1; if `count` is 1, the coordinate 0."""
     return np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)
 
 

@@ -43,11 +43,11 @@ class EnergyMinimum:
 class ContactEnergy:
     """Energy u K u / 2 - f u + sum over points of weight V(offset + T u), with V' = p; convex in u (n) [m].
 
-    stiffness       : K (n, n) [N/m]
-    load            : f (n) [N]
-    approach_matrix : T (q, n) [1] approach at the quadrature points per displacement
-    quadrature_area : area (q) [m2] of each quadrature point
-    pressure_law    : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
+    stiffness_matrix : K (n, n) [N/m]
+    load_vector      : f (n) [N]
+    approach_matrix  : T (q, n) [1] approach at the quadrature points per displacement
+    quadrature_area  : area (q) [m2] of each quadrature point
+    pressure_law     : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
     """
 
     stiffness: sp.csr_matrix
@@ -116,7 +116,8 @@ class ContactEnergy:
 
         approach : (q) [m], at the start of the step
         approach_change : (q) [m] of the approach by the full step
-        initial_slope, slope_rate : [J] slope of elastic energy minus load work is linear + length * quadratic
+        initial_slope, slope_rate : [J] of elastic energy minus work of the loads: its slope at the step
+            length s is initial_slope + s slope_rate
         """
 
         def energy_slope(step_length: float) -> float:

@@ -68,7 +68,7 @@ class JointFiniteElements:
 
     bodies              : side 1 and side 2
     attachment_unknowns : for each body, unknowns whose displacement the attachment prescribes
-    interface           : quadrature of the contact area
+    contact_interface   : quadrature of the contact area
     bolt_head_loads     : for each body, nodal load (n, bolts) [N/N] of a unit bolt force along +z; the same
                           weights give the mean displacement along z under a bolt head
     bolt_positions      : positions (bolts, 2) [m]

@@ -35,7 +35,8 @@ LAW_COLUMN_UNITS = {
 def build_law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
     """Build the parameter set of a law from a joint's parameter file and settings.
 
-    file : parameter file of any joint that has the law; None: the default file of `default_joint(law)`
+    parameter_file : parameter file of any joint that has the law; None: the default file of
+                     `default_joint(law)`
 
     If the file has another law, its values are used as far as the law has them, else default values.
     """
@@ -137,7 +138,7 @@ def default_joint(law: str) -> str:
 def load_law_file(path: Path, law: str) -> ParameterFile:
     """Load a parameter file of a joint that has the law.
 
-    Raises ValueError for a file of another joint, or if its own law is of no interface.
+    Raises ValueError for a file of another joint, or if the law of the file is not an interface law.
     """
     file = load_parameter_file(path)
     if law not in KINDS[file.joint].laws:

@@ -31,16 +31,17 @@ INTEGRATION_TOLERANCE = 1e-6
 REPEAT_TOLERANCE = 1e-9
 """Allowed deviation [1] of an FMU between ten times larger steps and the default ones, at the same loads."""
 FLAVOUR_TOLERANCE = 1e-9
-"""Allowed deviation [1] between two flavours of an FMU: round-off in the inversion of the same law."""
+"""Allowed deviation [1] between two builds of an FMU (FMI 2.0, FMI 3.0, Python): round-off in the inversion
+of the same law."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
     """Result of one check of an FMU.
 
-    name      : what is compared
-    deviation : largest relative deviation [1]
-    tolerance : allowed deviation [1]
+    compared_quantity : what is compared
+    deviation         : largest relative deviation [1]
+    tolerance         : allowed deviation [1]
     """
 
     fmu: str
@@ -61,7 +62,7 @@ def run_default_ramp(name: str, folder: Path, step_factor: float = 1.0) -> ramp.
 
 
 def check_ramp(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
-    """Check the ramp of an FMU: repeat it with larger steps, then run the check RAMPS[name] of the joint."""
+    """Check the ramp of an FMU: repeat it with larger steps, then run the check of RAMP_CHECKS."""
     worst = _coarse_ramp_deviation(name, folder, result)
     checks = [
         Check(name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
@@ -74,13 +75,13 @@ def check_ramp(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
 
 
 def compare_flavour(name: str, folder: Path, expected: ramp.RampResult) -> Check:
-    """Compare the ramp of another flavour, with ten times larger steps, with `expected` at equal loads."""
+    """Compare the ramp of another build of an FMU, with ten times larger steps, with `expected_ramp`."""
     worst = _coarse_ramp_deviation(name, folder, expected)
     return Check(name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
 
 
 def _coarse_ramp_deviation(name: str, folder: Path, result: ramp.RampResult) -> float:
-    """Largest deviation [1] of any column between the ramp with ten times larger steps and `result`."""
+    """Largest deviation [1] of any column between the ramp with ten times larger steps and `ramp_result`."""
     coarse = run_default_ramp(name, folder, _COARSE_STEP_FACTOR).columns
     return max(
         relative_deviation(coarse[column], fine[:: int(_COARSE_STEP_FACTOR)])
@@ -113,7 +114,7 @@ def check_decays(decays: Mapping[str, Sequence[Decay]]) -> list[Check]:
 
 
 def integrate_logarithmically(rate: Callable[[Array], Array], interval_ends: Iterable[float]) -> Array:
-    """Integrals of `rate` between neighbouring ends > 0, by Simpson's rule over the logarithm.
+    """Integrals of `integrand` between neighbouring ends > 0, by Simpson's rule over the logarithm.
 
     Within 1e-8 of an adaptive rule, also for a law with a kink.
     """

@@ -1,4 +1,7 @@
-"""Commands of the command line, most of them in a module of the same name. Functions that they share."""
+"""Commands of the command line, and functions that several commands use.
+
+Most commands are in a module of the same name.
+"""
 
 import argparse
 from collections.abc import Sequence

@@ -110,9 +110,10 @@ def _run_decays(args: argparse.Namespace, joint: Any) -> CommandResult:
 
 
 def _decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
-    """Columns of a free decay: load, amplitude, frequency [Hz] and damping ratio [1], each of decay and loop.
+    """Columns of a free decay: load, amplitude, frequencies [Hz], damping ratios [1].
 
-    The loop is the joint's hysteresis loop of the same amplitude.
+    Frequency and damping ratio are stated twice: measured in the simulated decay, and computed from the
+    joint's hysteresis loop of the same amplitude.
     """
     hertz = 1.0 / math.tau
     return (

@@ -81,7 +81,7 @@ def _warn_long_step(system: System, largest_step: float, joint: str) -> str:
     """Format a warning if the system's interval is longer than the largest stable step; else empty.
 
     largest_step : largest stable step [s] of a co-simulation
-    joint        : joint that limits the step
+    joint_name   : joint that limits the step
     """
     if system.interval <= largest_step:
         return ""

@@ -44,7 +44,7 @@ class LoadCurve:
 
     meaning       : content of the file in words
     columns       : variables displacement, load and stiffness
-    name          : name of the table in a Modelica file
+    table_name    : name of the table in a Modelica file
     compute_table : (parameters, working point or None, largest error [1]) -> table
     """
 

@@ -12,7 +12,7 @@ from .tables import LoadTable
 MAX_CALCULIX_ROWS = 200
 """Largest number of rows of a table in CalculiX (its arrays `xiso(200)`)."""
 EXTRAPOLATED_OVERCLOSURE = 1.0
-"""Overclosure [m] by which the table is extrapolated linearly: no solver leaves the table."""
+"""Overclosure [m] by which the table is extended linearly, so that no solver evaluates beyond its end."""
 
 
 def format_springs(

@@ -33,11 +33,11 @@ MAX_NODE_LABEL = 99_999_999
 class NodePairs:
     """Node pairs of a mesh.
 
-    path     : file that the pairs were read from
-    nodes    : (n, 2) labels on side 1 and side 2
-    position : (n, 2) [m] in the joint's plane, relative to the centroid of the contact
-    area     : (n)    [m2] contact area of each pair
-    pressure : (n)    [Pa]; None: the pressure distribution of the joint is used
+    path        : file that the pairs were read from
+    node_labels : (n, 2) labels on side 1 and side 2
+    position    : (n, 2) [m] in the joint's plane, relative to the centroid of the contact
+    area        : (n)    [m2] contact area of each pair
+    pressure    : (n)    [Pa]; None: the pressure distribution of the joint is used
     """
 
     path: Path

@@ -45,13 +45,13 @@ UNIT_SETS = {
 class Springs:
     """Springs and dashpots of the closed node pairs. x and y lie in the joint's plane, z is its normal.
 
-    nodes                : (n, 2) labels on side 1 and side 2
+    node_labels          : (n, 2) labels on side 1 and side 2
     position             : (n, 2) [m] relative to the centroid of the contact
     area                 : (n)    [m2]
     pressure             : (n)    [Pa]
     K_n, K_t             : (n)    [N/m] stiffness along z; along x and along y
     C_n, C_t             : (n)    [N.s/m] damping along z; along x and along y
-    totals               : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, summed over pairs
+    joint_totals         : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, summed over pairs
     stiffness_correction : [1] factor on the stiffness of the pairs, so that their sum is that of the joint
     open_pairs           : number of open pairs, which are left out
     """
@@ -78,7 +78,7 @@ class Placement:
     """Placement of the springs in the user's model.
 
     units            : units of the model
-    normal           : axis of the model along the joint's normal, a key of AXIS_ORDER
+    normal_axis      : axis of the model along the joint's normal, a key of AXIS_ORDER
     first_number     : first free number for elements and nodes
     first_set_number : first free number for element types and sets of real constants (ANSYS)
     has_own_nodes    : whether the written file defines the nodes, in place of nodes of the model

@@ -45,8 +45,8 @@ def tabulate_law(curve: Curve, max_error: float) -> LoadTable:
 
     max_error : largest relative error [1] of the pressure with linear interpolation
 
-    The table ends at the hardness. Below the range of the law one line leads to first touch; the errors are
-    those above this line.
+    The table ends at the hardness. Below the pressure range of the law, a line leads to zero pressure. The
+    error is limited above this line only.
     """
     x, y, k = _sample_curve(curve)
     in_range = x >= 0.0
@@ -219,7 +219,7 @@ def format_columns_csv(
 
 
 def format_modelica_table(table: Array, name: str, comment_lines: Sequence[str]) -> str:
-    """Format a table (n, columns) of SI values as the table `name` in a text file of Modelica.
+    """Format a table (n, columns) of SI values as the table `table_name` in a text file of Modelica.
 
     The first column must be ascending.
     """

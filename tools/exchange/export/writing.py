@@ -53,7 +53,7 @@ def export_springs(
     """Export springs and dashpots of a joint between node pairs.
 
     working_point : None if the mesh states the pressures
-    mesh          : node pairs of the user; None: nodes of the joint
+    node_pairs    : node pairs of the user; None: nodes of the joint
 
     Raises ValueError if the joint offers no springs, or they do not fit the node pairs.
     """

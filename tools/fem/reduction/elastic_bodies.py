@@ -35,7 +35,7 @@ from .patch_work import (
 from .states import approach_at_stiffness, averaging_matrix, compute_states
 
 MIN_SINGULAR_VALUE_RATIO = 1e-3
-"""Smallest singular value of a mode over the largest [1], for states of equal energy."""
+"""Singular value over the largest one [1], below which a mode is left out; all states have equal energy."""
 OPENING_STATE_WEIGHT = 0.5
 """Weight of states with opening over the weight of states in shear alone [1], in the decomposition: the
 loss in partial slip needs more accurate modes."""
@@ -52,7 +52,7 @@ def reduce_bodies(
     """Modes of the bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
 
     linear_joint     : linear finite-element model of the joint
-    spring           : the reduced joint
+    reduced_joint    : the reduced joint
     normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
 
     Raises RuntimeError if a body can move freely.

@@ -86,9 +86,9 @@ class FrictionPoints:
 class FrictionWork:
     """Friction forces and loss in s states in shear.
 
-    forces       : generalised friction forces (s, 3 + k) [N, N.m] on three motions and k modes
-    stick_forces : generalised friction forces (s, 3 + k) [N, N.m] if no point slipped
-    cycle_loss   : (s) [J] energy loss per cycle with this amplitude
+    friction_forces : generalised friction forces (s, 3 + k) [N, N.m] on three motions and k modes
+    stick_forces    : generalised friction forces (s, 3 + k) [N, N.m] if no point slipped
+    cycle_loss      : (s) [J] energy loss per cycle with this amplitude
     """
 
     forces: Array
@@ -97,7 +97,7 @@ class FrictionWork:
 
     @cached_property
     def residual_scales(self) -> tuple[Array, Array, Array]:
-        """Scales of forces, stick forces (s, 3 + k) and losses (s): their relative errors count alike."""
+        """Divisors of the errors of forces, stick forces (s, 3 + k) and losses (s), for equal weights."""
         return (
             _force_scale(self.forces),
             _force_scale(self.stick_forces),
@@ -106,7 +106,7 @@ class FrictionWork:
 
 
 def _force_scale(forces: Array) -> Array:
-    """Scale (s, 3 + k) of generalised forces: one each for x and y, for the moment, and for the modes."""
+    """Divisors (s, 3 + k) of generalised forces: one for x and y, one for the moment, one for the modes."""
     force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     lever_arm = np.max(moment) / np.max(force)
     force = np.hypot(force, moment / lever_arm)
@@ -177,7 +177,7 @@ class LinearContact:
 
 @dataclass(frozen=True)
 class PatchFit:
-    """Least-squares problem: friction of m patches that equals the friction of all quadrature points.
+    """Least-squares problem: fit the friction of m patches to the friction at all quadrature points.
 
     friction_law          : friction law of the interface
     shear_states          : states in shear in which the friction is compared
@@ -280,7 +280,7 @@ class PatchFit:
         )
 
     def _work_residual(self, patch_displacement: Array, weighted_change: Array) -> Array:
-        """Relative errors [1] of forces, stick forces and loss of the patches, then their weighted change."""
+        """Residuals [1]: relative errors of forces, stick forces, losses; weighted change of displacement."""
         displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
         actual = assemble_friction_work(friction, self.sliders.point_area, displacement)
         target = self.target_work

@@ -42,7 +42,7 @@ def compute_states(
     Returns the motions (s, 6) [m, rad] and the negative deformation (n, s) [m] of the bodies.
 
     linear_joint     : linear finite-element model of the joint
-    spring           : the reduced joint
+    reduced_joint    : the reduced joint
     normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
     preload          : [N] per bolt
 
@@ -65,10 +65,10 @@ def compute_states(
 
 @dataclass(frozen=True)
 class CellLoads:
-    """Displacement of the bodies under unit loads on the n cells of the contact and on the b bolts.
+    """Response of the bodies to unit loads on the n cells of the contact and on the b bolts.
 
-    joint                  : finite-element model of the joint
-    spring                 : the reduced joint; its points are the centres of the cells
+    joint_model            : finite-element model of the joint
+    reduced_joint          : the reduced joint; its points are the centres of the cells
     normal_stiffness       : (q) [Pa/m] of the preloaded interface at the quadrature points
     averaging_operators    : (3 n + b, unknowns) [1] averaging operators: mean displacement of each cell along
                              z, x and y, then elongation of each bolt; the transpose distributes unit loads
@@ -136,11 +136,11 @@ def averaging_matrix(
 class CellJoint:
     """Joint with the interface law in n cells and b bolts, for monotonic motions of side 2.
 
-    spring            : the reduced joint; it gives the law
-    compliance        : of the bodies (3 n + b, 3 n + b) [m/N]
+    reduced_joint      : the reduced joint; it gives the law
+    compliance         : of the bodies (3 n + b, 3 n + b) [m/N]
     rigid_displacement : (3 n + b, 6) displacement of cells and bolts by rigid-body motions of side 2
-    preload_approach  : approach (n) [m] of the cells in the preloaded joint
-    preload           : [N] per bolt
+    preload_approach   : approach (n) [m] of the cells in the preloaded joint
+    preload            : [N] per bolt
     """
 
     spring: BoltedJointSpring

@@ -66,7 +66,7 @@ class Face(NamedTuple):
     Rq                        : rms height [m]
     Rq_min, Rq_max            : lower and upper limit of the rms height [m]
     rms_slope, hurst_exponent : rms slope [1], Hurst exponent [1]
-    longest_wave              : longest wavelength [m] that the height includes
+    longest_wave              : longest wavelength [m] that contributes to the rms height
     height_source             : source of the height
     stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
     """

@@ -1,6 +1,7 @@
 """Joints from drawings: options of a drawing, collection of parameters with their sources, the new joint.
 
-The module `new` in a joint's folder defines its options and the function that makes it by its constant NEW.
+The module `new` in a joint's folder defines its options and the function that makes it by its
+constant NEW_JOINT_COMMAND.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -89,7 +90,7 @@ class ParameterSheet:
     def build_file(self, name: str) -> ParameterFile:
         """Build the parameter file of that name. Parameters that the joint's law does not have are left out.
 
-        Raises ValueError for a value outside its interval or a missing one, as `quantity.build`.
+        Raises ValueError for a missing value, or for a value outside its allowed interval.
         """
         cls = KINDS[self.joint].laws[self.law]
         declared = {key for key, _ in flat_fields(cls)}

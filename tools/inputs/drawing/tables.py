@@ -75,10 +75,10 @@ def _normalise_name(text: str) -> str:
 class Thread:
     """Sizes of a metric bolt with coarse thread, lengths [m].
 
-    d               : nominal diameter
-    pitch           : pitch of the thread
-    hole            : diameter of the clearance hole
-    hexagon, socket : least outer diameter d_w of the bearing face of a hexagon head and of a socket head
+    nominal_diameter : nominal diameter
+    pitch            : pitch of the thread
+    hole             : diameter of the clearance hole
+    hexagon, socket  : least outer diameter d_w of the bearing face of a hexagon head and of a socket head
     """
 
     name: str

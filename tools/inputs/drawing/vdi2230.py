@@ -41,10 +41,10 @@ def bolt_compliance(
 ) -> float:
     """Compliance delta_S [m/N] of a bolt: head, shank, free thread, engaged thread and nut (section 5.1.1).
 
-    grip           : clamping length l_K [m] between head and nut, or between head and tapped part
-    shank          : length of the shank without thread [m]
-    head           : "hexagon" (effective length 0.5 d) or "socket" (0.4 d)
-    thread_modulus : Young's modulus [Pa] of a tapped part; None: a nut with the modulus of the bolt
+    grip              : clamping length l_K [m] between head and nut, or between head and tapped part
+    unthreaded_length : length of the shank without thread [m]
+    head_type         : "hexagon" (effective length 0.5 d) or "socket" (0.4 d)
+    thread_modulus    : Young's modulus [Pa] of a tapped part; None: a nut with the modulus of the bolt
     """
     nominal = 0.25 * np.pi * thread.d**2
     minor = 0.25 * np.pi * minor_diameter(thread) ** 2
@@ -91,9 +91,9 @@ def members_compliance(
     slope: float,
     is_tapped: bool,
 ) -> float:
-    """Compliance delta_P [m/N] of the clamped parts: deformation cones, and a sleeve beyond diameter D_A.
+    """Compliance delta_P [m/N] of the clamped parts: deformation cones, and a sleeve of diameter D_A.
 
-    layers : clamped parts, starting at the head; of a tapped joint up to the thread
+    clamped_parts : clamped parts, starting at the head; of a tapped joint up to the thread
 
     A cone widens from the head, and one from the nut. For one modulus the result equals Eqs. 36 and 38. A
     section of a cone from diameter D_1 to D_2 around a hole d_h has the compliance

@@ -28,11 +28,11 @@ _SUMMARY_WORDS = ("MINIMUM", "MAXIMUM", "TOTAL")
 class ListingRow(NamedTuple):
     """One row of a listing: values at a node.
 
-    location      : file and line
-    frame         : step and increment
-    part_instance : part instance of the node
-    node          : number of the node
-    column_values : {column: value}; a vector has one column for each component
+    file_and_line      : file and line
+    step_and_increment : step and increment
+    part_instance      : part instance of the node
+    node_number        : number of the node
+    column_values      : {column: value}; a vector has one column for each component
     """
 
     location: str
@@ -96,7 +96,7 @@ def _result_on_deck(
     length_unit: float,
     pressure_unit: float,
 ) -> NodalResult:
-    """Contact result of listed pressures on the mesh of an input deck."""
+    """Build the nodal result from listed pressures and the mesh of an input deck."""
     instances = sorted({instance for instance, _ in values.pressure})
     if len(instances) > 1:
         text = (

@@ -67,7 +67,7 @@ def _result_on_archive(
     length_unit: float,
     pressure_unit: float,
 ) -> NodalResult:
-    """Contact result of listed pressures on the mesh of an archive: faces whose corners all have a value."""
+    """Build the nodal result from listed pressures and an archive; its faces have a value at all corners."""
     mesh = read_archive(archive_path)
     if stray := mesh.unknown_nodes(node for node, value in listed_pressures.items() if value):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {archive_path}")
@@ -82,7 +82,7 @@ def _nodal_result(
     length_unit: float,
     pressure_unit: float,
 ) -> NodalResult:
-    """Contact result of listed pressures, coordinates and contact elements."""
+    """Build the nodal result from listed pressures, coordinates and contact elements."""
     used = sorted({node for element in elements for node in element if node})
     if missing := [node for node in used if node not in coordinates]:
         raise ValueError(f"{path}: node {missing[0]} of a contact element is not listed (NLIST)")

@@ -180,7 +180,7 @@ def _body_of_node(result: NodalResult) -> NDArray[np.int64]:
 def _select_bodies(
     result: NodalResult, loaded_nodes: NodeIndices, node_height: Array, plane: ContactPlane
 ) -> list[int]:
-    """Numbers of the bodies with pressure; only those on `plane.side` if a side is given.
+    """Numbers of the bodies with pressure; only the bodies on `body_side` of the plane if a side is stated.
 
     A body lies above the plane if the mean height of its nodes is positive.
     """

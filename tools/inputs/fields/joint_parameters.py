@@ -47,7 +47,7 @@ def insert_field(
 
     Parameters
     ----------
-    file            : parameter file of a joint whose pressure may be a field; `n_bolts`, `row_bolts` and
+    parameter_file  : parameter file of a joint whose pressure may be a field; `n_bolts`, `row_bolts` and
                       `row_distance` relate the field to the bolt forces
     preload         : [N] per bolt, at which the field was computed
     field_source    : origin of the field, written to the file
@@ -114,7 +114,7 @@ def pressure_shape(
     moment: float | None = None,
     force_tolerance: float = FORCE_TOLERANCE,
 ) -> PressureDistribution:
-    """Pressure shape of a joint with all nodes of a field. Parameters as for `insert_field`.
+    """Normalise a pressure field for a joint, at all its nodes. Parameters as for `insert_field`.
 
     With e = `preload_shape` and t = `moment_shape`, the pressure at a node is p_m e + M/(L_a A_0) t: p_m bolt
     force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =

@@ -126,7 +126,7 @@ def _cell_faces(cell_type: str) -> list[tuple[int, ...]]:
 
 
 def _unshared_faces(faces: NodeIndices, face_node_count: int) -> NodeIndices:
-    """Select the faces, of (k, size), that occur only once."""
+    """Select the faces that occur only once, from faces (k, nodes of a face)."""
     keys = np.sort(faces[:, : CORNER_COUNTS[face_node_count]], axis=1)
     _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[count == 1])])
@@ -192,7 +192,7 @@ class FiniteElementMesh:
         return np.array([listed_values.get(name, np.nan) for name in self.node_numbers.tolist()])
 
     def unknown_nodes(self, node_numbers: Iterable[int]) -> set[int]:
-        """Node numbers that the mesh does not have."""
+        """Select the node numbers that the mesh does not define."""
         return set(node_numbers) - set(self.node_numbers.tolist())
 
     def nodal_result(

@@ -31,7 +31,7 @@ LISTING_READERS = {"ansys": ansys.read_ansys, "abaqus": abaqus.read_abaqus}
 class FieldReader:
     """Options for reading a pressure field.
 
-    format          : one of FIELD_FORMATS; None: chosen by the suffix
+    file_format     : one of FIELD_FORMATS; None: chosen by the suffix
     length_unit     : unit of lengths, one of LENGTH_UNITS; None for CSV, whose heading states it
     pressure_unit   : unit of pressures, one of PRESSURE_UNITS; None for CSV
     point_data_name : name of the point data with the pressure, for meshes

@@ -44,8 +44,8 @@ GROUPS_PER_SUM = 2
 def recombine(values: Array, weights: Array, orthogonal_transform: Array) -> tuple[NodeIndices, Array]:
     """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
 
-    values               : (n, d) of the functions at the nodes
-    weights              : (n) > 0
+    function_values      : (n, d) of the functions at the nodes
+    node_weights         : (n) > 0
     orthogonal_transform : (d, d) matrix that makes the d functions independent
 
     Returns the indices of the nodes and their weights. Raises RuntimeError if round-off prevents a solution.
@@ -97,8 +97,8 @@ MAX_SELECTION_ROUNDS = 8
 class Reduction:
     """Result of the reduction of a pressure field.
 
-    reduced_shape : pressure shape of the reduced points
-    full_shape : pressure shape of all nodes
+    reduced_distribution : normalised pressure at the reduced points
+    full_distribution : normalised pressure at all nodes
     largest_deviation : [1] largest deviation of the sums in `test_case_count` load cases outside the
         selection: total force, K_zz (and K_xx, proportional to K_zz), K_rx and K_ry, each over its value or
         its value in the preloaded joint, whichever is larger. Deviations of the moments of the force and of
@@ -134,10 +134,10 @@ def reduce_field(
     preload: float,
     nodal_pressures: PressureFunction,
 ) -> Reduction:
-    """Reduce a pressure shape to the fewest points that keep its sums within RELATIVE_TOLERANCE.
+    """Reduce a pressure distribution to the fewest nodes that keep its sums within RELATIVE_TOLERANCE.
 
-    If no points do, all nodes are kept. A field with more than MAX_KEPT_NODES nodes then takes the points
-    within LARGE_FIELD_TOLERANCE.
+    If no selection of nodes meets this tolerance, all nodes are kept. For a field with more than
+    MAX_KEPT_NODES nodes, a selection within LARGE_FIELD_TOLERANCE is enough.
 
     preload         : [N] per bolt of the field. Load cases cover PRELOAD_RATIO_RANGE of it, from compression
                       to full opening, with moments up to `max_moment_ratio`
@@ -182,9 +182,9 @@ def _search_points(
 
     Each round tests the points in new load cases, and adds those to the selection in which the points miss.
 
-    rounded_shape   : pressure shape of all nodes, rounded
-    sample_shape    : sample of these nodes, for finding the independent sums
-    unrounded_shape : pressure shape of all nodes
+    rounded_distribution   : normalised pressure at all nodes, rounded
+    sample_distribution    : sample of these nodes, for finding the independent sums
+    unrounded_distribution : normalised pressure at all nodes
     """
     limit = max_moment_ratio(sum_functions.joint, rounded_shape)
     loads = random_load_cases(limit)
@@ -237,15 +237,15 @@ def _deviation_above_tested_moments(
 
 @dataclass(slots=True)
 class _SumSystem:
-    """The r sums that the reduced points must keep: balance of the field, and sums in load cases.
+    """The r sums that the reduced points must keep: area, force and moments, and sums in load cases.
 
-    rounded_shape   : pressure shape of all nodes, rounded
-    unrounded_shape : pressure shape of all nodes
-    sample_shape    : sample (c) of the nodes, for finding the independent sums
-    mixing_matrix   : random matrix (SKETCH_ROWS, c)
-    load_sums       : sums in the load cases
-    balance_scale   : divisors of the balance functions
-    sketch_matrix   : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
+    rounded_distribution   : normalised pressure at all nodes, rounded
+    unrounded_distribution : normalised pressure at all nodes
+    sample_distribution    : sample (c) of the nodes, for finding the independent sums
+    mixing_matrix          : random matrix (SKETCH_ROWS, c)
+    load_sums              : sums in the load cases
+    balance_scale          : divisors of the functions of `balance_functions`
+    sketch_matrix          : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
     """
 
     sum_functions: SumFunctions
@@ -266,7 +266,7 @@ class _SumSystem:
         sample_shape: PressureDistribution,
         load_sums: LoadSums,
     ) -> "_SumSystem":
-        """System of the balance and of the sums in initial load cases."""
+        """System of the sums of `balance_functions`, and of the sums in initial load cases."""
         scale = np.maximum(np.max(np.abs(balance_functions(rounded_shape)), axis=0), np.finfo(float).tiny)
         mixing = np.random.default_rng(RANDOM_SEED).standard_normal(
             (SKETCH_ROWS, sample_shape.area_share.size)
@@ -400,7 +400,7 @@ class _SumSystem:
 
 
 def _correct_balance(pressure_shape: PressureDistribution, node_weights: Array) -> PressureDistribution:
-    """Select the nodes with a share > 0 and correct the balance of the field to round-off."""
+    """Select the nodes with a weight > 0; make total share, centroid and mean pressures exact."""
     points = pressure_shape.select_nodes(np.flatnonzero(node_weights > 0.0))
     share = node_weights[node_weights > 0.0] / np.sum(node_weights)
     return PressureDistribution(

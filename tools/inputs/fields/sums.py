@@ -85,7 +85,7 @@ def random_load_cases(moment_limit: float) -> Iterator[LoadCase]:
 
 
 LOADS_PER_DRAW = 64
-"""Number of load cases drawn in one call; a call for a single one takes as long."""
+"""Number of load cases drawn in one call, which takes as long as a call for one load case."""
 COUPLING_TOLERANCE_FACTOR = 100.0
 """Tolerance of first and mixed moments over the tolerance of the other sums [1]."""
 _CUBIC_PRESSURE_RATIO = 1e-2
@@ -141,11 +141,12 @@ class LoadSums:
 
 @dataclass(frozen=True, slots=True)
 class SumFunctions:
-    """The 9 functions of a node whose sums a joint needs.
+    """The 9 functions of pressure and position that a joint sums over its nodes.
 
-    These are the pressure p times 1, x, y, and the stiffness k = dp/d(approach) times 1, x, y, y^2, x^2, x y.
+    The functions are the pressure p times 1, x, y, and the stiffness k = dp/d(approach) times 1, x, y, y^2,
+    x^2, x y.
 
-    curve           : pressure as a function of the approach
+    pressure_curve  : pressure as a function of the approach
     preload         : [N] per bolt of the field
     nodal_pressures : function of the joint for nodal pressures, see `bolted_interface.nodal_pressures`
     approach_table  : pressures, their cubic roots and approaches, for the start of Newton's method
@@ -161,7 +162,7 @@ class SumFunctions:
     def from_joint(
         cls, joint: BoltedInterface, preload: float, nodal_pressures: PressureFunction
     ) -> "SumFunctions":
-        """Functions whose sums a joint needs, at a preload [N] per bolt."""
+        """Prepare the functions of a joint for a pressure field at a preload [N] per bolt."""
         curve = tabulate_approach(joint)
         x = curve.displacement
         fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE_INTERVAL_FRACTIONS, x[-1])
@@ -198,7 +199,7 @@ class SumFunctions:
         return self._approach_and_stiffness(p)[0]
 
     def compute_sums(self, pressure_shape: PressureDistribution, load_cases: Sequence[LoadCase]) -> LoadSums:
-        """Compute the sums over a pressure shape in load cases."""
+        """Compute the sums over all nodes of a normalised pressure distribution, in load cases."""
         pairs, index = np.unique([load[:2] for load in load_cases], axis=0, return_inverse=True)
         index = index.ravel()
         preloaded = [LoadCase(p, m, 0.0) for p, m in pairs]
@@ -304,8 +305,8 @@ def _node_blocks(
 def _group_sums(pressure_shape: PressureDistribution, p: Array, k: Array, group_size: int) -> Array:
     """Sums (m, 9, g) of the 9 functions over groups of nodes.
 
-    p, k       : pressure [Pa] and stiffness [Pa/m] (m, n) of the nodes
-    group_size : number of nodes in a group
+    pressure, stiffness : pressure [Pa] and stiffness [Pa/m] (m, n) of the nodes
+    group_size          : number of nodes in a group
     """
     count = -(-pressure_shape.area_share.size // group_size)
     padding = (
@@ -338,9 +339,9 @@ def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
 
 
 def balance_functions(pressure_shape: PressureDistribution) -> Array:
-    """Functions (n, 9) whose sums give the balance of a field.
+    """Functions (n, 9) whose sums over the nodes give area, centroid, force and moments of a field.
 
-    These are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.
+    The functions are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.
     """
     pressures = np.column_stack([pressure_shape.preload_shape, pressure_shape.moment_shape])
     moments = [pressures * pressure_shape.position[:, i : i + 1] for i in (0, 1)]

@@ -196,7 +196,7 @@ def _fit_friction_torque(torque: Array, angle: Array, direction: Array) -> float
 
 
 def _hat_functions(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
-    """Piecewise linear basis functions (n, k) at torques (n), for the knots `grid` (k)."""
+    """Piecewise linear basis functions (n, k) at torques (n), for the knots `knots` (k)."""
     return scipy.sparse.csr_matrix(BSpline.design_matrix(T, np.pad(grid, 1, mode="edge"), 1))
 
 

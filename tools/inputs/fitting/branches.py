@@ -61,7 +61,7 @@ class Loops:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Noise group (n) of each sample: the index of its run."""
+        """Group (n) of each sample: index of its run. All samples of a group have the same noise level."""
         return self.run_index
 
     @property
@@ -171,7 +171,8 @@ class Loops:
 def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     """Cut measured runs into branches at the turning points of the motion.
 
-    runs : (prefix of error messages, motion, force) of each run, samples in the order of the measurement
+    measured_runs : (prefix of error messages, motion, force) of each run, samples in the order of the
+                    measurement
 
     Samples before the first turning point are left out, because their history is unknown. Samples beyond the
     previous turning point are left out, because there a smaller loop has closed.

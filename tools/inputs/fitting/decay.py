@@ -110,7 +110,7 @@ def _fit_windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, 
 
     Yields for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
 
-    w : angular frequency [rad/s] with which the first window is chosen
+    angular_frequency : angular frequency [rad/s] with which the first window is chosen
     """
     size, s = float(np.ptp(motion)), 0.02 * w
     begin = time[int(np.argmax(np.abs(motion - np.median(motion))))]
@@ -150,7 +150,7 @@ def _fit_window(start_values: Array, window_time: Array, signal: Array) -> Array
 
 
 def _window_residual(window_parameters: Array, window_time: Array, signal: Array) -> Array:
-    """Residuals (n) of the linear fit of c, d, A, B to a signal (n).
+    """Residuals (n) of a decaying oscillation; offset, drift and amplitudes are fitted linearly to a signal.
 
     window_parameters : w, s and their rates (4)
     """
@@ -159,7 +159,7 @@ def _window_residual(window_parameters: Array, window_time: Array, signal: Array
 
 
 def _design_matrix(window_parameters: Array, window_time: Array) -> Array:
-    """Design matrix (n, 4) of c, d, A, B: ones, time, decaying cosine, decaying sine.
+    """Design matrix (n, 4) of a decaying oscillation: ones, time, decaying cosine, decaying sine.
 
     window_parameters : w, s and their rates (4)
     """
@@ -176,8 +176,8 @@ def _standard_deviations(
 ) -> tuple[float, float]:
     """Standard deviations of w and s, dimensionless with the length of the window.
 
-    A, B  : amplitudes of cosine and sine
-    noise : standard deviation of the residuals
+    cosine_amplitude, sine_amplitude : amplitudes of cosine and sine
+    residual_deviation               : standard deviation of the residuals
     """
     ones, _, cos, sin = _design_matrix(window_parameters, window_time).T
     d_angle, d_decay = B * cos - A * sin, -(A * cos + B * sin)  # derivatives of u in angle and decay

@@ -8,7 +8,7 @@ Ciavarella 1998). After a turning point u_k the force changes by
 with the elastic force E, and the friction force B in first loading. The rule holds until the motion passes
 the previous turning point: there the smaller loop closes.
 
-A free vibration follows the law from turning point to turning point (`HysteresisLaw.decay`). A forced
+A free vibration follows the law from turning point to turning point (`HysteresisLaw.free_decay`). A forced
 vibration uses the first harmonic (harmonic balance): at the amplitude a the joint is a spring K(a) with the
 loss factor eta(a) of its loop,
 
@@ -74,7 +74,7 @@ class HysteresisLaw:
         )
 
     def shift_rest(self, rest_motion: float) -> "HysteresisLaw":
-        """Copy of the law, shifted so that its elastic force is zero at the motion `rest_motion`."""
+        """Copy of the law whose elastic force is zero at the motion `rest_motion`, instead of at zero."""
         if self.elastic_spring is None:
             return self
         force, energy = self.elastic_spring.force, self.elastic_spring.energy
@@ -236,12 +236,12 @@ class FreeVibration:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Noise group (2 n) of each residual: 0 for frequencies, 1 for damping ratios."""
+        """Group (2 n) of residuals with the same noise level: 0 for frequencies, 1 for damping ratios."""
         return np.repeat([0, 1], self.decay_points.amplitude.size)
 
     @property
     def residual_scale(self) -> Array:
-        """Standard deviations (2 n) [1] of the misfits, up to a factor for each noise group."""
+        """Standard deviations (2 n) [1] of the misfits, up to a factor for each of the `noise_groups`."""
         return np.concatenate([self.decay_points.frequency_deviation, self.decay_points.damping_deviation])
 
     def misfit(self, oscillator: Oscillator) -> Array:
@@ -270,7 +270,7 @@ class ForcedResponse:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Noise group (n) of each amplitude: 0, because all have the same noise."""
+        """Group (n) of residuals with the same noise level: all amplitudes are in group 0."""
         return np.zeros(self.amplitude.size, dtype=np.int64)
 
     @property

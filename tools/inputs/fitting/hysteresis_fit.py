@@ -63,7 +63,7 @@ class MeasurementModel:
         return data.residuals(self.oscillator(law, values), residual_scale)
 
     def oscillator(self, law: HysteresisLaw, values: Mapping[str, float]) -> Oscillator:
-        """Oscillator with a hysteresis law; its damping ratio is taken from `values` if it is an unknown."""
+        """Oscillator with a hysteresis law; its damping ratio may be an unknown in `parameter_values`."""
         assert self.inertia is not None
         return Oscillator(law, self.inertia, values.get(DAMPING_RATIO_NAME, self.damping_ratio))
 
@@ -134,7 +134,7 @@ def fit_measurement(
     measured_stiffness = None if level_exchange is None else measurement.rest_stiffness(model.inertia)
 
     def evaluate_start(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
-        """Values of a starting point and their cost; the level is adjusted to the measured stiffness."""
+        """Values of a starting point and their cost; the stiffness level is adjusted to the measurement."""
         if level_exchange is not None and measured_stiffness is not None:
             others = {name: value for name, value in values.items() if name != level_exchange.exchanged_name}
             values |= level_exchange.restore_unknowns(

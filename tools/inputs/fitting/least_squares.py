@@ -4,10 +4,10 @@ A thin layer over `scipy.optimize.least_squares` (trust region reflective). The 
 the parameters. Residuals are infinite at parameters that the model refuses, so the search steps back. The
 covariance follows from the Jacobian at the solution.
 
-During the search a parameter may be replaced by a derived quantity (`UnknownExchange`). Example: level and
-exponent of a law together give a stiffness, which the data determine a thousand times better than level or
-exponent alone. Steps in level and exponent leave the narrow curved valley of the cost at once. With the
-stiffness as unknown instead of the level, the valley is straight.
+During the search a parameter may be replaced by a derived quantity (`UnknownExchange`). Example: factor and
+exponent of a power law together give a stiffness, which the data determine a thousand times better than
+factor or exponent alone. Steps in factor and exponent leave the narrow curved valley of the cost at once.
+With the stiffness as unknown instead of the factor, the valley is straight.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -263,11 +263,11 @@ EXCHANGE_TOLERANCE, MAX_SECANT_STEPS = 1e-10, 40
 class UnknownExchange:
     """Replacement of an unknown by a derived quantity during a fit.
 
-    exchanged_name : name of the unknown that is replaced
-    quantity       : function {name: value} -> derived quantity; positive, and monotone in the replaced
-                     unknown
-    unit           : unit of the quantity
-    quantity_label : name of the quantity
+    exchanged_name   : name of the unknown that is replaced
+    derived_quantity : function {name: value} -> derived quantity; positive, and monotone in the replaced
+                       unknown
+    unit             : unit of the quantity
+    quantity_label   : name of the quantity
     """
 
     exchanged_name: str
@@ -276,7 +276,7 @@ class UnknownExchange:
     quantity_label: str
 
     def derived_unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
-        """Unknown for the derived quantity, with the value at the start values of `unknowns` as its start."""
+        """Unknown for the derived quantity; it starts at the value for the start values of `unknowns`."""
         start = self.quantity({name: u.start_value for name, u in unknowns.items()})
         return Unknown(self.quantity_label, self.unit, start, 0.0, np.inf)
 

@@ -35,8 +35,8 @@ WRONG_UNIT_RATIO = 50.0
 """Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
 is assumed. Degrees read as radians give 57."""
 EXPLAINED_RATIO = 5.0
-"""Ratio [1] of measured stiffness to stiffness of the start values that remains with another unit, or its
-inverse, up to which that unit counts as the explanation."""
+"""A wrong unit counts as the explanation if, with the right unit, measured stiffness over stiffness of the
+start values [1] is at most this value, and at least its inverse."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,7 +56,7 @@ class Combination:
 
 
 def max_deviation(unknown: Unknown) -> float:
-    """Standard deviation of the logarithm [1], up to which a parameter counts as determined."""
+    """Largest standard deviation of the logarithm [1] of a parameter that counts as determined."""
     if unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
         return MAX_RELATIVE_DEVIATION
     return min(
@@ -251,9 +251,9 @@ def correlation_note(
 ) -> list[str]:
     """Note for the user if neighbouring residuals are correlated: the law misses the data systematically.
 
-    residuals  : (n), in the order of the measurement
-    quantity   : name of the data in the note
-    neighbours : mask (n - 1) of the pairs of consecutive residuals that count as neighbours
+    residuals      : (n), in the order of the measurement
+    quantity_name  : name of the data in the note
+    neighbour_mask : mask (n - 1) of the pairs of consecutive residuals that count as neighbours
 
     Returns a list of one line, or an empty list.
     """
@@ -287,7 +287,7 @@ def make_unknowns(
 ) -> list[Unknown]:
     """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
 
-    bounds : {name: (low, high)} that narrow the declared intervals
+    bounds_by_name : {name: (low, high)} that narrow the declared intervals
 
     Raises ValueError for a name that the joint lacks, that is not a number, or that is given twice.
     """
@@ -320,7 +320,7 @@ def fitted_parameters(
     """Copy of a parameter file with fitted values; their source states data, range and date.
 
     data_name, range_text : data file and range of the data, as text
-    origin                : kind of the source
+    source_kind           : kind of the source
 
     The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
 

@@ -1,4 +1,4 @@
-"""Fit procedures of the joints, declared as FITS in the module `fit` of each joint in tools/joints."""
+"""Fit procedures of the joints: constant FIT_PROCEDURES in the module `fit` of each joint in tools/joints."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ class Procedure:
     name                : name of the procedure, with hyphens
     description         : which parameters, which joint
     takes_file          : whether the data are a measurement file
-    takes_several_files : whether `run` takes a list of paths instead of one path
+    takes_several_files : whether `run_fit` takes a list of paths instead of one path
     identifying_column  : a column that all files of this procedure have; files of procedures with the same
                           name for other joints do not have it
     options             : further options of the command
-    run                 : function ([path or paths,] parameter file with the start values or None, names of
+    run_fit             : function ([path or paths,] parameter file with the start values or None, names of
                           the parameters to be fitted or None, **options) -> FitResult; it loads the module of
                           the joint only when called. Raises ValueError for bad input, RuntimeError if the fit
                           does not converge.

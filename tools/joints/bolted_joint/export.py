@@ -43,9 +43,9 @@ most."""
 def springs_of_joint(
     spring: BoltedJointSpring, preload: float, moment: float, first_label: int = 1
 ) -> Springs:
-    """Springs at the nodes of the joint itself, for a preload [N] per bolt and a moment [N.m].
+    """Springs at the joint's own pressure nodes, for a preload [N] per bolt and a moment [N.m].
 
-    Every node of the pressure shape becomes a pair of coincident nodes with consecutive labels: the node of
+    Every node becomes a pair of coincident nodes with consecutive labels: the node of
     side 1, then that of side 2. The first label is `first_label`.
     """
     count = spring.points.area_share.size
@@ -56,9 +56,9 @@ def springs_of_joint(
 def springs_on_mesh(spring: BoltedJointSpring, mesh: "NodePairs", preload: float, moment: float) -> Springs:
     """Springs at the node pairs of a mesh, for a preload [N] per bolt and a moment [N.m].
 
-    The pressure shape is interpolated linearly between the nodes of the joint (outside of them: value of the
-    nearest node) and scaled to the same total force. Then all stiffnesses are multiplied by one factor, so
-    that they add up to the stiffness of the joint.
+    The normalised pressure is interpolated linearly between the nodes of the joint (outside of them: value of
+    the nearest node) and scaled to the same total force. Then all stiffnesses are multiplied by one factor,
+    so that they add up to the stiffness of the joint.
 
     Raises ValueError if a pair lies off the joint, if the areas do not add up to A_0 within
     AREA_TOLERANCE, or the interpolated pressures to the joint's force within FORCE_TOLERANCE.

@@ -35,7 +35,8 @@ def _check_separation(folder: Path, result: ramp.RampResult) -> tuple[str, float
 
 
 RAMPS = {_FMU: _check_separation}
-"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
+"""{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
+relative deviation [1])."""
 
 
 def compute_through_fmu(point: Point, folder: Path) -> float | None:

@@ -120,7 +120,7 @@ def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: floa
     """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
 
     remaining_preload : [N] of each bolt after embedding; without a moment
-    shear             : amplitude [N] of the shear force
+    shear_amplitude   : amplitude [N] of the shear force
     """
     joint, shape = spring.joint, spring.patches
     law, mean = spring.friction.foundation(), remaining_preload * joint.n_bolts / joint.A_0

@@ -32,7 +32,8 @@ def _check_approach(folder: Path, result: RampResult) -> tuple[str, float]:
 
 
 RAMPS = {"GearContact": _check_approach}
-"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
+"""{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
+relative deviation [1])."""
 
 
 def figures(job_result: Any) -> list[Figure]:
@@ -50,12 +51,12 @@ def figures(job_result: Any) -> list[Figure]:
 def evaluate(
     parameters: type[ContactParameters], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
-    """Stiffness K_N (n, m) [N/m] and approach s_rel (n, m) [m] at the forces factor times loads.
+    """Stiffness K_N (n, m) [N/m] and approach s_rel (n, m) [m] at the forces `load_factors * loads`.
 
-    parameters : class of the parameter set
-    values     : {structured name: number, or samples (n)}
-    loads      : (m) [N], ascending
-    factor     : (n, 1) [1], one for each sample
+    parameter_class    : class of the parameter set
+    sampled_parameters : {structured name: number, or samples (n)}
+    loads              : (m) [N], ascending
+    load_factors       : (n, 1) [1], one for each sample
     """
     contact = columns(parameters, values, 1)
     scale = factor / contact.A_0

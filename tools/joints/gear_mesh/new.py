@@ -85,8 +85,8 @@ class InvoluteGearPair:
     def tooth_stiffness(self, moduli: tuple[float, float], torque: float) -> float:
         """Single stiffness c' times width [N/m] of one tooth pair in contact over the full width.
 
-        moduli : Young's moduli [Pa] of both wheels
-        torque : [N.m] of wheel 1; below REFERENCE_LINE_LOAD the stiffness is reduced
+        young_moduli : Young's moduli [Pa] of both wheels
+        torque       : [N.m] of wheel 1; below REFERENCE_LINE_LOAD the stiffness is reduced
 
         ISO 6336-1, method B: solid wheels, no profile shift, K_A = 1, basic rack with a dedendum of 1.2
         modules (C_B is 1 at 20 degrees).
@@ -110,7 +110,7 @@ class InvoluteGearPair:
         """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
 
         mesh_stiffness : [N/m] of the mesh
-        density        : [kg/m3] of both wheels; mass is that of both wheels in series, as solid discs,
+        densities      : [kg/m3] of both wheels; mass is that of both wheels in series, as solid discs,
                          reduced to the line of action
         """
         masses = [

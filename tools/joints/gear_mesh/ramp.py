@@ -55,7 +55,8 @@ def _check_deflection_and_work(folder: Path, result: RampResult) -> tuple[str, f
 
 
 RAMPS = {"GearMesh": _check_deflection_and_work}
-"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
+"""{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
+relative deviation [1])."""
 
 
 _FIGURE_FORCES = (5e2, 1e3, 2e3)
@@ -119,12 +120,12 @@ RAMP_END_RATIO = 0.05
 def evaluate(
     parameters: type[MeshParameters], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
-    """Stiffness K (n, m) [N/m] and force f (n, m) [N] at the angles factor times loads.
+    """Stiffness K (n, m) [N/m] and force f (n, m) [N] at the angles `load_factors * loads`.
 
-    parameters : class of the parameter set
-    values     : {structured name: number, or samples (n)}
-    loads      : (m) [rad], ascending
-    factor     : (n, 1) [1], one for each sample
+    parameter_class    : class of the parameter set
+    sampled_parameters : {structured name: number, or samples (n)}
+    loads              : (m) [rad], ascending
+    load_factors       : (n, 1) [1], one for each sample
     """
     mesh = columns(parameters, values, 1)
     angle = factor * loads

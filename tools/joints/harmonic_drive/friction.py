@@ -115,7 +115,7 @@ def scale_friction(
 def _scale_torque(design_matrix: Array, logarithms: Array, design_row: Array, factor: float) -> ScaledNumber:
     """Torque [N.m] from a linear regression of its logarithm, times a factor.
 
-    design_matrix, logarithms : (n, k), (n) data of the regression
+    design_matrix, torque_logarithms : (n, k), (n) data of the regression
     design_row : (k) of the drive
     """
     value, half = _predict(design_matrix, logarithms, design_row)
@@ -172,8 +172,8 @@ def friction_parameters(
 ) -> dict[str, SourcedNumber]:
     """Friction parameters of a drive from catalogue numbers: {parameter: number}.
 
-    numbers      : ratio, rated_torque and FRICTION_COLUMNS, as far as they are known
-    stated_names : of FRICTION_COLUMNS; contradictions of these numbers are errors
+    sourced_numbers : ratio, rated_torque and FRICTION_COLUMNS, as far as they are known
+    stated_names    : of FRICTION_COLUMNS; contradictions of these numbers are errors
 
     friction_coulomb = starting torque
     friction_viscous = (running torque - starting torque)/CATALOGUE_SPEED
@@ -256,7 +256,7 @@ def _make_parameter(
 
 
 def describe_interval(interval: tuple[float, float]) -> str:
-    """Text of an interval for the source of a parameter."""
+    """Format an interval as text, for the entry `source` of a parameter."""
     return f"{100.0 * CONFIDENCE_LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
 
 

@@ -36,7 +36,8 @@ def _check_stiffness(folder: Path, result: ramp.RampResult) -> tuple[str, float]
 
 
 RAMPS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance": _check_compliance}
-"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
+"""{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
+relative deviation [1])."""
 
 
 def compute_through_fmu(point: Point, folder: Path) -> float | None:

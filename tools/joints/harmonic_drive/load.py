@@ -51,7 +51,7 @@ def _mean_pressure(drive: _ContactPairDrive, torque: float) -> float:
 
 
 def _stiffness_ratio(drive: _ContactPairDrive, torque: float) -> float:
-    """K_TS of the drive over K_T radius^2 [1], the torsional stiffness of a pair with K_T of the law."""
+    """Torsional stiffness K_TS of the drive over K_T radius^2 [1]; K_T: tangential stiffness of the law."""
     tangential = evaluate_at_pressure(drive.law, _mean_pressure(drive, torque))["K_T"]
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
 

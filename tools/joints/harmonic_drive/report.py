@@ -151,7 +151,7 @@ def _comparison_rows(model: Model, file: ParameterFile, entry: CatalogueEntry) -
 def _wind_up_rows(
     spring: HarmonicDriveSpring, numbers: Mapping[str, SourcedNumber], role: str
 ) -> Iterator[ComparisonRow]:
-    """Comparison of the wind-up at T1, T2, rated and peak torque: lines of the catalogue, and midline."""
+    """Compare the wind-up at T1, T2, rated and peak torque: catalogue, and drive without hysteresis."""
     lines = {name: numbers[name].value for name in STIFFNESS_NAMES}
     torques = {name: numbers[name] for name in ("T1", "T2", "rated_torque", "peak_torque") if name in numbers}
     row = CatalogueRow(**lines, rated=torques.get("rated_torque", numbers["T2"]).value)

@@ -1,4 +1,4 @@
-"""Commands that analyse a bolted assembly by finite elements, `footprint` and `modes`: shared functions."""
+"""Functions shared by `jointfmu footprint` and `jointfmu modes`: finite elements of a bolted assembly."""
 
 import argparse
 import math
@@ -65,7 +65,7 @@ def judge_assembly(
 
 
 def with_assembly(file: ParameterFile, assembly: "Assembly", include_bolts: bool) -> ParameterFile:
-    """Return the joint's parameters with contact area and materials of an assembly.
+    """Replace contact area and materials in the parameters of a joint by those of an assembly.
 
     include_bolts : also set number and rows of the bolts
 

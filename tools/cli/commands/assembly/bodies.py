@@ -65,8 +65,8 @@ def check_body_arguments(args: argparse.Namespace, file: ParameterFile) -> None:
 def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: ContactField) -> Array | None:
     """Positions (b, 2) [m] of the bolts in the plane of the field; None if they are not known.
 
-    Without `--bolts` they are the positions of the parameter file, relative to the centroid of the field. If
-    one of them lies outside the field, the file is of another contact: None.
+    Without `--bolts` the positions are those of the parameter file, relative to the centroid of the field. If
+    one of these positions is outside the field, the file describes another contact, and the result is None.
 
     Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """

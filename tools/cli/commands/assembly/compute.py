@@ -111,7 +111,8 @@ def _write_outputs(args: argparse.Namespace, file: ParameterFile, solution: "Joi
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
     """Return the joint with the computed pressure field, and with elastic bodies if `--attached` is set.
 
-    The field is of the preload after embedding; it contains the change of pressure under a moment.
+    The field holds for the preload that remains after embedding. It contains the change of pressure under a
+    moment.
     """
     from ....fem.bolted_contact import insert_contact_field
 

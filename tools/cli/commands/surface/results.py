@@ -33,7 +33,7 @@ def build_document(
 ) -> dict[str, object]:
     """JSON object of all results, in SI units.
 
-    file : parameter file with the identified surface, if one is made
+    parameter_file : parameter file with the identified surface, if one is made
     """
     joints = reported_joints(args, file)
     judged = (judge_file(file) if file else Plausibility(None, ())).to_json()
@@ -171,7 +171,7 @@ def build_result(
 ) -> CommandResult:
     """Build the result of the command: lines, table and warnings.
 
-    file : parameter file with the identified surface, if one is made
+    parameter_file : parameter file with the identified surface, if one is made
     """
     lines = [
         f"{surface.name}: {synthesize.format_size(surface)}; {_format_scan(scan)}"

@@ -41,8 +41,8 @@ from .preload import SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
 
 COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
 FITTED_PARAMETERS = {law: ("mu", *names) for law, names in INTERFACE.items()}
-"""{law: parameters to fit}: friction, level and, if the law has one, exponent. The exponent is not fitted to
-vibrations, which hardly distinguish it from the level."""
+"""{law: parameters to fit}: friction, stiffness level and, if the law has one, exponent. The exponent is not
+fitted to vibrations, in which exponent and level have nearly the same effect."""
 START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
 """{parameter: further start values of the search}, in addition to the values of the start file. The start
 value of the level follows from the data."""
@@ -205,10 +205,10 @@ def fit(
 
     Parameters
     ----------
-    start            : parameters to start from; None: the default joint
+    start_parameters : parameters to start from; None: the default joint
     fitted_names     : names to fit, also `damping_ratio` and `series_stiffness`; None: those of
                        FITTED_PARAMETERS
-    preload          : [N] of each bolt in the test; None: the one in the inputs of `start`
+    preload          : [N] of each bolt in the test; None: the one in the inputs of `start_parameters`
     modal_mass       : [kg] mass that vibrates on the joint; required unless the file has loops
     damping_ratio    : [1] of the structure alone
     series_stiffness : [N/m] of the structure, in series with the joint; None: rigid, unless it is fitted
@@ -311,7 +311,7 @@ def fit(
 def _level_exchange(
     file: ParameterFile, names: Sequence[str], compute_rest_stiffness: Callable[[Mapping[str, float]], float]
 ) -> UnknownExchange | None:
-    """Exchange of unknowns: the stiffness at rest [N/m] for the parameter that sets the level.
+    """Exchange of unknowns: the stiffness at rest [N/m] replaces the parameter that sets the stiffness level.
 
     compute_rest_stiffness : {name: value} -> stiffness at rest [N/m]
 

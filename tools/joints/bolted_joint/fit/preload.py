@@ -56,7 +56,7 @@ FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "zhao2018": ("surface.G", "surface.D"),
     "roughness": ("h",),
 }
-"""{law: parameters to fit}: level and, if the law has one, exponent."""
+"""{law: parameters to fit}: that of the stiffness level, and that of the exponent if the law has one."""
 START_VALUES: Mapping[str, tuple[float, ...]] = {
     "surface.D": (1.25, 1.42, 1.6),
     "surface.G": tuple(1.21e-8 * np.logspace(-3.0, 3.0, 7)),
@@ -90,7 +90,7 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
 
 @cache
 def merged_pressure_shape(pattern: PressureSource) -> MergedDistribution:
-    """Pressure shape without a moment, with nodes of equal pressure merged."""
+    """Normalised pressure distribution without a moment, with nodes of equal pressure merged."""
     return pressure_distribution(pattern).merge_nodes(keeps_moment=False)
 
 
@@ -107,7 +107,7 @@ def fit(
 
     Parameters
     ----------
-    start            : parameters to start from; None: the default joint
+    start_parameters : parameters to start from; None: the default joint
     fitted_names     : names to fit; None: those of FITTED_PARAMETERS, with `mass` instead of the level for
                        frequencies without `modal_mass`
     direction        : of the motion, "normal" or "tangential"

@@ -34,7 +34,8 @@ PRELOADED_PAIR_COUNT, FIRST_SLIP_RATIO = 12, 2e-3
 """Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
 slip [1]. The slip displacements of the pairs form a geometric sequence."""
 COMPRESSION_RATIOS = (2.0, 5.0)
-"""Forces over the one at tightening [1] at which further slider pairs are in full contact, in compression."""
+"""Normal forces over that at tightening [1] at which further slider pairs come into full contact, in
+compression."""
 _FORCE_POINTS, _DAMPING_POINTS = 800, 200
 """Sample points on either side of the tightened state: for the force, before decimation, and for the
 damping."""

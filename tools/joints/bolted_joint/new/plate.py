@@ -137,10 +137,10 @@ def clamp_bolt(
 ) -> ClampedBolt:
     """Compute one bolt with its clamped parts by VDI 2230.
 
-    plate_size    : length and width of the plate [m]
-    positions     : (b, 2) [m] of the bolts
-    hole_diameter : [m] of the clearance hole
-    moduli        : Young's moduli [Pa] of side 1 and side 2
+    plate_size     : length and width of the plate [m]
+    bolt_positions : (b, 2) [m] of the bolts
+    hole_diameter  : [m] of the clearance hole
+    young_moduli   : Young's moduli [Pa] of side 1 and side 2
 
     Raises ValueError for thicknesses or diameters that contradict each other.
     """

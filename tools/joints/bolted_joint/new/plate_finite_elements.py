@@ -80,7 +80,7 @@ def compute_pressure_field(
 ) -> tuple[ParameterFile, PressureDistribution]:
     """Replace the pressure cones of the bolts by the computed contact pressure of the elastic plates.
 
-    Returns the parameters, whose field has few nodes, and the pressure shape at all nodes of the model.
+    Returns the parameters, whose field has few nodes, and the normalised pressure at all nodes of the model.
 
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
@@ -124,10 +124,10 @@ def compute_joint_of_assembly(
 ) -> ComputedJoint:
     """Compute the complete joint by finite elements and reduce its bodies to modes.
 
-    make_assembly  : builds the bodies
-    preload        : [N] of each bolt at tightening
-    attachment     : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
-    pressure_shape : pressure at all nodes of a computed field; None: the pressure shape of the file
+    make_assembly       : builds the bodies
+    preload             : [N] of each bolt at tightening
+    attachment          : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
+    normalised_pressure : computed, at all nodes of the finite elements; None: that of the file
 
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
@@ -185,10 +185,10 @@ def _interface_stiffness(
 ) -> Array:
     """Stiffness per area (points, 3) [N/m3] along x, y, z of the tightened interface, at integration points.
 
-    Each point takes the stiffness of the nearest node of the pressure shape. One factor then makes the total
-    equal to the stiffness of the joint.
+    Each point takes the stiffness of the nearest node of the pressure distribution. One factor then makes the
+    total equal to the stiffness of the joint.
 
-    pressure_shape : as in `compute_joint_of_assembly`
+    normalised_pressure : as in `compute_joint_of_assembly`
     """
     from scipy.spatial import cKDTree
 
@@ -218,10 +218,10 @@ def compute_facts(
 ) -> NewJoint:
     """Compute the complete joint: parameters with elastic sides and facts, or a warning why this failed.
 
-    sides               : "rigid" or "elastic" as the user states it; None: elastic if the packages are
+    requested_sides     : "rigid" or "elastic" as the user states it; None: elastic if the packages are
                           installed
     interface_only_text : warning that the FMU contains the interface only
-    pressure_shape      : as in `compute_joint_of_assembly`
+    normalised_pressure : as in `compute_joint_of_assembly`
 
     Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """
@@ -247,7 +247,7 @@ def joint_facts(file: ParameterFile, preload: float) -> Facts:
 def _fact_rows(
     compliances: Compliances, remaining_preload: float, attachment: str, fmu_suffix: str = ""
 ) -> Facts:
-    """Facts about the complete joint with a tension [N] of each bolt.
+    """Facts about the complete joint, at a remaining preload [N] of each bolt.
 
     fmu_suffix : text that names the load of the same output of the FMU; empty: the FMU contains the interface
                  only

@@ -1,11 +1,11 @@
 """Parameters of a drive from the torsional stiffness in a catalogue (K1, K2, K3, T1, T2).
 
 Two laws. `catalogue` (`make_line_drive_from_row`): three lines, taken from the row without a fit; for
-comparison the law `hu2023` is fitted too. `hu2023` (`fit_pair`): smooth law of the contact pair. The fit
-meets the angle at T1, T2 and the rated torque, and approximates the lines elsewhere up to max_torque. Its
-unknowns are those of a fit to a measured curve. `torque_smoothing`, the torque below which the pressure does
-not yet grow, is T1, where the stiffness of the catalogue starts to rise. It becomes a fourth unknown if three
-unknowns do not meet the angles.
+comparison the law `hu2023` is fitted too. `hu2023` (`fit_contact_pair_law`): smooth law of the contact pair
+of flexspline and flexible bearing. The fit meets the angle at T1, T2 and the rated torque, and approximates
+the lines elsewhere up to max_torque. Its unknowns are those of a fit to a measured curve. `torque_smoothing`,
+the torque below which the pressure does not yet grow, is T1, where the stiffness of the catalogue starts to
+rise. It becomes a fourth unknown if three unknowns do not meet the angles.
 """
 
 from collections.abc import Mapping, Sequence
@@ -55,7 +55,7 @@ def fit(
     fitted_names : names to fit, with the law `hu2023` only; None: those of FITTED_PARAMETERS
     rated_torque : [N.m]; None: T2
     source       : where the row is published
-    ratio        : speed ratio [1]; None: that of `start`
+    ratio        : speed ratio [1]; None: that of `start_parameters`
     law          : "catalogue" or "hu2023"
     row          : K1, K2, K3 [N.m/rad], T1, T2 [N.m]
 
@@ -90,9 +90,9 @@ def fit_pair(
 ) -> FitResult:
     """Fit the smooth law of the contact pair to a row of a catalogue.
 
-    fitted_names : names to fit; None: FITTED_PARAMETERS, and EXTRA_PARAMETER if the others do not suffice
-    numbers      : of the row, from `source_numbers`; None: those of `row`
-    source       : where the row is published
+    fitted_names    : names to fit; None: FITTED_PARAMETERS, and EXTRA_PARAMETER if the others do not suffice
+    sourced_numbers : of the row, from `source_numbers`; None: those of `catalogue_row`
+    source          : where the row is published
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
     """
@@ -180,8 +180,8 @@ def make_line_drive(
 ) -> ParameterFile:
     """Make the parameters of a drive with the law `catalogue`.
 
-    numbers : {parameter: number with source}; other parameters are those of `start`
-    start   : drive with any law; None: the default drive
+    sourced_numbers  : {parameter: number with source}; other parameters are those of `start_parameters`
+    start_parameters : drive with any law; None: the default drive
 
     Raises ValueError for a number outside its limits.
     """
@@ -200,7 +200,9 @@ def make_line_drive_from_row(
     numbers: Mapping[str, SourcedNumber] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
-    """Make the drive with the three lines of a row. Arguments as for `fit_pair`, but no parameter is fitted.
+    """Make the drive with the three lines of a row; no parameter is fitted.
+
+    Arguments as for `fit_contact_pair_law`.
 
     Raises ValueError if `fitted_names` has a name, and for numbers outside their limits.
     """
@@ -226,7 +228,7 @@ def make_line_drive_from_row(
 
 
 def _fit_pair_or_note(row: CatalogueRow, start: ParameterFile | None) -> tuple[Drive | None, list[str]]:
-    """Law of the contact pair that meets the angles of the row; if there is none, None and a note."""
+    """Fit the law of the contact pair to the angles of the row; None and a note if no fit meets them."""
     try:
         drive: Drive = fit_pair(row, start).parameters.values
     except RuntimeError as error:
@@ -249,7 +251,7 @@ def _max_torque_fact(row: CatalogueRow, max_torque: float) -> Facts:
 
 
 def _pair_facts(row: CatalogueRow, pair: Drive, max_torque: float) -> Facts:
-    """Largest angle error, and stiffness errors, of the law of the contact pair compared with the lines."""
+    """Largest errors of angle and stiffness of the contact-pair law, compared with the catalogue lines."""
     torque = np.linspace(0.0, max_torque, 401)[1:]
     angle = drive.wind_up(pair, torque) / row.wind_up(torque) - 1.0
     i = int(np.argmax(np.abs(angle)))

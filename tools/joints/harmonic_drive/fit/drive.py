@@ -46,7 +46,7 @@ RAD_PER_ARCMIN = COLUMN_UNITS["angle"]["arcmin"]
 
 
 def wind_up(drive: Drive, torque: Array) -> Array:
-    """Wind-up (...) [rad] of the midline at torques (...) [N.m], equal to the one of the FMU."""
+    """Wind-up (...) [rad] of a drive without hysteresis at torques (...) [N.m], equal to that of its FMU."""
     return torque_curve(drive).odd_inverse(torque)
 
 
@@ -106,10 +106,10 @@ def change_law(
 ) -> ParameterFile:
     """Change the law of a drive.
 
-    law_class    : parameter class of the new law
-    name         : of the new parameter file
-    numbers      : {parameter: number with source} of the new law
-    copied_names : parameters of the law of `start_file` to copy, in addition to those of all drives
+    law_class          : parameter class of the new law
+    parameter_set_name : of the new parameter file
+    sourced_numbers    : {parameter: number with source} of the new law
+    copied_names       : parameters of the law of `start_file` to copy, in addition to those of all drives
     """
     shared = [label for label, _ in flat_fields(Drive) if label in start_file.values_by_name] + [
         *copied_names
@@ -215,7 +215,7 @@ _CURVE_POINTS = 400
 
 
 def stiffness(drive: Drive, torque: Array) -> Array:
-    """Stiffness K_WTS (...) [N.m/rad] of the exported midline at torques (...) >= 0 [N.m]."""
+    """Stiffness K_WTS (...) [N.m/rad] of the FMU without hysteresis, at torques (...) >= 0 [N.m]."""
     curve = torque_curve(drive)
     return curve.derivatives(curve.inverse(torque), 1)[1]
 

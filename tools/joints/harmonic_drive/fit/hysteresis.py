@@ -1,8 +1,8 @@
 """Fit of the hysteresis of the harmonic drive to loops, decays, responses or logs.
 
-`fit` keeps the midline of the start parameters (fit it with `torque-angle` first). It adds the friction
-torque of the exported drive: the angle between the branches at zero torque determines `hysteresis_loss`, the
-change of the torque after a reversal determines `hysteresis_stiffness`.
+`fit` keeps the midline (curve without hysteresis) of the start parameters (fit it with `torque-angle` first).
+It adds the friction torque of the exported drive: the angle between the branches at zero torque determines
+`hysteresis_loss`, the change of the torque after a reversal determines `hysteresis_stiffness`.
 
 `fit_log` also determines the stiffness. It needs a log with the angles of both joint and motor. The wind-up
 is the joint angle minus the motor angle over the ratio; the torque is that of the teeth. The friction torque
@@ -84,9 +84,9 @@ def fit(
 
     Parameters
     ----------
-    start        : parameters to start from; None: the default drive
-    fitted_names : names to fit; None: FITTED_PARAMETERS
-    inertia      : [kg.m2] that vibrates on the drive; required unless the file has loops
+    start_parameters : parameters to start from; None: the default drive
+    fitted_names     : names to fit; None: FITTED_PARAMETERS
+    inertia          : [kg.m2] that vibrates on the drive; required unless the file has loops
 
     Raises ValueError with a one-line message for a bad file, unit or value, a loop that creates energy, or a
     name that cannot be fitted. Raises RuntimeError if the fit does not converge.
@@ -171,9 +171,9 @@ def fit_rotor_inertia(
 ) -> tuple[float, float] | None:
     """Fit the inertia of the rotor to measured wind-ups (n) [rad].
 
-    tau, torque_changes : as in `fit_log`, for a rotor without inertia
-    torque_per_inertia  : (n) [N.m/(kg.m2)] change of tau by the inertia of the rotor
-    max_inertia         : [kg.m2] upper bound: the total inertia belongs to the rotor
+    torques, torque_changes : as in `fit_log`, for a rotor without inertia
+    torque_per_inertia      : (n) [N.m/(kg.m2)] change of the torque by the inertia of the rotor
+    max_inertia             : [kg.m2] upper bound: the total inertia belongs to the rotor
 
     Returns inertia and standard deviation [kg.m2]; None if the data do not determine them. Raises
     RuntimeError if the fit does not converge.
@@ -199,11 +199,11 @@ def fit_rotor_inertia(
 def fit_log(
     file: ParameterFile, names: Sequence[str], phi: Array, tau: Array, torque_changes: Array
 ) -> tuple[Solution, Picture]:
-    """Fit stiffness and hysteresis to measured wind-ups phi (n) [rad] at torques tau (n) [N.m].
+    """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
-    names          : of LOG_PARAMETERS
-    torque_changes : (k, n) [N.m] changes of tau by k independent standard deviations of the load; they are
-                     added to the covariance of the fit
+    fitted_names   : of LOG_PARAMETERS
+    torque_changes : (k, n) [N.m] changes of the torque by k independent standard deviations of the load; they
+                     are added to the covariance of the fit
 
     Raises RuntimeError if the fit does not converge.
     """

@@ -50,13 +50,13 @@ def fit(
 
     Parameters
     ----------
-    start           : parameters to start from, with the ratio of the drive; None: the default, with `ratio`
-    fitted_names    : names to fit; None: the parameters that the logs can determine
-    columns         : `NAME=HEADING` or `NAME=HEADING [UNIT]`, for files with other headings
-    torque_constant : motor torque over motor current [N.m/A]
-    ratio           : speed ratio [1]; None: that of `start`
-    motor_inertia   : [kg.m2] of the rotor, whose inertia torque does not load the teeth; None: fitted to the
-                      wind-up, if the log has the motor angle
+    start_parameters : parameters to start from, with the ratio of the drive; None: the default, with `ratio`
+    fitted_names     : names to fit; None: the parameters that the logs can determine
+    columns          : `NAME=HEADING` or `NAME=HEADING [UNIT]`, for files with other headings
+    torque_constant  : motor torque over motor current [N.m/A]
+    ratio            : speed ratio [1]; None: that of `start_parameters`
+    motor_inertia    : [kg.m2] of the rotor, whose inertia torque does not load the teeth; None: fitted to the
+                       wind-up, if the log has the motor angle
 
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.

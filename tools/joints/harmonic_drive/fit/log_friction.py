@@ -79,7 +79,7 @@ class LinearTerms:
 def motor_friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> Array:
     """Friction torque (...) [N.m] at the motor, of a moving drive.
 
-    dq          : speed (...) [rad/s] of the joint
+    joint_speed : speed (...) [rad/s] of the joint
     temperature : (...) [K] of the lubricant; NaN: reference temperature of the parameters
     load        : (...) [N.m] of the teeth, at the joint
     """
@@ -248,7 +248,7 @@ def fit_samples(
 ) -> FittedLog:
     """Fit friction parameters and linear terms to samples.
 
-    names         : of the friction parameters to fit
+    fitted_names  : of the friction parameters to fit
     rotor_inertia : [kg.m2]
     """
     ratio = abs(file.values.ratio)
@@ -329,7 +329,7 @@ def fit_with_rotor(
 def _propagate_deviations(solution: Solution, function: Callable[[Mapping[str, float]], Array]) -> Array:
     """Changes (k, m) of a function by each of the k independent standard deviations of a solution.
 
-    function : {name: value} -> (m)
+    propagated_function : {name: value} -> (m)
     """
     variances, directions = np.linalg.eigh(solution.covariance)
     rows, reference = [], function(solution.values)

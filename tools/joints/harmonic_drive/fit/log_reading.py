@@ -104,7 +104,7 @@ def window_size(time_step: float) -> int:
 
 
 def filter_values(values: Array, time_step: float, derivative: int = 0) -> Array:
-    """Filter values (n) at a constant time step [s]; or their derivative of the order `derivative`."""
+    """Filter values (n) at a constant time step [s]; or their derivative of the order `derivative_order`."""
     return np.asarray(savgol_filter(values, window_size(time_step), FILTER_DEGREE, derivative, time_step))
 
 

@@ -1,4 +1,4 @@
-"""Fit of a law of the drive to a measured torque-angle curve, or a table of the midline of this curve."""
+"""Fit of a drive to a measured torque-angle curve, by a law or by a table of its midline (no hysteresis)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -40,7 +40,7 @@ MAX_CREATED_ENERGY = 0.01
 
 @dataclass(frozen=True, slots=True)
 class MeasuredCurve:
-    """Measured curve: path of the file, its midline, and start parameters for a drive of this size."""
+    """Measured curve: file, midline (curve without hysteresis), start parameters for its rated torque."""
 
     path: Path
     midline: backbone.Backbone
@@ -60,10 +60,12 @@ def fit(
 
     Parameters
     ----------
-    start        : parameters to start from; None: the default drive
-    fitted_names : names to fit; None: FITTED_PARAMETERS, or K1, K2, K3 for the law `catalogue`
-    rated_torque : [N.m]; max_torque and torque_smoothing of `start` are scaled with it; None: that of `start`
-    law          : "table": use the midline itself, see `fit_table`; None: fit the law of `start`
+    start_parameters : parameters to start from; None: the default drive
+    fitted_names     : names to fit; None: FITTED_PARAMETERS, or K1, K2, K3 for the law `catalogue`
+    rated_torque     : [N.m]; max_torque and torque_smoothing of `start_parameters` are scaled with it; None:
+                       that of `start_parameters`
+    law              : "table": use the midline itself, see `fit_table`; None: fit the law of
+                       `start_parameters`
 
     Raises ValueError with a one-line message for a bad file, unit or shape of the curve, a torque above
     max_torque, or a name that cannot be fitted. Raises RuntimeError if the fit does not converge.
