@@ -10,13 +10,13 @@ from .transmission import make_transmission
 def write_drive(
     robot_format: str, source: str, torque: float | None
 ) -> tuple[str, list[str], dict[str, object]]:
-    """Write a drive in a robot format, fitted up to a torque.
+    """Format a drive for a robot format (MJCF, URDF); springs are fitted up to a torque.
 
     robot_format : a key of FORMAT_WRITERS
     source       : parameter file or name of the drive
     torque       : [N.m]; None: rated torque
 
-    Returns the file text, notes on fit errors and omitted effects, and the same as values in SI units.
+    Returns the text of the file, lines on fit errors and omitted effects, and both as a JSON object (SI).
 
     Raises ValueError if the source is no drive or the torque outside its table, ImportError without mujoco.
     """
