@@ -1,1 +1,1 @@
-"""Systems of joints: their files, archives, simulation and ringing."""
+"""Systems of joints: their files, archives, simulation and free vibration."""

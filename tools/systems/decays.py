@@ -23,7 +23,7 @@ PERIOD_COUNT = 60
 FINAL_PERIODS = 10
 """Number of last periods [1], whose mean is the final position; friction shifts it from the working point."""
 MAX_LOGARITHM_RATIO = 2.0
-"""Logarithm of the start amplitude of a half cycle over its mean amplitude, over the damping ratio [1].
+"""Upper bound of ln(amplitude at the start of a half cycle / its mean amplitude) over the damping ratio [1].
 
 pi/2 for small damping, here with a margin.
 """

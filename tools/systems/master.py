@@ -77,10 +77,10 @@ def simulate_motion(
 ) -> Array:
     """Simulate position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
 
-    joint          : inputs position and speed, output the force on the body
-    body           : inputs load and force, outputs position and speed
-    step           : communication step [s]
-    has_late_force : whether the body gets the force of the previous communication point, as with a parallel
+    joint            : inputs position and speed, output the force on the body
+    body             : inputs load and force, outputs position and speed
+    step             : communication step [s]
+    is_force_delayed : whether the body gets the force of the previous communication point, as with a parallel
         master; otherwise the current force
     """
     states = np.empty((step_count + 1, 2))

@@ -30,7 +30,7 @@ DAMPING_TOLERANCE = 1e-2
 CURVE_POINTS = 41
 """Number of points of a curve over the load [1]."""
 MIN_DEFLECTION_RATIO = 1e-10
-"""Smallest initial deflection over that of the working point [1]: round-off is then 1e-6 of the former."""
+"""Smallest ratio of initial deflection to deflection at the working point [1]: round-off is then 1e-6."""
 MAX_DAMPING_RATIO = 0.1
 """Largest damping ratio [1]: more leaves too few periods to determine frequency and decrement."""
 _MIN_DAMPING_RATIO = 1e-6
@@ -131,7 +131,7 @@ class VibrationTest:
     release_force           : force or torque that causes the initial deflection [N or N.m]
     load_axis               : plot axis of the load
     deflection_axis         : plot axis of the deflection
-    doc                     : how the body is held, for the report
+    support_description     : how the body is held, for the report
     stiffness_output        : variable of the joint that is the stiffness for the motion of the body
     slip_deflection         : initial deflection that makes the joint slip
     frictionless_parameters : {parameter: value} of the joint without friction, which adds stiffness at small

@@ -33,8 +33,8 @@ class Master(NamedTuple):
     """Kind of co-simulation master for which an archive is made.
 
     suffix        : suffix of the archive name
-    lag           : delay of the force of a joint on a body [communication steps]
-    doc           : reason for this lag
+    force_lag     : delay of the force of a joint on a body [communication steps]
+    lag_reason    : reason for this lag
     is_sequential : whether the master is sequential (Gauss-Seidel), as OMSimulator; otherwise parallel
         (Jacobi)
     """

@@ -25,8 +25,8 @@ class Signal(NamedTuple):
 class ConnectionEnd(NamedTuple):
     """End of a connection: a flange, a prescribed load (no flange), or the ground (no component).
 
-    label   : the end as written in the system file
-    members : {Modelica member: variable}; of a load {output: output}
+    label               : the end as written in the system file
+    variables_by_member : {Modelica member: variable}; of a load {output: output}
     """
 
     label: str

@@ -32,7 +32,7 @@ def interface_terms(model: Model) -> dict[str, object]:
     """Template variables of the partial block with an FMU's inputs and outputs."""
 
     def connector_rows(variables: Sequence[Variable]) -> list[dict[str, object]]:
-        """Rows of the connectors on one side of the block."""
+        """Name, unit, meaning and vertical position of each connector on one side of the block."""
         return [
             {
                 "name": v.name,

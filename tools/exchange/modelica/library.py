@@ -155,7 +155,7 @@ def _collect_joint(
 def _default_records(
     joint: str, module: ModuleType, working_points: tuple[WorkingPoint, ...]
 ) -> tuple[ModelicaRecord, ...]:
-    """Records of the default parameters of a joint, which the library of another joint has too."""
+    """Records of a joint's default parameters; a library written for another joint contains them, too."""
     component: ModelicaComponent = module.COMPONENT
     return tuple(component.make_records(load_default(joint), working_points))
 

@@ -164,7 +164,7 @@ class ModelicaRecord:
     title      : title in words
     table      : load over displacement
     values     : {name in the base record: Modelica expression} in addition to the table
-    error_note : quantity to which the table's error is relative, if it is not each value
+    error_note : reference of the table's relative error; empty if each value is its own reference
     """
 
     name: str
@@ -213,7 +213,7 @@ class ModelicaComponent:
     fixed_input_parameters    : {input of the joint: parameter of the component}, for inputs that a system may
                                 hold constant
     component_only_parameters : parameters of the joint that do not change the table of the record
-    note           : HTML for the description of the package of components
+    package_note   : HTML for the description of the package of components
     """
 
     name: str

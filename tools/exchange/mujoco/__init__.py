@@ -12,9 +12,9 @@ from jointfmu.files import archives
 from ...run.host import read_description
 
 FLANGE_INPUTS = ["phi1", "w1", "phi2", "w2"]
-"""First inputs of the FMU of a joint between two flanges."""
+"""Angles and speeds of both flanges: the first inputs of an FMU of a joint between two flanges."""
 FLANGE_TORQUES = ["tau1", "tau2"]
-"""First outputs of the FMU of a joint between two flanges."""
+"""Torques on both flanges: the first outputs of an FMU of a joint between two flanges."""
 
 
 def plugin(fmu: str | Path, out: str | Path) -> Path:

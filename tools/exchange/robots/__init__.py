@@ -1,1 +1,1 @@
-"""Drives for robot simulators without a plugin: MuJoCo's own springs and sliders, and URDF."""
+"""Elastic drives in robot models: MJCF and URDF, MuJoCo plugins, natural frequencies and tip error."""

@@ -39,7 +39,7 @@ def format_axes_system(
     on it and is applied smoothly. The axes are not coupled.
 
     drive_files : {joint: parameter file of its drive}
-    payload     : mass [kg] at the body `tip`
+    payload     : mass [kg] at the body `tip_body`
     """
     load, _ = compute_torques(model, axes, pose, payload, tip)
     link_inertias = np.diag(compute_link_inertia(model, axes, pose, payload, tip))

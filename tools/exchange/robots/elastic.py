@@ -17,7 +17,7 @@ from .mjcf import check_version
 from .transmission import Transmission
 
 MOTOR_SUFFIX = "_motor"
-"""Suffix of the motor joint after the name of the driven joint."""
+"""Suffix in the name of a motor joint, after the name of the driven joint."""
 MOTOR_BODY_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
 _MAX_JOINTS_PER_BODY = 6
@@ -135,11 +135,11 @@ def compute_mass_matrix(model: Any, pose: Array) -> Array:
 
 
 def add_drives(spec: Any, axes_with_drive: list[ElasticAxis], has_springs: bool = True) -> Any:
-    """Copy the robot with motors, drives as tendons (see `mjcf`), and the actuators moved to the motors.
+    """Copy the robot, add motors and drives (tendons, see `mjcf`), and move the actuators to the motors.
 
     Keyframes are omitted: they have no positions for the motors.
 
-    axes_with_drive : axes with a drive
+    axes_with_drive : axes that get a motor and a drive
     has_springs     : whether to add the drives and the friction of the motors
     """
     elastic_spec, model = spec.copy(), spec.compile()

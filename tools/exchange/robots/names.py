@@ -1,4 +1,4 @@
-"""Valid names of plugins and files from names of drives."""
+"""Conversion of names of drives to valid names of plugins and files."""
 
 import re
 from collections.abc import Mapping

@@ -32,7 +32,7 @@ def select_grid_axes(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
 
 
 def list_angles(model: "MjModel", axis: ElasticAxis) -> Array:
-    """Angles (GRID_ANGLES) [rad] over the range of an axis; a full turn for an axis without limits."""
+    """Angles [rad] of the pose grid over the range of an axis; a full turn for an axis without limits."""
     joint = model.joint(axis.joint)
     low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
     return np.linspace(low, high, GRID_ANGLES)

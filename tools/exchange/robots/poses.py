@@ -22,7 +22,7 @@ def find_dofs(model: "MjModel", axes: Sequence[ElasticAxis]) -> list[int]:
 def compute_torques(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[Array, Array]:
-    """Static drive torques (n) [N.m] under weight, and the Jacobian (3, n) [m/rad] of the body `tip`.
+    """Static drive torques (n) [N.m] under weight, and the Jacobian (3, n) [m/rad] of the body `tip_body`.
 
     A payload [kg] acts at the origin of this body.
     """
@@ -41,7 +41,7 @@ def compute_torques(
 def compute_link_inertia(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> Array:
-    """Mass matrix (n, n) [kg.m2] of the links without rotors, with a point mass payload [kg] at `tip`."""
+    """Mass matrix (n, n) [kg.m2] of the links without rotors, with a payload (point mass) [kg] at the tip."""
     indices = find_dofs(model, axes)
     _, jacobian = compute_torques(model, axes, pose, payload, tip)
     mass = compute_mass_matrix(model, pose)[np.ix_(indices, indices)] - np.diag(model.dof_armature[indices])

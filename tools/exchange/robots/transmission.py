@@ -1,4 +1,4 @@
-"""Drive between motor and link of a robot."""
+"""Data of a drive between motor and link, for robot models."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Transmission:
     name             : name of the parameter file
     ratio            : motor speed over link speed [1], negative for opposite directions
     damping          : viscous damping at the output [N.m.s/rad]
-    rated_torque     : at the output [N.m]
+    rated_torque     : rated torque at the output [N.m]
     max_torque       : largest tabulated torque at the output [N.m]
     dry_friction     : Coulomb friction of the motor [N.m]
     viscous_friction : viscous friction of the motor [N.m.s/rad]

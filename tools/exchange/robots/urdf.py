@@ -18,7 +18,7 @@ LIGHT_INERTIAL = (
 
 
 def format_urdf(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:
-    """URDF text of a drive; None, as nothing is fitted; texts on omitted effects, as URDF has no springs."""
+    """URDF text of a drive, None instead of fit errors (URDF has no springs), texts on omitted effects."""
     torques, x = drive.compute_loop(torque)
     has_hysteresis = bool(drive.compute_wind_up([torque, 0.0])[1])
     lacks = [

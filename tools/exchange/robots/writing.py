@@ -9,12 +9,12 @@ from .transmission import Transmission
 def write_drive(
     robot_format: str, drive: Transmission, torque: float | None
 ) -> tuple[str, list[str], dict[str, object]]:
-    """Write a drive in a robot format, fitted up to a torque.
+    """Format a drive for a robot format (MJCF, URDF); springs are fitted up to a torque.
 
     robot_format : a key of FORMAT_WRITERS
     torque       : [N.m]; None: rated torque
 
-    Returns the file text, notes on fit errors and omitted effects, and the same as values in SI units.
+    Returns the text of the file, lines on fit errors and omitted effects, and both as a JSON object (SI).
 
     Raises ValueError if the torque is outside the drive's table, ImportError without mujoco.
     """

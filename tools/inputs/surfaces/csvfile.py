@@ -79,9 +79,9 @@ def read_declared(path: Path, first_line: str) -> tuple[Heights, str]:
 
 
 def read_titles(path: Path) -> list[ColumnHead] | None:
-    """Name and unit of two or three columns (x, z or x, y, z), if the first line has names, the next numbers.
+    """Read names and units of two or three columns (x, z or x, y, z) from the title line of a file.
 
-    None for any other file.
+    None if the first line has no names, or the next line no numbers.
     """
     try:
         lines = read_numbered_lines(path, 2)
@@ -213,7 +213,7 @@ def _grid_indices(path: Path, name: str, values: Array, factor: float) -> tuple[
 
 
 def _profile_from_columns(path: Path, x: Array, z: Array, factor: float) -> Profile:
-    """Profile from positions x, in a unit of `factor` metres, and heights z [m].
+    """Profile from positions x, in a unit of `unit_size` metres, and heights z [m].
 
     The points may have any order, and points of the grid may be missing.
     """
@@ -228,7 +228,7 @@ def _profile_from_columns(path: Path, x: Array, z: Array, factor: float) -> Prof
 
 
 def csv_text(heights: Heights) -> str:
-    """Text of a CSV file with heights in metres, with seven digits; `read_declared` reads it."""
+    """Text of a CSV file with heights in metres, with seven digits; `read_declared_file` reads it."""
     if isinstance(heights, Profile):
         x = np.arange(heights.z.size) * heights.dx
         declaration = "# profile: x [m], z [m]"

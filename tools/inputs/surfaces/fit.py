@@ -14,7 +14,7 @@ from jointfmu.quantity import Array
 from .spectrum import ScaleSeries
 
 MIN_DEVIATION = 0.03
-"""Smallest standard deviation of ln(value) from the law at each scale [1]."""
+"""Least standard deviation [1] of ln(value) from the law that the fit assumes, at each scale."""
 CORRELATION_LENGTH = 0.5
 """Correlation length in ln(scale) [1] of the deviations from the law."""
 MAX_DRIFT = 0.1
@@ -50,7 +50,7 @@ class SelfAffineLaw:
     offset      : constant added to the law, over its value at the shortest scale [1]: > 0 for noise, < 0 for
                   missing short waves
     deviation   : standard deviation of ln(value) from the law beyond statistical scatter [1]
-    drift       : change of D over the range [1]
+    dimension_drift : change of D over the range [1]
     drift_error : standard error of the drift [1]
     min_scale, max_scale : range of scales [m]
     covers_interval : whether D covers its whole interval 1 to 2 over all scales, and this range is short
@@ -145,7 +145,7 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
     scatter = series.covariance(0.5)
 
     def log_law(p: Array) -> Array:
-        """ln(value) of the law at all scales, for p = (H, log_power, offset)."""
+        """ln(value) of the law at all scales, for the parameters (H, log_power, offset)."""
         expected = series.expected_value(p[0]) * reference ** (-2.0 * p[0])
         return np.asarray(np.log(expected + (p[2] * expected[0] if offset else 0.0)) + p[1])
 

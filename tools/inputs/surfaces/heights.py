@@ -155,7 +155,7 @@ def _grid_distance(positions: Array, index: GridIndices, step: float) -> Array:
 def last_digit_unit(positions: Array) -> Array:
     """Unit of the last digit of each position (n,), for a fixed number of decimals or of significant digits.
 
-    0 if the positions have more digits than MAX_DIGIT_UNITS.
+    0 if the positions have more digits than MAX_LAST_DIGIT_RATIO.
     """
     sizes = np.where(positions == 0.0, 1.0, np.abs(positions))
     decade = 10.0 ** np.floor(np.log10(sizes))
@@ -166,7 +166,7 @@ def last_digit_unit(positions: Array) -> Array:
 def _common_power_of_ten(numbers: Array) -> float:
     """Largest power of ten, at most 1, of which all numbers are multiples.
 
-    0 if the largest number is more than MAX_DIGIT_UNITS times that power.
+    0 if the largest number is more than MAX_LAST_DIGIT_RATIO times that power.
     """
     largest = float(np.abs(numbers).max())
     for power in range(0, -16, -1):
@@ -200,7 +200,7 @@ FORMAT_SIGNATURES = (
     *(b"Zeta-Instruments", b"KPK", b"OmniSurf3D", b"AliconaImaging", b"fileformat = bcr", b"f\0i\0l\0e"),
     *(b"\xff\xfef\0i", b"\xfe\xff\0f\0i", b"\x88\x1b\x03", b"GWY", b"FRTM_GLIDERV", b"WSxM file copyright"),
 )
-"""Signatures (first bytes) of these formats; Wyko OPD has its signature from the third byte on."""
+"""Signatures (first bytes) of the known formats; that of Wyko OPD begins at the third byte."""
 _NUMBER_PATTERN = re.compile(rb"\d+")
 
 

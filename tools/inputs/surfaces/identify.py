@@ -46,9 +46,9 @@ def identify(
     surfaces : one surface, or two of the same kind (profile or areal map)
     form     : form that is removed, one of FORM_NAMES
     scale_range : range [m] of lags and wavelengths; None: the longest self-affine range
-    longest_wave : longest wavelength [m] of the roughness; None: the smallest `default_wave` of the surfaces
+    longest_wave : longest wavelength [m] of the roughness; None: the smallest default of the surfaces
     side : for one surface, its side of the contact, one of SCAN_SIDES. "1" or "2": the other side is smooth;
-               "both": the other side is alike. Of two surfaces, the first is side 1
+               "both": the other side has the same finish. Of two surfaces, the first is side 1
     keep_spikes : do not remove spikes
     """
     if len(surfaces) not in (1, 2):

@@ -35,7 +35,7 @@ class ScaleSeries:
     direction  : "profile", "x", "y" or "areal"
     scale      : (J,) [m] lag or wavelength, increasing
     value      : (J,) [m2] V(tau) = 4 S(tau) - S(2 tau), or Phi = frequency times power spectral density
-    function_value : (J,) S(tau) [m2], or power spectral density [m3]
+    structure_or_psd : (J,) S(tau) [m2], or power spectral density [m3]
     expected_value : function of H: value (J,) for Phi(frequency) = frequency^(-2H)
     covariance : function of H: covariance (J, J) [1] of ln(value)
     """
@@ -198,7 +198,7 @@ def _average_directions(heights: ArealMap) -> ScaleSeries:
 
 
 HANN_CORRELATED_MODES = 35.0 / 18.0
-"""Number of neighbouring Fourier modes that a Hann window correlates to one, per direction [1]."""
+"""Number of neighbouring Fourier modes that count as one with a Hann window, per direction [1]."""
 
 
 def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
@@ -249,9 +249,11 @@ def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
 
 
 def _window_factor(k: Array, H: float, is_areal: bool) -> Array:
-    """Factor [1] of a Hann window on a power law at k waves per length: the window mixes neighbouring modes.
+    """Factor [1] of a Hann window on a power law, since the window mixes neighbouring modes.
 
-    Along a line, the weights of modes k - 1, k, k + 1 are 1/6, 2/3, 1/6. Over an area, the factor is the
+    mode_index : number k of waves per length
+
+    Along a line, the weights of the modes k - 1, k, k + 1 are 1/6, 2/3, 1/6. Over an area, the factor is the
     second-order expansion.
     """
     k = np.maximum(k, 2.0)

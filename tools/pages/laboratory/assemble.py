@@ -71,5 +71,5 @@ def render_page() -> str:
 
 
 def read_web_file(name: str) -> str:
-    """Read a file of the page as text. The report uses the style sheet too."""
+    """Read a source file of the page (template, style sheet, script) as text."""
     return (_WEB_FOLDER / name).read_text(encoding="utf-8")

@@ -43,7 +43,7 @@ _CODE_GENERATION_LOCK = Lock()
 class PageModule:
     """A model with the parameter files that share its C code.
 
-    files : parameter files; the first one gives the start values
+    parameter_files : parameter files; the first one gives the start values
     """
 
     model: Model
@@ -101,7 +101,7 @@ def list_modules() -> list[PageModule]:
 
 
 def compile_modules(page_modules: Sequence[PageModule]) -> list[bytes]:
-    """Compile modules in parallel threads; returns the binaries."""
+    """Compile modules to WebAssembly in parallel threads; returns the binaries."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(PageModule.compile_module, page_modules))
 
@@ -137,7 +137,7 @@ _SLIDER_FACTOR = 10.0
 
 
 def describe_module(module: PageModule) -> dict[str, object]:
-    """JSON object of a module: everything except the binary."""
+    """Describe a module as a JSON object: all of its content except the WebAssembly binary."""
     model, first = module.model, module.files[0]
     kind, bench = KINDS[model.joint], _laboratory_model(model)
     bound = set(_bound_parameters(first))
@@ -173,8 +173,8 @@ def describe_module(module: PageModule) -> dict[str, object]:
 def conjugate_pairs(model: Model) -> dict[str, str]:
     """Energy-conjugate pairs of inputs and outputs: {input: output}.
 
-    The output has the same suffix as the input. For the input of the ramp without a suffix it is the first
-    output with a matching unit.
+    Their units are N and m, or N.m and rad, and their suffixes are equal (`f_x` and `s_rel_x`). If the input
+    of the load ramp has no suffix, its partner is the first output with a matching unit.
     """
     conjugates = {}
     for i in model.inputs:
@@ -186,7 +186,7 @@ def conjugate_pairs(model: Model) -> dict[str, str]:
 
 
 def _laboratory_model(model: Model) -> LaboratoryModel:
-    """Additions of the joint's module `laboratory` to a model; an empty object if there are none."""
+    """Additions to the page of a model, from the joint's module `laboratory`; empty if it defines none."""
     module = load_tool_module(KINDS[model.joint], "laboratory")
     benches: dict[str, LaboratoryModel] = module.LABORATORY if module else {}
     return benches.get(model.name, LaboratoryModel())
@@ -250,7 +250,7 @@ def _slider_span(
 
 
 def _bound_parameters(file: ParameterFile) -> Iterator[str]:
-    """Yield the parameters that must not change because values compiled into the code depend on them."""
+    """Yield the parameters that the page must not change: values compiled into the C code depend on them."""
     kind = KINDS[file.joint]
     for name, value in file.values_by_name.items():
         if isinstance(value, float):

@@ -11,7 +11,11 @@ from jointfmu_fmu_src.joint_parts import RampPanel
 
 
 class PublishedQuantity(NamedTuple):
-    """Output of the FMU for a published quantity, and {argument of the quantity: variable of the FMU}."""
+    """Output and variables of an FMU that correspond to a published quantity.
+
+    output    : output with the published quantity
+    arguments : {argument of the published quantity: variable of the FMU}
+    """
 
     output: str
     arguments: Mapping[str, str]
@@ -72,7 +76,7 @@ class TransmissionView(NamedTuple):
 
 
 class Example(NamedTuple):
-    """Example values that show additional behaviour of the joint, and their description."""
+    """Values of variables that a button on the page sets to show an effect of the joint; description."""
 
     doc: str
     values: Mapping[str, float]

@@ -49,7 +49,7 @@ class LoadHistory:
 
     @property
     def loop_inputs(self) -> dict[str, float]:
-        """Inputs during the load cycles: start values, or the settings of the model if these are zero."""
+        """{input: value} in the load cycles: the start value, or if it is zero the setting of the cycles."""
         assert self.model.load_cycle
         settings = self.model.load_cycle.settings
         return {name: value or float(settings.get(name, 0.0)) for name, value in self.start_values.items()}
@@ -71,7 +71,7 @@ class LoadHistory:
     def _largest_amplitude(self, output: str) -> float:
         """Largest amplitude of the load cycles.
 
-        It is the amplitude of the model, or, if that is less, twice the displacement at gross slip.
+        The smaller one of the amplitude in `Model.load_cycle` and twice the displacement at gross slip.
         """
         loop = self.model.load_cycle
         assert loop
@@ -97,7 +97,7 @@ class LoadHistory:
         return RampResult({key: columns[key] for key in read}, units, ())
 
     def _find_law_limit(self) -> tuple[float, str] | None:
-        """Find the end of the law: smallest ramped input with a new warning, and the warning.
+        """Find the end of the law's range: the smallest ramped input with a new warning, and the warning.
 
         New is a warning that is absent at zero. None if none appears up to 2^10 times the end of the ramp.
         """

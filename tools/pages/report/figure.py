@@ -30,8 +30,8 @@ def _read_asset(name: str) -> str:
 
 
 ROLE_SET, ROLE_INDEPENDENT, ROLE_PREDICTED = "set by it", "set independently", "predicted"
-"""Role of a published number: a parameter was set from it; a parameter has the same meaning but another
-source; the number is independent of all parameters, so it is a prediction."""
+"""Roles of a published number: a parameter was set from it; a parameter has the same meaning, but another
+source; no parameter was set from it, so the joint predicts it."""
 
 
 class ComparisonRow(NamedTuple):

@@ -129,7 +129,7 @@ class _ReportRow(NamedTuple):
 
     display_value, unit : value in a display unit, the unit
     si_value            : value in SI units; empty if the display unit is the SI unit
-    doc, kind, source   : meaning, origin, source
+    doc, origin, source : meaning, origin, source
     """
 
     name: str

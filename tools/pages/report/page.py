@@ -24,7 +24,7 @@ from .systems import motion_figures, resonance_figures, ring_down_figures
 def build_figures(job_result: Any) -> dict[str, list[Figure]]:
     """Build the figures of all joints: {joint: figures}.
 
-    job_result : result of `python build_fmus.py` with simulated systems
+    build_result : result of `python build_fmus.py` with simulated systems
     """
     return {name: _joint_figures(kind, job_result) for name, kind in KINDS.items()}
 
@@ -32,7 +32,7 @@ def build_figures(job_result: Any) -> dict[str, list[Figure]]:
 def write_report(path: Path, outcome: Any) -> None:
     """Write the self-contained page.
 
-    outcome : result of `python build_fmus.py`, with the figures of `build_figures`
+    build_result : result of `python build_fmus.py`, with the figures of `build_figures`
     """
     page = load_template(Path(__file__).with_name("page.html")).render(
         version=__version__,

@@ -155,15 +155,15 @@ class _ExchangeSimulation:
             self.instance.set_values({name: value})
 
     def _write_nominals(self, values: object, count: int) -> None:
-        """Write the nominal values of the states times FLOOR: below these sizes the tolerance is absolute.
+        """Write the nominal values of the states times MIN_SCALE_RATIO; below these, tolerances are absolute.
 
-        values, count : array of the solver, and its length
+        solver_array, state_count : array of the solver to be filled, and its length
         """
         self.fmu.getNominalsOfContinuousStates(values, count)
         np.ctypeslib.as_array(values, (count,))[:] *= MIN_SCALE_RATIO
 
     def _c_callback(self, name: str) -> Callable[..., None]:
-        """C function of the FMU as a callback of the solver; its first failure is kept in `failure`.
+        """Make a solver callback of a C function of the FMU; its first failure is kept in `first_failure`.
 
         The function is called directly, because fmpy's wrapper takes longer than most laws.
         """
@@ -180,7 +180,7 @@ class _ExchangeSimulation:
         return call
 
     def _wrap_callback(self, call: Callable[..., object]) -> Callable[..., None]:
-        """Python function as a callback of the solver; its first exception is kept in `failure`.
+        """Wrap a Python function as a solver callback; its first exception is kept in `first_failure`.
 
         The solver is C code and does not pass exceptions on.
         """
@@ -195,7 +195,7 @@ class _ExchangeSimulation:
 
 
 class _NoInput:
-    """Input object for fmpy's solver without effect: the inputs are set together with the time."""
+    """Input object without effect for fmpy's solver, since `_set_time` already sets the inputs."""
 
     @staticmethod
     def apply(time: float) -> None:

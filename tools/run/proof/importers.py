@@ -155,5 +155,5 @@ FMI_VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 
 
 def list_interfaces(importer: str) -> list[str]:
-    """FMI interfaces in which an importer runs FMUs on this platform; fmpy lacks its solver on some."""
+    """FMI interfaces that an importer supports on this platform; model exchange needs the solver of fmpy."""
     return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.has_solver()]

@@ -55,7 +55,7 @@ class Experiment:
     stimuli    : inputs over time
     references : reference results over time
     interfaces : FMI interfaces for which the experiment is meant
-    scales     : {output: size to which the relative tolerance refers, instead of each reference value}
+    output_scales : {output: size to which the relative tolerance refers, instead of each reference value}
     unsupported_reason : why the experiment cannot be executed by jointfmu; empty if it can
     """
 
@@ -76,7 +76,7 @@ class Experiment:
 class RelatedFiles:
     """Reader of the related files of an FMU: the files named in its manifest and experiments.
 
-    members : {path: content} of files to be read instead of the files in the FMU
+    member_contents : {path: content} of files to be read instead of the files in the FMU
 
     All methods raise ValueError, one line that names FMU and file, if a file is missing or broken.
     """
@@ -210,7 +210,7 @@ class RelatedFiles:
         return settings
 
     def _resolve_path(self, base: str, source: str) -> str:
-        """Path in the FMU of a source address, which is relative to the member `base`."""
+        """Path in the FMU of a source address, which is relative to the file `base_member` in the FMU."""
         if urlsplit(source).scheme:
             raise ValueError(f"{self.fmu}: {base} names {source}; expected a file in the FMU")
         return posixpath.normpath(posixpath.join(posixpath.dirname(base), unquote(source)))

@@ -48,7 +48,7 @@ class Outcome:
     """Outcome of an experiment: the worst point of each output, or an error.
 
     interface : FMI interface in which the experiment was executed; empty if it was not executed
-    points    : worst point of each output
+    worst_points    : worst point of each output
     compared_points : number of compared times
     error     : error message; empty if none occurred
     """
@@ -72,7 +72,7 @@ class Outcome:
 
     @property
     def worst(self) -> WorstPoint | None:
-        """Worst point of all outputs; None if nothing was compared."""
+        """Point with the largest error over tolerance, of all outputs; None if nothing was compared."""
         return max(self.points, key=lambda point: point.error_ratio, default=None)
 
     @property
@@ -87,7 +87,7 @@ class Proof:
 
     importer   : name of the importer
     interfaces : FMI interfaces in which experiments were executed
-    compared_starts : number of compared start values
+    compared_start_count : number of compared start values
     start_differences : a line for each start value that differs from modelDescription.xml or from
         `ExpectedContents`
     outcomes   : outcomes of the experiments, for each interface

@@ -121,7 +121,7 @@ def _find_tolerance(experiment: Experiment) -> float:
 
 
 def _insert_corners(times: Array, corners: Array) -> Array:
-    """Insert the corners of the inputs [s] into communication points [s]; a corner replaces an equal time."""
+    """Add the corner times of the inputs [s] to communication points [s]; a corner replaces an equal time."""
     equal = TIME_TOLERANCE * float(np.min(np.diff(times)))
     inner = np.unique(corners[(corners > times[0] + equal) & (corners < times[-1] - equal)])
     positions = np.searchsorted(inner, times)

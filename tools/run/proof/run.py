@@ -31,7 +31,7 @@ class ExpectedContents:
 
     source  : name of the source, for messages
     start_values : {variable: start value}
-    members : {path: content} of a manifest and its related files, used instead of those in the FMU
+    member_contents : {path: content} of a manifest and its related files, used instead of those in the FMU
     """
 
     source: str

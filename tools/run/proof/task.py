@@ -22,7 +22,7 @@ class Task:
     inputs    : {input: values (n)}; at a jump the value after it
     inputs_before : {input: values (n)}; at a jump the value before it
     outputs   : names of the variables to be read
-    kinds     : {variable: kind} of inputs and outputs: "real", "integer" or "boolean"
+    variable_kinds     : {variable: kind} of inputs and outputs: "real", "integer" or "boolean"
     tolerance : relative tolerance of the solver [1]
     comparison_times : times [s] at which outputs are compared; empty: outputs at all communication points
     """

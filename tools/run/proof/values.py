@@ -63,7 +63,7 @@ def input_values(
 ) -> list[Any]:
     """Values of an input at times (n) [s]: real inputs are interpolated linearly, others are held.
 
-    left_limit : at a jump, take the value before it instead of the value after it; real inputs only
+    is_left_limit : at a jump, take the value before it instead of the value after it; real inputs only
     """
     if variable_kind(variable) != "real":
         return [convert_value(variable, value) for value in stimuli.hold(variable.name, times).tolist()]

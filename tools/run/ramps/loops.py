@@ -61,7 +61,7 @@ class CyclicPath:
         if not 0.0 < amplitude < np.inf:
             raise ValueError(f"loop = {amplitude:g} is outside (0, inf): the amplitude of the input")
         phase = np.arange(self.points // 4 + self.cycles * self.points + 1) / self.points
-        turned = np.abs((phase + 0.25) % 1.0 - 0.5)  # 1/4 at zero, least at the top
+        turned = np.abs((phase + 0.25) % 1.0 - 0.5)  # 1/4 at the centre, 0 at the upper end
         value = 1.0 - 4.0 * turned if self.shape == "triangle" else np.sin(2.0 * np.pi * phase)
         return np.asarray(self.centre + amplitude * value)
 
@@ -251,9 +251,9 @@ def find_conjugate_output(
 
     If several outputs are conjugate, the one with the suffix of the input is chosen.
 
-    inputs, outputs : {name: unit}
-    output          : output that the user states; None: find it
-    fmu_label       : name of the FMU, for messages
+    input_units, output_units : {name: unit}
+    output                    : output that the user states; None: find it
+    fmu_label                 : name of the FMU, for messages
 
     Raises ValueError if no output is conjugate, or if the stated output is not.
     """

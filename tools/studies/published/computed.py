@@ -15,8 +15,8 @@ from ...common.joint_parts import load_tool_module
 class CalibrationFit:
     """Fit of parameters to calibration points.
 
-    unknowns : {parameter: start value > 0}; their logarithms are fitted, so they stay positive
-    points   : ids of the calibration points, as many as unknowns
+    unknowns  : {parameter: start value > 0}; their logarithms are fitted, so they stay positive
+    point_ids : ids of the calibration points, as many as unknowns
     """
 
     unknowns: Mapping[str, float]

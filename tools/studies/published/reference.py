@@ -1,4 +1,4 @@
-"""Published numbers: models/reference/*.toml."""
+"""Published numbers of papers, read from models/reference/*.toml, and trivial guesses of them."""
 
 import tomllib
 from collections.abc import Mapping, Sequence

@@ -42,7 +42,7 @@ class ValidatedPoint:
 
     @property
     def nearer_estimate(self) -> str:
-        """Nearer one to the published value: `law` (computed value) or `guess`; empty without a guess."""
+        """Estimate nearer to the published value: `law` (computed value), `guess`; empty without a guess."""
         if self.guess_error is None:
             return ""
         return "law" if abs(self.error) < abs(self.guess_error) else "guess"
@@ -101,7 +101,7 @@ def missed_points(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Counts of a comparison, which the command, the README, the report and the pages state.
+    """Numbers of compared points by role and verdict, as the README, the report and the pages state them.
 
     numbers        : number of published numbers, without claims
     printed        : how many of them the papers print
@@ -126,7 +126,7 @@ class Counts:
 
 
 def count_points(rows: Sequence[ValidatedPoint]) -> Counts:
-    """Count the points of a comparison."""
+    """Count the compared points by role and verdict."""
     numbers = [row.point for row in rows if row.point.role != "claim"]
     printed = sum(point.printed for point in numbers)
     guessed = [row for row in rows if row.nearer_estimate]
@@ -193,7 +193,7 @@ def _error_scale(point: Point) -> tuple[float, str]:
 
 
 def format_claim(row: ValidatedPoint) -> str:
-    """Format the truth of a claim; if the paper's equations contradict its text, also that of the text."""
+    """Format whether a claim holds; if the paper's equations contradict its text, also what it states."""
     p = row.point
     return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
 

@@ -26,7 +26,7 @@ class InputSource(NamedTuple):
 class SystemComponent:
     """Component of a system: load, joint or body.
 
-    model        : for a body without the parameters in LAG_PARAMETERS
+    model        : model of its FMU; that of a body lacks the parameters in LAG_PARAMETERS
     sources      : {input: its source}; None: the input is zero. Inputs without an entry are inputs of the
         system
     start_values : {input of the system: start value} if it is not zero
