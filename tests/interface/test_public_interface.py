@@ -158,7 +158,7 @@ def test_several_inputs_over_a_time_of_their_own(native):
     found = jointfmu.run(fmu, {"preload": 9e3, "s_rel_x": s}, time=time)
     own = jointfmu.load("BoltedJoint").follow(preload=9e3, s_rel_x=s)
     np.testing.assert_allclose(found["f_x"], own["f_x"], rtol=1e-9, atol=1e-9)
-    for wrong, message in (({"time": [0.0, 1.0]}, "lengths"), ({"time": [0.0, 2.0, 1.0]}, "rise")):
+    for wrong, message in (({"time": [0.0, 1.0]}, "lengths"), ({"time": [0.0, 2.0, 1.0]}, "increase")):
         with pytest.raises(ValueError, match=message):
             jointfmu.run(fmu, {"s_rel_x": s}, **wrong)
 

@@ -119,7 +119,7 @@ def test_equations_are_solved_as_lapack_does():
 def test_too_few_points_are_refused():
     with pytest.raises(
         ValueError,
-        match=r"^6 points are too few for " r"this contact; " r"expected at least " r"\d+ for this contact$",
+        match=r"^6 points are too few for this contact; expected at least \d+$",
     ):
         reduce_points(contact("frame"), 6)
 

@@ -258,7 +258,7 @@ def test_another_joint_is_loaded_beside_it(
     mujoco.mj_loadPluginLibrary(str(plugin(native / "fmi2" / "GearMesh.fmu", tmp_path)))
     monkeypatch.setitem(globals(), "NAME", "GearMesh")
     with pytest.raises(
-        ValueError, match="drive0: rigid_flat = 'maybe' is no Boolean; expected true or false"
+        ValueError, match="drive0: rigid_flat = 'maybe' is not a Boolean; expected true or false"
     ):
         robot({"rigid_flat": "maybe"})
     model, data = robot({"rigid_flat": "false"})
