@@ -127,7 +127,7 @@ def test_another_height_of_the_law_beside_it_is_refused(joint):
     near = load_text(format_parameter_file(file) + SECTION + entry("h", 1.009 * file.values_by_name[name]))
     assert near.values_by_name[name] == file.values_by_name[name]
     with pytest.raises(
-        ValueError, match=r"h = .* m does not agree with roughness\.Ra1, which " r"give 1\.003e-06 m: "
+        ValueError, match=r"h = .* m does not agree with roughness\.Ra1, which give 1\.003e-06 m: "
     ):
         load_text(format_parameter_file(file) + SECTION + entry("Ra1", 0.8e-6))
 

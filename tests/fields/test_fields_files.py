@@ -234,7 +234,7 @@ def test_volume_mesh_of_two_bodies(tmp_path):
     path = tmp_path / "a.vtu"
     meshio.Mesh(points, {"hexahedron": bricks}, {"CPRESS": both, "U": np.zeros((4 * n, 3))}).write(path)
     with pytest.raises(
-        ValueError, match=r"state which point data .*; the file has CPRESS, " r"U \(3 components\)"
+        ValueError, match=r"state which point data .*; the file has CPRESS, U \(3 components\)"
     ):
         FieldReader(**UNITS).read_field(path)
     with pytest.raises(ValueError, match=r"has no point data 'PRES'; there are CPRESS"):

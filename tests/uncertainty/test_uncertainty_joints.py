@@ -136,7 +136,7 @@ def test_a_study_that_misses_the_spring_is_refused(monkeypatch):
     monkeypatch.setattr(propagate, "MAX_REDUCTION_ERROR", 1e-12)
     task = state_problem(load_default("harmonic_drive"), {"surface.D": "+-1%"}, None, 3)
     with pytest.raises(
-        RuntimeError, match=r"differs from the " r"evaluation of the " r"joint by .* " r"at surface\.D = "
+        RuntimeError, match=r"differs from the evaluation of the joint by .* at surface\.D = "
     ):
         propagate.compute_bands(task, propagate.sample_designs(task, 8, 0)[0])
 
