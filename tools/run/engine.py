@@ -67,6 +67,7 @@ def open_joint(model: Model, file: ParameterFile) -> JointEngine:
 
     Raises ValueError, one line, for parameters that the joint refuses.
     """
+    model = model.with_parameters(file.joint, file.values)
     try:
         return CompiledJoint(model, file)
     except (ImportError, OSError, RuntimeError) as error:
