@@ -16,7 +16,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
     friction_and_ratio,
     hysteresis_loss,
     lost_motion,
-    make_python_test_rig,
+    make_test_rig,
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
 from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_SPEED
@@ -97,7 +97,7 @@ def single_drives():
     """Friction of the drives of which it is printed: as they are made, and without their efficiency."""
     rows, both = [], [(item, made(item.name)) for item in drives_with_friction()]
     for item, file in both:
-        n, drive = item.numbers, make_python_test_rig(MODEL, file)
+        n, drive = item.numbers, make_test_rig(MODEL, file)
         back, rated = n["back_driving_torque"].value, n["rated_torque"].value
         found = drive.back_driving_torque(10.0 * back)
         guess = abs(n["ratio"].value) * n["starting_torque"].value
@@ -113,7 +113,7 @@ def single_drives():
             free = file.with_values({"load_loss": 0.0}, "user", "guess")
             values = [n["efficiency"].value, drive.efficiency(CATALOGUE_SPEED, rated)]
             values += [
-                make_python_test_rig(MODEL, f).efficiency(CATALOGUE_SPEED, rated) for f in (freed, free)
+                make_test_rig(MODEL, f).efficiency(CATALOGUE_SPEED, rated) for f in (freed, free)
             ]
             cells += [f"{100.0 * value:.1f}" for value in values]
         else:
@@ -143,7 +143,7 @@ def points(drive, column):
 def turned(**friction):
     """A drive 1:50 of 172 N.m on the bench; its stiffness plays no part."""
     given = {"ratio": 50.0, "rated_torque": 172.0, **friction}
-    return make_python_test_rig(MODEL, load_default("harmonic_drive").with_values(given, "user", "read"))
+    return make_test_rig(MODEL, load_default("harmonic_drive").with_values(given, "user", "read"))
 
 
 def over_load():

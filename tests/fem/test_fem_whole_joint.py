@@ -99,5 +99,6 @@ def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     others = (soft, pulled, JointFiniteElements.from_assembly(block(), "edge"))
     assert [each.is_mirrored for each in (joint, *others)] == [True, False, False, False]
     monkeypatch.setattr(JointFiniteElements, "is_mirrored", False)
+    joint = replace(joint)  # without its cached matrices
     for one, expected in zip(found, moved(), strict=True):
         assert np.max(np.abs(one - expected)) < 1e-9 * np.max(np.abs(expected))

@@ -7,6 +7,7 @@ body that moves like a rigid body, with the structure to which the joint is fixe
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -112,6 +113,18 @@ class JointFiniteElements:
             and np.allclose(*self.bolt_head_loads, rtol=0.0, atol=FACE_TOLERANCE)
         )
 
+    @cached_property
+    def stiffness_matrices(self) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+        """Stiffness matrix (n, n) [N/m] of each unsupported body."""
+        first, second = self.bodies
+        if not self.is_mirrored:
+            return first.stiffness, second.stiffness
+        matrix = first.stiffness
+        sign = np.tile(MIRROR_SIGNS, first.unknown_count // 3)
+        row_sign = np.repeat(sign, np.diff(matrix.indptr))
+        mirrored = row_sign * matrix.data * sign[matrix.indices]
+        return matrix, sp.csr_matrix((mirrored, matrix.indices, matrix.indptr), shape=matrix.shape)
+
     def relative_displacement_matrix(self, axis: int) -> sp.csr_matrix:
         """Matrix (q, n) [1]: displacement of side 2 relative to side 1 along an axis, per unknown.
 
@@ -146,7 +159,7 @@ class JointFiniteElements:
 
         Raises RuntimeError if a body can move freely.
         """
-        bodies = sp.block_diag([body.stiffness for body in self.bodies], format="csr")
+        bodies = sp.block_diag(self.stiffness_matrices, format="csr")
         opening = [self.relative_displacement_matrix(axis) for axis in AXES]
         weights = [sp.diags(self.interface.quadrature_area * interface_stiffness[:, axis]) for axis in AXES]
         contact = sum(b.T @ w @ b for b, w in zip(opening, weights, strict=True))
@@ -246,13 +259,12 @@ class LinearJoint:
         displacement[self.free_unknowns] = self.stiffness_factor.solve(loads[self.free_unknowns])
         return displacement
 
-    @property
+    @cached_property
     def stiffness(self) -> Array:
         """Stiffness matrix (6, 6) [N/m, N, N.m] of the joint about the centroid of its contact."""
-        return np.asarray(
-            self.unit_motion_displacement.T
-            @ ((self.contact_matrix + self.body_matrix + self.bolt_matrix) @ self.unit_motion_displacement)
-        )
+        displacement = self.unit_motion_displacement
+        forces = (m @ displacement for m in (self.contact_matrix, self.body_matrix, self.bolt_matrix))
+        return np.asarray(displacement.T @ sum(forces))
 
     def compliances(self) -> Compliances:
         """Compliances of the joint about its contact centroid, by source: interface, members, bolts."""

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, build_parameter_set
+from jointfmu.quantity import Array, build_parameter_set, flatten_parameters
 
 _ERROR, _WARNING = 3, 1
 """Status of a log message in FMI 3.0."""
@@ -67,11 +67,38 @@ def open_joint(model: Model, file: ParameterFile) -> JointEngine:
 
     Raises ValueError, one line, for parameters that the joint refuses.
     """
+    model = model.with_parameters(file.joint, file.values)
     try:
         return CompiledJoint(model, file)
     except (ImportError, OSError, RuntimeError) as error:
         _announce_python(" ".join(str(error).split()))
         return PythonJoint(model, file)
+
+
+class TrialJoint:
+    """A joint that is evaluated with many parameter sets, for example by a fit.
+
+    It is opened anew only if a parameter changes that the FMU does not expose.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._engine: JointEngine | None = None
+        self._fixed_values: tuple[Any, ...] = ()
+
+    def with_parameters(self, parameters: Any) -> JointEngine:
+        """The joint with a parameter set. An engine that was returned before must not be used any more.
+
+        Raises ValueError as `open_joint` and `JointEngine.follow`.
+        """
+        model = self._model.with_parameters(self._model.joint, parameters)
+        values, exposed = flatten_parameters(parameters), model.parameter_fields()
+        fixed = (type(parameters), [(name, x) for name, x in values.items() if name not in exposed])
+        if self._engine is None or fixed != self._fixed_values:
+            self._engine = open_joint(model, ParameterFile(model.joint, "trial", parameters, {}, {}))
+            self._fixed_values = fixed
+        self._engine.set_parameters({name: values[name] for name in exposed})
+        return self._engine
 
 
 @lru_cache(maxsize=1)

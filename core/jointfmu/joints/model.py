@@ -145,7 +145,8 @@ class Model:
     advance  : function (tabulated joint, inputs, history variables) -> outputs and new history variables
         after a straight path to the inputs; the history variables passed in are not modified
     load_cycle : load cycle that shows the hysteresis
-    make_variant : function (model, parameter set) -> model with additional outputs for this parameter set
+    make_variant : function (model, parameter set) -> model with additional outputs for this parameter set;
+        None: there are none, or the model has them already
     alias    : name that the user gave to the FMU; "": `name`
 
     Raises ValueError if only one of `initial_history` and `advance` is given, or a loop without them.
@@ -208,7 +209,7 @@ class Model:
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
         model = replace(self, parameters=type(parameters))
-        return self.make_variant(model, parameters) if self.make_variant else model
+        return replace(self.make_variant(model, parameters), make_variant=None) if self.make_variant else model
 
     def with_load_range(self, spring: TabulatedJoint, start_values: VariableValues) -> "Model":
         """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""

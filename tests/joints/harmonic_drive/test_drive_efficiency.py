@@ -15,7 +15,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue, job
 from jointfmu_tools.joints.harmonic_drive.efficiency import (
     drives_with_friction,
-    make_python_test_rig,
+    make_test_rig,
     open_fmu_test_rig,
 )
 from jointfmu_tools.joints.harmonic_drive.friction import (
@@ -94,9 +94,9 @@ def drive_file(**changes: float) -> ParameterFile:
 
 
 @pytest.mark.parametrize("ratio", [100.0, -50.0])
-def test_the_python_drive_on_the_bench_is_the_fmu(fmu: Path, ratio: float) -> None:
+def test_the_drive_without_an_fmu_gives_the_torques_of_the_fmu(fmu: Path, ratio: float) -> None:
     given = GIVEN | {"ratio": ratio}
-    own = make_python_test_rig(SPRING, drive_file(**given))
+    own = make_test_rig(SPRING, drive_file(**given))
     with open_fmu_test_rig(fmu, given) as drive:
         for speed, load in ((3.0, 0.5), (100.0, 5.0)):
             # the table of the FMU is the same to 1e-9
@@ -112,7 +112,7 @@ def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
     assert f"drives the motor back: {100.0 * 0.03 / 0.88:.4g} N m." in page
     for law in KINDS["harmonic_drive"].laws:  # of a straight line the wind-up is at the bracket's end
         other = load_default("harmonic_drive", law).with_values(GIVEN, "user", "test")
-        bench = make_python_test_rig(SPRING, other)
+        bench = make_test_rig(SPRING, other)
         for held in (0.2, 1.0, 5.0):
             carried = held / abs(bench.ratio)
             expected = carried / (1.12 * carried + 0.02 + 0.01 * math.exp(-400.0) + 0.02)
@@ -146,7 +146,7 @@ def of(drive, column):
 def turned(ratio, rated, **friction):
     """A drive on the bench; its stiffness plays no part."""
     given = {"ratio": ratio, "rated_torque": rated} | friction
-    return make_python_test_rig(SPRING, load_default("harmonic_drive").with_values(given, "user", "read"))
+    return make_test_rig(SPRING, load_default("harmonic_drive").with_values(given, "user", "read"))
 
 
 def fixed_by(full, half, share, rated, ratio, rpm):
@@ -315,7 +315,7 @@ def test_drag_and_temperature(tmp_path, capsys):
     assert f"starting_torque    {at_rest:.4g} N.m  at the wave generator, at 45 degrees C" in out
     found = rated_efficiency(file.values, 318.15)
     assert f"efficiency         {found:.4g}  at rated torque and 2000 rev/min, at 45 degrees C" in out
-    warm = make_python_test_rig(SPRING, file)
+    warm = make_test_rig(SPRING, file)
     assert warm.efficiency(CATALOGUE_SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
     kelvin = made("CSG-25-100", temperature="318.15K")
     assert kelvin.inputs == file.inputs

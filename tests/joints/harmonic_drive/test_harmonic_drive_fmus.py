@@ -11,7 +11,7 @@ from browser import Browser, browser
 from clients import needs
 from conftest import made_once
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
-from jointfmu_tools.joints.harmonic_drive.efficiency import make_python_test_rig
+from jointfmu_tools.joints.harmonic_drive.efficiency import make_test_rig
 from jointfmu_tools.joints.harmonic_drive.job import LABORATORY
 from jointfmu_tools.pages.laboratory.assemble import write_laboratory
 from jointfmu_tools.run.ramps import ramp
@@ -251,7 +251,7 @@ def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
     example = LABORATORY[NAME].example
     assert example
     file = load_default("harmonic_drive").with_values({**example.values, **given}, "user", "a test")
-    bench = make_python_test_rig(MODELS[NAME], file)
+    bench = make_test_rig(MODELS[NAME], file)
     assert len(found["loads"]) > 10
     for load, value in zip(found["loads"], found["efficiency"], strict=True):
         # friction has built up to 1 - exp(-50) in the page, to 1 - exp(-20) on the bench

@@ -15,7 +15,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
     friction_and_ratio,
     hysteresis_loss,
     lost_motion,
-    make_python_test_rig,
+    make_test_rig,
     open_fmu_test_rig,
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
@@ -235,7 +235,7 @@ def test_a_printed_drive_has_its_friction(item):
     does not ask for less than nothing. One share for both senses was 3 to 11 % off.
     """
     file, printed = made(item.name), item.numbers
-    drive = make_python_test_rig(SPRING, file)
+    drive = make_test_rig(SPRING, file)
     back, start = printed["back_driving_torque"].value, printed["starting_torque"].value
     assert drive.starting_torque() == pytest.approx(start, rel=1e-9)
     assert drive.motor_torque(CATALOGUE_SPEED, 0.0) == pytest.approx(
@@ -267,18 +267,18 @@ def test_efficiency_at_rated_torque_is_predicted_without_it(name):
     numbers = {k: v for k, v in PRINTED[name].numbers.items() if k != "efficiency"}
     without = type(PRINTED[name])(name, numbers)
     file = made(name).with_values(friction_and_ratio(without), "user", "without efficiency")
-    drive, rated = make_python_test_rig(SPRING, file), numbers["rated_torque"].value
+    drive, rated = make_test_rig(SPRING, file), numbers["rated_torque"].value
     published = PRINTED[name].numbers["efficiency"].value
     missed = drive.efficiency(CATALOGUE_SPEED, rated) - published
     assert 0.0 < missed < 2.0 * SCATTER
-    guess = make_python_test_rig(SPRING, file.with_values({"load_loss": 0.0}, "user", "guess"))
+    guess = make_test_rig(SPRING, file.with_values({"load_loss": 0.0}, "user", "guess"))
     assert missed < 0.7 * (guess.efficiency(CATALOGUE_SPEED, rated) - published)
 
 
 def test_the_fmu_has_the_friction_of_every_printed_drive(native):
     """As on the Python drive: starting and back-driving torque, efficiency."""
     for item in PRINTED.values():
-        own, back = make_python_test_rig(SPRING, made(item.name)), item.numbers["back_driving_torque"].value
+        own, back = make_test_rig(SPRING, made(item.name)), item.numbers["back_driving_torque"].value
         with open_fmu_test_rig(
             native / "fmi2" / "HarmonicDriveSpring.fmu", friction_and_ratio(item)
         ) as drive:

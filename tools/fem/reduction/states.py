@@ -18,7 +18,7 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import working_preload
 from jointfmu.quantity import Array
 
-from ..elasticity import Cholesky, ElasticBody, IndexArray
+from ..elasticity import Cholesky
 from ..whole_joint import AXES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
 from .patch_work import MIN_DISPLACEMENT
 
@@ -92,21 +92,28 @@ class CellLoads:
             [*(means @ joint.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
         ).tocsr()
         first, second = joint.bodies
-        displacement1 = _solve_body(first, joint.attachment_unknowns[0], loads[:, : first.unknown_count])
+        displacement = np.zeros(loads.shape[::-1])
+        displacement1, displacement2 = np.split(displacement, [first.unknown_count])
+        _solve_body(joint, 0, loads[:, : first.unknown_count], displacement1)
         if joint.is_mirrored:
             sign = np.repeat([1.0, -1.0, 1.0], (means.shape[0], 2 * means.shape[0], stretch.shape[0]))
-            displacement2 = np.tile(MIRROR_SIGNS, second.unknown_count // 3)[:, None] * displacement1 * sign
+            np.multiply(displacement1, sign, out=displacement2)
+            for axis, mirror_sign in enumerate(MIRROR_SIGNS):
+                displacement2[axis::3] *= mirror_sign
         else:
-            displacement2 = _solve_body(second, joint.attachment_unknowns[1], loads[:, first.unknown_count :])
-        return cls(joint, spring, normal_stiffness, loads, np.concatenate([displacement1, displacement2]))
+            _solve_body(joint, 1, loads[:, first.unknown_count :], displacement2)
+        return cls(joint, spring, normal_stiffness, loads, displacement)
 
 
-def _solve_body(body: ElasticBody, fixed_unknowns: IndexArray, unit_loads: sp.csr_matrix) -> Array:
-    """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed."""
-    displacement = np.zeros(unit_loads.shape[::-1])
-    free = np.setdiff1d(np.arange(body.unknown_count), fixed_unknowns)
-    displacement[free] = Cholesky(body.stiffness[free][:, free]).solve(unit_loads[:, free].T.tocsc())
-    return displacement
+def _solve_body(joint: JointFiniteElements, body: int, unit_loads: sp.csr_matrix, displacement: Array) -> None:
+    """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed.
+
+    body         : index of the body
+    displacement : (n, k) of zeros, to which the result is written
+    """
+    stiffness, fixed_unknowns = joint.stiffness_matrices[body], joint.attachment_unknowns[body]
+    free = np.setdiff1d(np.arange(len(displacement)), fixed_unknowns)
+    displacement[free] = Cholesky(stiffness[free][:, free]).solve(unit_loads[:, free].T.tocsc())
 
 
 def averaging_matrix(
@@ -164,8 +171,8 @@ class CellJoint:
         start = spring.preloaded_approach(preload, 0.0)
         return cls(spring, 0.5 * (compliance + compliance.T), rigid, start, preload)
 
-    def cell_forces(self, displacements: Array) -> tuple[Array, sp.csr_matrix]:
-        """Forces (3 n + b) [N] at displacements (3 n + b) [m] of cells and bolts, and symmetric tangent.
+    def cell_forces(self, displacements: Array) -> tuple[Array, "CellTangent"]:
+        """Forces (3 n + b) [N] at displacements (3 n + b) [m] of cells and bolts, and their tangent.
 
         Forces are changes from the preloaded joint. The order is: opening (n), displacement along x (n),
         displacement along y (n), elongation of the bolts (b).
@@ -190,21 +197,14 @@ class CellJoint:
         pull = bolts.stiffness * (elongation + bolts.gap(preload, elongation))
         force = np.concatenate([-area * (p - p_preload), area * secant * u, area * secant * v, pull])
         diagonal = [area * k, area * (secant + softening * u * u), area * (secant + softening * v * v), bolt]
-        cross = np.zeros(displacements.size)
-        cross[n : 2 * n] = area * softening * u * v  # d(force along x) / d(displacement along y)
-        slope = sp.diags(
-            [cross[: displacements.size - n], np.concatenate(diagonal), cross[: displacements.size - n]],
-            [-n, 0, n],
-        )
-        return force, slope.tocsr()
+        return force, CellTangent(np.concatenate(diagonal), area * softening * u * v)
 
     def stiffness(self) -> Array:
         """Stiffness (6, 6) [N/m, N, N.m] of the preloaded joint."""
-        slope = self.cell_forces(np.zeros(len(self.rigid_displacement)))[1]
-        identity = np.eye(len(self.rigid_displacement))
+        tangent = self.cell_forces(np.zeros(len(self.rigid_displacement)))[1]
+        matrix = np.eye(len(self.rigid_displacement)) + tangent.multiply(self.compliance)
         return np.asarray(
-            self.rigid_displacement.T
-            @ np.linalg.solve(identity + slope @ self.compliance, slope @ self.rigid_displacement)
+            self.rigid_displacement.T @ np.linalg.solve(matrix, tangent.multiply(self.rigid_displacement))
         )
 
     def solve_forces(self, motion: Array) -> Array:
@@ -214,13 +214,13 @@ class CellJoint:
         """
         prescribed = self.rigid_displacement @ motion
         g = np.zeros_like(prescribed)
-        force, slope = self.cell_forces(g)
+        force, tangent = self.cell_forces(g)
         residual = g + self.compliance @ force - prescribed
         for _ in range(MAX_NEWTON_STEPS):
-            step = -np.linalg.solve(np.eye(g.size) + (slope @ self.compliance).T, residual)
+            step = -np.linalg.solve(np.eye(g.size) + tangent.multiply(self.compliance).T, residual)
             for halvings in range(5):
                 g_trial = g + 0.5**halvings * step
-                force, slope = self.cell_forces(g_trial)
+                force, tangent = self.cell_forces(g_trial)
                 trial_residual = g_trial + self.compliance @ force - prescribed
                 if np.linalg.norm(trial_residual) < np.linalg.norm(residual):
                     break
@@ -241,6 +241,26 @@ class CellJoint:
                 yield factor * unit * (np.arange(6) == axis)
         for number in range(COMBINED_MOTION_COUNT):
             yield (2.0 * ((0.5 + (number + 1.0) * LOW_DISCREPANCY_STEPS) % 1.0) - 1.0) * unit
+
+
+@dataclass(frozen=True, slots=True)
+class CellTangent:
+    """Symmetric tangent (3 n + b, 3 n + b) [N/m] of the forces on n cells and b bolts.
+
+    diagonal : (3 n + b) [N/m]
+    cross    : (n) [N/m] derivative of the force along x by the displacement along y of the same cell
+    """
+
+    diagonal: Array
+    cross: Array
+
+    def multiply(self, matrix: Array) -> Array:
+        """Product with a matrix (3 n + b, k)."""
+        n = self.cross.size
+        product = self.diagonal[:, None] * matrix
+        product[n : 2 * n] += self.cross[:, None] * matrix[2 * n : 3 * n]
+        product[2 * n : 3 * n] += self.cross[:, None] * matrix[n : 2 * n]
+        return product
 
 
 def approach_at_stiffness(spring: BoltedJointSpring, normal_stiffness: Array) -> Array:

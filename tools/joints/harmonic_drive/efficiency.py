@@ -5,13 +5,13 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ...inputs.catalogue import CatalogueEntry
+from ...run.engine import open_joint
 from ...systems.master import Slave
 from .catalogue import list_drives
 from .friction import friction_parameters
@@ -42,32 +42,26 @@ def friction_and_ratio(catalogue_entry: CatalogueEntry) -> dict[str, float]:
     return {name: number.value for name, number in numbers.items()}
 
 
-class PythonDrive:
-    """Harmonic drive in Python with the interface of a running FMU; starts at rest at zero angles."""
+class SimulatedDrive:
+    """Harmonic drive without an FMU, with the interface of a running one; starts at rest at zero angles."""
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
-        assert model.initial_history
-        self._model, self._spring = model, model.tabulate(file.values)
-        self._memory = model.initial_history(self._spring)
-        self._rest = {v.name: file.start_value(v.name) for v in model.inputs}
-        self.set_inputs(0.0, 0.0, 0.0, 0.0)
-        self.do_step(0.0, 0.0)
+        self._joint = open_joint(model, file)
+        self._path = [(0.0,) * len(_FLANGE_MOTION)]
+        self._inputs = self._path[0]
 
     def set_inputs(self, *values: float) -> None:
-        self._inputs = {**self._rest, **dict(zip(_FLANGE_MOTION, values, strict=True))}
+        self._inputs = values
 
     def get_outputs(self) -> list[float]:
         """Outputs tau, tau1 [N.m] and K_WTS [N.m/rad] at the present inputs."""
-        outputs = self._advance()[0]
-        return [float(outputs[name]) for name in (*_TORQUE_OUTPUTS, "K_WTS")]
+        path = zip(*self._path, self._inputs, strict=True)
+        columns = self._joint.follow(dict(zip(_FLANGE_MOTION, path, strict=True))).columns
+        return [float(columns[name][-1]) for name in (*_TORQUE_OUTPUTS, "K_WTS")]
 
     def do_step(self, time: float, step_size: float) -> None:
-        """Accept the present inputs: update the history variables."""
-        self._memory = self._advance()[1]
-
-    def _advance(self) -> Any:
-        assert self._model.advance
-        return self._model.advance(self._spring, self._inputs, self._memory)
+        """Accept the present inputs: they become part of the load history."""
+        self._path.append(self._inputs)
 
 
 def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, stiffness: float) -> float:
@@ -100,10 +94,10 @@ class DriveTestRig:
     motor_angle : phi1 [rad]
     step_count  : steps so far
 
-    `open_fmu_test_rig` and `make_python_test_rig` create a rig.
+    `open_fmu_test_rig` and `make_test_rig` create a rig.
     """
 
-    drive: Slave | PythonDrive
+    drive: Slave | SimulatedDrive
     ratio: float
     presliding: float
     stiffness: float
@@ -172,10 +166,10 @@ def open_fmu_test_rig(path: Path, parameters: Mapping[str, float]) -> Iterator[D
         yield DriveTestRig(drive, ratio, presliding, stiffness)
 
 
-def make_python_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
-    """Make a test rig of the drive in Python, with the parameters of a file. No FMU is needed."""
+def make_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
+    """Make a test rig of the drive with the parameters of a file. No FMU is needed."""
     steady = file.with_values(_STEADY_PARAMETERS, "user", "steady")
-    drive = PythonDrive(model, steady)
+    drive = SimulatedDrive(model, steady)
     return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get_outputs()[2])
 
 

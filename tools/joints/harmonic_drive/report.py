@@ -29,7 +29,7 @@ from ...pages.report.figure import (
     Series,
 )
 from .catalogue import COLUMNS, STIFFNESS_NAMES, find_drive
-from .efficiency import DriveTestRig, hysteresis_loss, lost_motion, make_python_test_rig
+from .efficiency import DriveTestRig, hysteresis_loss, lost_motion, make_test_rig
 from .fit.drive import CatalogueRow
 from .friction import CATALOGUE_SPEED, FRICTION_COLUMNS, PARAMETER_OF_COLUMN
 
@@ -50,7 +50,7 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
     title = "Friction"
     if not FrictionSliders.for_drive(drive).is_active and drive.friction_viscous == 0.0:
         return [Figure(title, "The parameters contain no friction: the wave generator turns without loss.")]
-    bench = make_python_test_rig(model, file)
+    bench = make_test_rig(model, file)
     loads = drive.rated_torque * np.linspace(0.1, 1.0, _CURVE_POINTS) ** 2
     series = [
         Series(f"{rpm} rev/min", loads, [bench.efficiency(rpm * math.pi / 30.0, x) for x in loads])
@@ -136,7 +136,7 @@ def _comparison_rows(model: Model, file: ParameterFile, entry: CatalogueEntry) -
         number = printed[column]
         yield ComparisonRow(column, "rad", number.value, number.bound, measured(spring), role, number.source)
     known = [column for column in _FRICTION_UNITS if column in printed and printed[column].kind != "estimate"]
-    bench = make_python_test_rig(model, file) if known else None
+    bench = make_test_rig(model, file) if known else None
     for column in known:
         assert bench is not None
         number, (parameter, text) = printed[column], PARAMETER_OF_COLUMN[column]

@@ -20,6 +20,8 @@ ROUNDING_OFFSET = 0.5 - 0.01 * np.sqrt(2.0)
 """Number added before truncation to an integer [1]: rounds up slightly above half a step."""
 GRAM_BLOCK_SIZE = 22
 """Block size [1] for symmetric products: nearly half of the matrix is copied instead of computed."""
+GRAM_BATCH_SIZE = 64
+"""Number of columns [1] whose products are added in one call: they fit into a processor's cache."""
 ROUND_OFF_RATIO = 2.0**-46
 """Ratio to the largest number [1] below which a number counts as zero: round-off."""
 
@@ -92,12 +94,17 @@ def matrix_product(a: Array, b: Array) -> Array:
 
 
 def gram_matrix(rows: Array) -> Array:
-    """Symmetric matrix product a a^T (m, m) of rows a (m, n)."""
+    """Symmetric matrix product a a^T (m, m) of rows a (m, n); each sum is added in the order of the columns."""
     columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
     for first in range(0, len(rows), GRAM_BLOCK_SIZE):
-        last = first + GRAM_BLOCK_SIZE
-        for out_row, row in zip(out[first:last], rows[first:last], strict=True):
-            out_row[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
+        last = min(first + GRAM_BLOCK_SIZE, len(rows))
+        terms = np.zeros((1 + GRAM_BATCH_SIZE, last - first, last))  # the sum so far, then products
+        for begin in range(0, len(columns), GRAM_BATCH_SIZE):
+            batch = columns[begin : begin + GRAM_BATCH_SIZE]
+            end = 1 + len(batch)
+            np.multiply(batch[:, first:last, None], batch[:, None, :last], out=terms[1:end])
+            terms[0] = np.add.reduce(terms[:end], axis=0)
+        out[first:last, :last] = terms[0]
         out[:first, first:last] = out[first:last, :first].T
     return out
 

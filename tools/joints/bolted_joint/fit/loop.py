@@ -21,7 +21,6 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 from jointfmu.parameters import ParameterFile, load_default
@@ -37,7 +36,7 @@ from ....inputs.fitting.least_squares import Unknown, UnknownExchange
 from ....inputs.fitting.measurement import ColumnNames, Measurement, read_measurement
 from ....inputs.fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
 from .preload import FITTED_PARAMETERS as INTERFACE
-from .preload import SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
+from .preload import COMPLETE_JOINT, SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
 
 COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
 FITTED_PARAMETERS = {law: ("mu", *names) for law, names in INTERFACE.items()}
@@ -121,25 +120,19 @@ def _first_loading_of_elastic_sides(
     Displacements: s = uniform_length t + graded_length t^2, t from 0 to 1 in equal steps. If the last one is
     larger than `max_displacement` [m], all are scaled down to end there.
     """
-    spring, fraction = BoltedJointSpring.of(joint), np.linspace(0.0, 1.0, _ELASTIC_TABLE_STEPS + 1)
+    fraction = np.linspace(0.0, 1.0, _ELASTIC_TABLE_STEPS + 1)
     motion = (uniform_length * fraction + graded_length * fraction**2) * min(
         1.0, max_displacement / (uniform_length + graded_length)
     )
-    force, stiffness, _ = _follow_path(spring, preload, motion, spring.initial_history())
+    force, stiffness = _follow_path(joint, preload, motion)
     curve = CubicSpline(motion, force, bc_type=((1, stiffness[0]), (1, stiffness[-1])))
     return motion, force, curve(motion, 1)
 
 
-def _follow_path(
-    spring: BoltedJointSpring, preload: float, displacement: Array, history: Array
-) -> tuple[Array, Array, Array]:
-    """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], and history variables at the end."""
-    outputs = np.empty((2, displacement.size))
-    for i, x in enumerate(displacement.tolist()):
-        inputs = JointInputs(preload, 0.0, np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
-        out, history = spring.advance(inputs, history)
-        outputs[:, i] = -out["f_x"], out["K_xx"]
-    return outputs[0], outputs[1], history
+def _follow_path(joint: Bolted, preload: float, displacement: Array) -> tuple[Array, Array]:
+    """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], from the virgin state."""
+    columns = COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload, "s_rel_x": displacement}).columns
+    return -columns["f_x"], columns["K_xx"]
 
 
 def _masing_deviation(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
@@ -148,19 +141,20 @@ def _masing_deviation(joint: Bolted, preload: float, loops: Loops, law: Hysteres
     Bending of the bodies changes the slip direction of the patches, so that unloading does not mirror
     loading. After gross slip the deviation is about half a percent of the friction force.
     """
-    spring, deviation = BoltedJointSpring.of(joint), np.empty_like(loops.force)
+    deviation = np.empty_like(loops.force)
     for run in range(loops.run_index[-1] + 1):
         branches = np.unique(loops.branch_index[loops.run_index == run])
         middle = 0.5 * (np.max(loops.start_motion[branches]) + np.min(loops.start_motion[branches]))
-        first = np.linspace(0.0, loops.start_motion[branches[0]] - middle, _ELASTIC_TABLE_STEPS + 1)
-        hysteresis_fit = _follow_path(spring, preload, first, spring.initial_history())[2]
+        paths = [np.linspace(middle, loops.start_motion[branches[0]], _ELASTIC_TABLE_STEPS + 1)]
         for k in branches:
             start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
-            distance = np.abs(motion - start)
-            end = motion[np.argmax(distance)]
-            path = np.linspace(start, end, _ELASTIC_TABLE_STEPS + 1)
-            force, _, hysteresis_fit = _follow_path(spring, preload, path - middle, hysteresis_fit)
+            end = motion[np.argmax(np.abs(motion - start))]
+            paths.append(np.linspace(start, end, _ELASTIC_TABLE_STEPS + 1))
+        run_force, _ = _follow_path(joint, preload, np.concatenate(paths) - middle)
+        for k, path, force in zip(branches, paths[1:], np.split(run_force, len(paths))[1:], strict=True):
+            start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
             difference = force - force[0] - law.force_change(path, np.full_like(path, start))
+            distance = np.abs(motion - start)
             deviation[loops.branch_index == k] = np.interp(distance, np.abs(path - start), difference)
     return deviation
 

@@ -22,9 +22,8 @@ import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
-from jointfmu.joints.bolted_joint.equilibrium import condense_stiffness
-from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
+from jointfmu.joints.bolted_joint.variables import MODELS
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
 from jointfmu.mechanics.footprint.distribution import MergedDistribution
@@ -42,6 +41,7 @@ from ....inputs.fitting.outcome import (
     fitted_parameters,
     make_unknowns,
 )
+from ....run.engine import TrialJoint
 
 SERIES_STIFFNESS = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
@@ -65,16 +65,18 @@ START_VALUES: Mapping[str, tuple[float, ...]] = {
 """{parameter: further start values of the search}, in addition to the values of the start file."""
 
 
+COMPLETE_JOINT = TrialJoint(MODELS[0])
+"""The joint with elastic sides at the parameters of a trial."""
+
+
 def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") -> Array:
     """Stiffness (n) [N/m] of the tightened joint at preloads (n) [N], equal to the one of the FMU.
 
     direction : "normal" (K_zz) or "tangential" (K_xx)
     """
     if joint.elastic:
-        spring, axis = BoltedJointSpring.of(joint), 2 if direction == "normal" else 0
-        return np.array(
-            [condense_stiffness(spring.tangent_stiffness(P))[axis, axis] for P in preload.tolist()]
-        )
+        columns = COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload}, each_from_rest=True).columns
+        return columns["K_zz" if direction == "normal" else "K_xx"]
     shape = merged_pressure_shape(joint.pattern)
     p = preload_pressure(joint, shape, preload, 0.0)
     curve = tabulate_approach(joint)
