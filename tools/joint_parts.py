@@ -29,10 +29,10 @@ TOOL_NAMES = (
     "new",
     "pressure",
     "published",
-    "reduced",
     "report",
     "ringing",
     "transmission",
+    "uncertainty",
 )
 """Tools that look for a module in the folder of a joint."""
 

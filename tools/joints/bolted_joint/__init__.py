@@ -4,7 +4,7 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("export", "field", "fit", "modelica", "new", "published", "reduced", "report"),
+    ("export", "field", "fit", "modelica", "new", "published", "report", "uncertainty"),
     checks="job",
     figures="job",
     laboratory="job",

@@ -4,7 +4,7 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("catalogue", "fit", "modelica", "new", "published", "reduced", "report"),
+    ("catalogue", "fit", "modelica", "new", "published", "report", "uncertainty"),
     checks="job",
     figures="job",
     laboratory="job",

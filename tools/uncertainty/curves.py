@@ -1,0 +1,81 @@
+"""Quantities of a joint along a load ramp. Its tool module `uncertainty` states them."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from jointfmu.joints.kind import JointKind
+from jointfmu.joints.model import Variable
+from jointfmu.quantity import Array
+
+from ..joint_parts import load_tool_module
+
+
+class JointSample(Protocol):
+    """Joint with the parameters of one sample."""
+
+    @property
+    def parameters(self) -> Any:
+        """Parameter set, without checks."""
+
+    def follow(
+        self, inputs: Mapping[str, Array], settings: Mapping[str, Any] | None = None
+    ) -> Mapping[str, Array]:
+        """Evaluate the joint at inputs (n), each reached from the virgin state: all outputs (n) [SI].
+
+        settings : {parameter: value} in place of its value in the sample
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class DerivedOutput:
+    """Quantity that is computed from several evaluations of the joint. Without load it is 0.
+
+    variable : its name, unit and meaning
+    compute  : function (sample, loads (m) above zero, ascending) -> values (m); the last load is the end of
+        the ramp
+    """
+
+    variable: Variable
+    compute: Callable[[JointSample, Array], Array]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadCurves:
+    """Quantities of a joint along a load ramp.
+
+    model    : name of the FMU that is evaluated
+    load     : the ramped input
+    outputs  : outputs of the FMU
+    derived  : further quantities
+    default_end  : function, parameter set -> default end of the ramp
+    max_load     : function, parameter set -> largest load of the tabulated law
+    settings     : {parameter: value} during the ramp, in place of its value in the sample
+    other_inputs : function, parameter set -> {input: value}
+    """
+
+    model: str
+    load: Variable
+    outputs: Sequence[Variable]
+    derived: Sequence[DerivedOutput] = ()
+    default_end: Callable[[Any], float]
+    max_load: Callable[[Any], float]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    other_inputs: Callable[[Any], Mapping[str, float]] = lambda parameters: {}
+
+    @property
+    def units(self) -> dict[str, str]:
+        """{quantity: unit}."""
+        return {v.name: v.unit for v in (*self.outputs, *(quantity.variable for quantity in self.derived))}
+
+
+def load_curves(kind: JointKind) -> LoadCurves:
+    """Load the quantities along a ramp of a kind of joint, from its module `uncertainty`.
+
+    Raises ValueError if the joint has none.
+    """
+    module = load_tool_module(kind, "uncertainty")
+    if module is None:
+        raise ValueError(f"joint = {kind.name!r} states no quantities along a load ramp")
+    curves: LoadCurves = module.CURVES
+    return curves
