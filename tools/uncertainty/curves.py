@@ -2,7 +2,11 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any, Protocol
+
+import numpy as np
+from scipy.interpolate import CubicSpline
 
 from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Variable
@@ -47,6 +51,8 @@ class LoadCurves:
     model    : name of the FMU that is evaluated
     load     : the ramped input
     outputs  : outputs of the FMU
+    knots    : number of loads at which the FMU is evaluated if the ramp has more loads; between them the
+        outputs are interpolated by cubic splines. None: at all loads
     derived  : further quantities
     default_end  : function, parameter set -> default end of the ramp
     max_load     : function, parameter set -> largest load of the tabulated law
@@ -57,6 +63,7 @@ class LoadCurves:
     model: str
     load: Variable
     outputs: Sequence[Variable]
+    knots: int | None = None
     derived: Sequence[DerivedOutput] = ()
     default_end: Callable[[Any], float]
     max_load: Callable[[Any], float]
@@ -79,3 +86,23 @@ def load_curves(kind: JointKind) -> LoadCurves:
         raise ValueError(f"joint = {kind.name!r} states no quantities along a load ramp")
     curves: LoadCurves = module.CURVES
     return curves
+
+
+def spline_weights(knots: Array, points: Array, derivative: int = 0) -> Array:
+    """Weights (points, knots) of the values of a cubic spline at its knots, for its values at points.
+
+    derivative : order of the derivative; -1: integral from the first knot
+
+    The samples of a study have the same knots and points but for round-off: both are rounded to 1e-12.
+    """
+    return _spline_weights(np.round(knots, 12).tobytes(), np.round(points, 12).tobytes(), derivative)
+
+
+@lru_cache(maxsize=16)
+def _spline_weights(knots: bytes, points: bytes, derivative: int) -> Array:
+    x = np.frombuffer(knots)
+    spline = CubicSpline(x, np.eye(x.size))
+    spline = (
+        spline.antiderivative() if derivative < 0 else spline.derivative(derivative) if derivative else spline
+    )
+    return np.asarray(spline(np.frombuffer(points)))

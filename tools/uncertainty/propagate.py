@@ -203,7 +203,7 @@ def compute_sensitivity(
         sets.append(mixed)
     assert isinstance(problem.evaluator, JointRamp)
     found = evaluate_runs(
-        replace(problem.evaluator, loads=loads),
+        replace(problem.evaluator, rows=load_indices),
         problem.list_runs(np.concatenate(sets)),
         problem.units,
         loads.size,

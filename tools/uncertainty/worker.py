@@ -20,7 +20,7 @@ from jointfmu.quantity import Array, Interval, assemble_parameter_set
 from ..engine import JointEngine, open_joint
 from ..host import is_needed_to_run
 from ..ramps import ramp
-from .curves import LoadCurves, load_curves
+from .curves import LoadCurves, load_curves, spline_weights
 
 KILLED_MESSAGE = "the process of the run died"
 """Error message in the journal for a run whose process died."""
@@ -148,8 +148,9 @@ def write_slim_fmu(fmu: Path, slim_path: Path) -> None:
 class JointRamp:
     """Load ramp of the joint of a parameter file. See `RampEvaluator`.
 
-    loads            : (m) ascending
+    loads            : load ramp (m), ascending
     load_is_relative : whether a sample of the load is a factor on the ramp; else it replaces the last load
+    rows             : indices of the loads that are evaluated; None: all
     key              : identifies the study
     """
 
@@ -159,6 +160,7 @@ class JointRamp:
     file: ParameterFile
     loads: Array
     load_is_relative: bool = False
+    rows: Array | None = None
     key: str = field(default_factory=lambda: str(uuid4()))
 
     def __getstate__(self) -> dict[str, Any]:
@@ -192,7 +194,7 @@ class JointRamp:
         return {"run": index, "parameters": dict(settings), "columns": columns}
 
     def evaluate(self, settings: Settings) -> dict[str, Array]:
-        """Loads (m), and all quantities (m) of a sample.
+        """Loads and all quantities of a sample, at the loads that are evaluated.
 
         Raises ValueError, one line, if the law refuses the sample.
         """
@@ -207,13 +209,38 @@ class JointRamp:
             sample.follow({curves.load.name: np.zeros(1)})  # a refused parameter is stated first
             text = f"{curves.load.name} = {loads[-1]:g} {curves.load.unit}"
             raise ValueError(f"{text} is outside {allowed}: {LOAD_LIMIT_TEXT}")
-        found = sample.follow({curves.load.name: loads})
-        columns = {curves.load.name: loads} | {v.name: found[v.name] for v in curves.outputs}
-        is_loaded = loads > 0.0
+        rows = np.arange(loads.size) if self.rows is None else self.rows
+        outputs = self._evaluate_outputs(sample, loads, rows)
+        columns = {curves.load.name: loads[rows], **outputs}
+        is_loaded = loads[rows] > 0.0
         for quantity in curves.derived:
-            column = np.zeros_like(loads)
-            column[is_loaded] = quantity.compute(sample, loads[is_loaded])
+            column = np.zeros(rows.size)
+            column[is_loaded] = quantity.compute(sample, loads[rows][is_loaded])
             columns[quantity.variable.name] = column
+        return columns
+
+    def _evaluate_outputs(self, sample: "_Sample", loads: Array, rows: Array) -> dict[str, Array]:
+        """Outputs of the FMU at rows of the loads (m); of a long ramp by splines.
+
+        A spline goes over log(load), of log(output), or of output/load if the output has zeros.
+        """
+        name, count = self.curves.load.name, self.curves.knots
+        loaded = loads[loads > 0.0]
+        if count is None or loaded.size <= count:
+            found = sample.follow({name: loads[rows]})
+            return {v.name: found[v.name] for v in self.curves.outputs}
+        knots = np.geomspace(loaded[0], loaded[-1], count)
+        found = sample.follow({name: np.append(0.0, knots)})
+        is_loaded, columns = loads[rows] > 0.0, {}
+        weights = spline_weights(np.log(knots / knots[-1]), np.log(loads[rows][is_loaded] / knots[-1]))
+        for variable in self.curves.outputs:
+            values = found[variable.name]
+            column = np.full(rows.size, values[0])
+            if np.all(values[1:] > 0.0):
+                column[is_loaded] = np.exp(weights @ np.log(values[1:]))
+            else:
+                column[is_loaded] = loads[rows][is_loaded] * (weights @ (values[1:] / knots))
+            columns[variable.name] = column
         return columns
 
 

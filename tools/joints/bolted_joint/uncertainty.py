@@ -3,18 +3,17 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.law import slip_force
 from jointfmu.joints.model import Variable
 from jointfmu.quantity import Array
 
-from ...uncertainty.curves import DerivedOutput, JointSample, LoadCurves
+from ...uncertainty.curves import DerivedOutput, JointSample, LoadCurves, spline_weights
 
 INTERFACE = {"sides": "rigid", "bolt_stiffness": 0.0, "memory": True}
 """Parameters of the interface alone: rigid members, no bolts in parallel, friction with slip."""
-LOG_RANGE, LOG_POINTS = 30.0, 61
+LOG_RANGE, LOG_POINTS = 30.0, 41
 """Range of ln(force) below the end of the ramp, and number of points [1] of the integral of dF/K."""
 SHEAR_RATIO = 0.05
 """Shear force of the loop over the force of all bolts [1]: half of mu = 0.1."""
@@ -22,7 +21,7 @@ MAX_SLIP_RATIO = 0.8
 """Largest shear force of the loop over the slip force [1]."""
 LOOP_LOADS = np.geomspace(0.02, 1.0, 5)
 """Loads of the loops over the end of the ramp [1]. The loss factor is interpolated between them."""
-MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-9
+MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-6
 """Limits of Newton's method for the amplitude of the loop [1]."""
 
 
@@ -35,9 +34,8 @@ def approach(sample: JointSample, preload: Array) -> Array:
     x = np.linspace(-LOG_RANGE, 0.0, LOG_POINTS)
     force = sample.parameters.n_bolts * end * np.exp(x)
     rate = force / sample.follow({"preload": end * np.exp(x)}, INTERFACE)["K_zz"]
-    exponent = CubicSpline(x, np.log(rate))(x[0], 1)
-    integral = CubicSpline(x, rate).antiderivative()
-    return np.asarray(rate[0] / exponent + integral(np.log(preload / end)))
+    (exponent,) = spline_weights(x, x[:1], 1) @ np.log(rate)
+    return np.asarray(rate[0] / exponent + spline_weights(x, np.log(preload / end), -1) @ rate)
 
 
 def loss_factor(sample: JointSample, preload: Array) -> Array:
@@ -55,14 +53,15 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
         amplitude = amplitude + step
         if np.all(np.abs(step) <= RELATIVE_TOLERANCE * amplitude):
             break
-    spline = CubicSpline(np.log(loads), state["eta_loop"])
-    return np.asarray(spline(np.log(np.maximum(preload, loads[0]))))
+    relative = np.maximum(preload / preload[-1], LOOP_LOADS[0])
+    return np.asarray(spline_weights(np.log(LOOP_LOADS), np.log(relative)) @ state["eta_loop"])
 
 
 CURVES = LoadCurves(
     model="BoltedJoint",
     load=replace(KIND.variables["preload"], doc="force of each bolt after embedding"),
     outputs=tuple(KIND.variables[name] for name in ("K_zz", "K_xx", "C_zz", "C_xx")),
+    knots=25,
     derived=(
         DerivedOutput(
             Variable("approach", "m", "approach of the two sides by tightening, from zero preload", 1e-6),
