@@ -285,26 +285,28 @@ class _OpenJoint:
         kind = KINDS[self.file.joint]
         self._model = kind.find_model(self.curves.model)
         self._exposed = self._model.with_parameters(kind.name, self.file.values).parameter_fields().keys()
-        self._engines: dict[tuple[Any, ...], tuple[JointEngine, set[str]]] = {}
+        self._engines: dict[tuple[Any, ...], tuple[JointEngine, dict[str, Any]]] = {}
 
     def follow(self, values: Settings, inputs: Mapping[str, Any]) -> Mapping[str, Array]:
         """Outputs at inputs (n), each reached from the virgin state, with other values of parameters."""
         stated = self.file.values_by_name
         hidden = {k: v for k, v in values.items() if k not in self._exposed and v != stated[k]}
-        engine, changed = self._find_engine(hidden)
-        changed |= values.keys() & self._exposed
-        engine.set_parameters({name: values.get(name, stated[name]) for name in changed})
+        engine, current = self._find_engine(hidden)
+        needed = {k: values.get(k, stated[k]) for k in {*current, *values} if k in self._exposed}
+        if changed := {k: v for k, v in needed.items() if current.get(k, stated[k]) != v}:
+            current |= changed
+            engine.set_parameters(changed)
         return engine.follow(inputs, each_from_rest=True).columns
 
-    def _find_engine(self, hidden: Settings) -> tuple[JointEngine, set[str]]:
-        """Engine of a joint with other values of hidden parameters, and the parameters changed since."""
+    def _find_engine(self, hidden: Settings) -> tuple[JointEngine, dict[str, Any]]:
+        """Engine of a joint with other values of hidden parameters, and the values set since it is open."""
         key = tuple(sorted(hidden.items()))
         found = self._engines.pop(key, None)
         if found is None:
             file = self.file.with_values(hidden, "user", "sample") if hidden else self.file
             if len(self._engines) >= self.MAX_ENGINES:
                 del self._engines[next(iter(self._engines))]
-            found = open_joint(self._model.with_parameters(file.joint, file.values), file), set()
+            found = open_joint(self._model.with_parameters(file.joint, file.values), file), {}
         self._engines[key] = found
         return found
 

@@ -21,7 +21,7 @@ MAX_SLIP_RATIO = 0.8
 """Largest shear force of the loop over the slip force [1]."""
 LOOP_LOADS = np.geomspace(0.02, 1.0, 5)
 """Loads of the loops over the end of the ramp [1]. The loss factor is interpolated between them."""
-MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-6
+MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
 """Limits of Newton's method for the amplitude of the loop [1]."""
 
 
@@ -61,7 +61,7 @@ CURVES = LoadCurves(
     model="BoltedJoint",
     load=replace(KIND.variables["preload"], doc="force of each bolt after embedding"),
     outputs=tuple(KIND.variables[name] for name in ("K_zz", "K_xx", "C_zz", "C_xx")),
-    knots=25,
+    knots=17,
     derived=(
         DerivedOutput(
             Variable("approach", "m", "approach of the two sides by tightening, from zero preload", 1e-6),
