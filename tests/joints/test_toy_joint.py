@@ -51,7 +51,7 @@ def test_it_is_short():
 
 
 def test_a_name_is_taken_once():
-    with pytest.raises(ValueError, match="joint 'toy': the name 'toy' is taken"):
+    with pytest.raises(ValueError, match="joint 'toy': the name 'toy' is already used"):
         joints.register_joint(toy_joint.KIND)
 
 

@@ -221,7 +221,6 @@ def _run_sweep(args: argparse.Namespace) -> CommandResult:
     from ..uncertainty.runs import evaluate_runs
     from ..uncertainty.sweep import format_runs_csv
 
-    print(DEPRECATED_SWEEP, file=sys.stderr)
     execution = _execution(args)
     count = _sample_count(args, FMU_SAMPLES)
     task = _state_fmu(args, args.fmu)
@@ -230,6 +229,7 @@ def _run_sweep(args: argparse.Namespace) -> CommandResult:
         samples = evaluate_runs(task.evaluator, runs, task.units, task.loads.size, execution)
     if len(samples.errors) < count:
         write_text(args.out / journal.BANDS_FILE, format_runs_csv(args.out, task.variable_units))
+    print(DEPRECATED_SWEEP, file=sys.stderr)
     document, line = _count_runs(samples, args.out)
     lines, failure = [line], None
     if samples.errors:

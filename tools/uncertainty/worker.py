@@ -1,5 +1,6 @@
 """Evaluation of one run of a study, in a worker process: a joint or an FMU along its load ramp."""
 
+import sys
 import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -155,13 +156,17 @@ class JointRamp:
     """
 
     runs_per_job: ClassVar[int] = 32
-    runs_per_process: ClassVar[int] = 512
 
     file: ParameterFile
     loads: Array
     load_is_relative: bool = False
     rows: Array | None = None
     key: str = field(default_factory=lambda: str(uuid4()))
+
+    @property
+    def runs_per_process(self) -> int:
+        """See `RampEvaluator`: no processes for a joint that only this process has registered."""
+        return 512 if KINDS[self.file.joint].package.startswith("jointfmu.") else sys.maxsize
 
     def __getstate__(self) -> dict[str, Any]:
         """State for pickle: a parameter set may hold functions in its cached properties."""
