@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from jointfmu_tools.cli import main
-from jointfmu_tools.studies.batch.approach import columns, tabulate
 from scipy.integrate import quad
 from scipy.linalg import expm
 from scipy.special import erf
@@ -16,7 +15,6 @@ from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
 from jointfmu.parameters import load_default
-from jointfmu.quantity import flatten_parameters
 
 STEEL = ElasticConstants(E=2.1e11, nu=0.3)
 GROUND = RoughnessLaw(
@@ -170,20 +168,6 @@ def test_default_files_have_the_law(joint):
     file = load_default(joint, "roughness")
     assert file.law == "roughness"
     assert file.joint == joint
-
-
-def test_many_samples_at_once():
-    h = np.array([0.5e-6, 2e-6])
-    law = columns(RoughnessLaw, {**flatten_parameters(GROUND), "h": h}, 1)
-    p = np.geomspace(1.0, 1e8, 30)
-    rows, _ = tabulate(law, np.full((2, 1), 1.0), np.full((2, 1), 1e8))
-    found = rows(np.log(p), np.zeros((2, 1)))
-    for i in range(2):
-        one = changed(h=float(h[i]))
-        curve = tabulate_approach(one)
-        at = curve.inverse(p)
-        assert np.exp(found["k"][i]) == pytest.approx(curve.derivatives(at)[1], rel=2e-5)
-        assert np.exp(found["s"][i]) == pytest.approx(at - curve.displacement[0], rel=2e-5)
 
 
 @pytest.mark.parametrize("hurst", [0.05, 0.5, 0.95])

@@ -51,7 +51,7 @@ def test_it_is_short():
 
 
 def test_a_name_is_taken_once():
-    with pytest.raises(ValueError, match="joint 'toy': the name 'toy' is already used by another joint"):
+    with pytest.raises(ValueError, match="joint 'toy': the name 'toy' is already used"):
         joints.register_joint(toy_joint.KIND)
 
 
@@ -100,7 +100,6 @@ def test_uncertainty_of_a_line(capsys):
     median = np.array(found["outputs"]["f"]["quantiles"]["0.5"])
     loads = np.array(found["load"]["values"])
     assert median == pytest.approx(-C * loads, rel=2e-3)  # 1024 samples of a uniform number
-    assert found["reduction_error"] < 1e-6  # bands are kept in single precision
 
 
 def test_export_writes_the_line(tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""The journal of a sweep: what another program, or somebody else, may have written into its folder."""
+"""The journal of a study: what another program, or somebody else, may have written into its folder."""
 
 import json
 import os
@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from clients import needs
 from jointfmu_tools.studies.uncertainty import journal
-from jointfmu_tools.studies.uncertainty.sweep import format_bands_csv
+from jointfmu_tools.studies.uncertainty.sweep import format_runs_csv
 
 from jointfmu.files.text import replace_unprintable
 
@@ -85,7 +85,7 @@ def refused(folder: Path) -> str:
 
 
 @pytest.mark.parametrize("line", [*WRONG.values(), *BROKEN.values()], ids=[*WRONG, *BROKEN])
-def test_a_row_that_no_sweep_wrote_is_named_in_one_line(line: object, tmp_path: Path) -> None:
+def test_a_row_that_no_study_wrote_is_named_in_one_line(line: object, tmp_path: Path) -> None:
     raw = line if isinstance(line, bytes) else json.dumps(line).encode()
     path = written(tmp_path / "out", json.dumps(GOOD).encode(), json.dumps(FAILED).encode(), raw)
     before = path.read_bytes()
@@ -93,14 +93,14 @@ def test_a_row_that_no_sweep_wrote_is_named_in_one_line(line: object, tmp_path: 
     assert path.read_bytes() == before
 
 
-def test_rows_of_a_sweep_are_read(tmp_path: Path) -> None:
+def test_rows_of_a_study_are_read(tmp_path: Path) -> None:
     path = written(tmp_path / "out", json.dumps(GOOD).encode(), json.dumps(FAILED).encode())
     with journal.Journal(path.parent, 8) as held:
         assert (held.finished_runs, held.failed_count) == ({0, 1}, 1)
         held.add({**GOOD, "run": 5})
     assert [one["run"] for one in journal.read_entries(path.parent)] == [0, 1, 5]
     units = {"tau": "N.m", "K_WTS": "N.m/rad"}
-    assert format_bands_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
+    assert format_runs_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
 
 
 @needs("Linux or macOS")
@@ -116,7 +116,7 @@ def test_a_pipe_in_its_place_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", ["[1, 2]", "null", 100_000 * "[", "{", "\x1b"])
 def test_a_study_that_is_none_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / journal.STUDY_FILE).write_text(text)
-    with pytest.raises(ValueError, match=r"study.json: is not a study of a sweep"):
+    with pytest.raises(ValueError, match=r"study.json: is not a study"):
         journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
 
 

@@ -1,15 +1,14 @@
 """Distributions, quadrature, bands and indices against closed forms and scipy."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from jointfmu_tools.joints.gear_contact import ramp as gear
-from jointfmu_tools.studies.batch import approach
-from jointfmu_tools.studies.uncertainty import propagate, study
+from jointfmu_tools.studies.uncertainty import propagate, study, worker
+from jointfmu_tools.studies.uncertainty.curves import spline_weights
 from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.runs import evaluate_runs
 from jointfmu_tools.studies.uncertainty.study import parse_distribution
 from scipy import stats
+from scipy.interpolate import CubicSpline
 
 from jointfmu.parameters import load_default
 
@@ -71,23 +70,12 @@ def test_refused_distribution(text, words):
     assert "loguniform(LOW, HIGH)" in str(raised.value)
 
 
-def test_chebyshev_matrices_are_exact_for_polynomials():
-    x, at = approach.nodes(9), np.linspace(0.0, 1.0, 33)
-    value = x**8 - 3.0 * x**3
-    assert value @ approach.interpolation(9, at) == pytest.approx(at**8 - 3.0 * at**3, abs=1e-13)
-    integral = at**9 / 9.0 - 0.75 * at**4
-    assert value @ approach.integration(9, at) == pytest.approx(integral, abs=1e-13)
-
-
-def test_gauss_points_of_a_discrete_measure():
-    rng = np.random.default_rng(3)
-    values, weights = rng.normal(size=500), rng.uniform(size=500)
-    at, shares = approach.discrete_gauss(values, weights, 5)
-    for degree in range(10):
-        assert shares @ at**degree == pytest.approx(weights @ values**degree, rel=1e-12, abs=1e-12 * 500)
-    assert np.sum(approach.discrete_gauss(np.array([1.0, 2.0]), np.array([0.5, 0.5]), 5)[1]) == pytest.approx(
-        1
-    )
+def test_spline_weights_are_those_of_the_spline():
+    x, at = np.linspace(-3.0, 0.0, 9), np.linspace(-3.0, 0.0, 33)
+    spline = CubicSpline(x, np.exp(x))
+    assert spline_weights(x, at) @ np.exp(x) == pytest.approx(spline(at), rel=1e-12)
+    assert spline_weights(x, at, 1) @ np.exp(x) == pytest.approx(spline(at, 1), rel=1e-11)
+    assert spline_weights(x, at, -1) @ np.exp(x) == pytest.approx(spline.antiderivative()(at), abs=1e-12)
 
 
 def test_powers_of_two():
@@ -105,19 +93,20 @@ def test_design_is_seeded_and_balanced():
         assert np.array_equal(np.sort(np.floor(256 * column)), np.arange(256))
 
 
-def linear(parameters, values, loads, factor):
-    """An output that is linear in its parameters, so that its distribution is known."""
-    a, b = (np.reshape(values[name], (-1, 1)) for name in ("mu", "traction_ratio"))
-    return {"K_N": loads * factor * (2.0 * a + b), "s_rel": 0.0 * loads * factor * a}
-
-
 @pytest.fixture
 def linear_gear(monkeypatch):
-    exact = lambda joint, loads: {"K_N": loads * (2.0 * joint.mu + joint.traction_ratio)}  # noqa: E731
-    stiffness = tuple(v for v in gear.REDUCED.outputs if v.name == "K_N")
-    evaluate = lambda *given: {"K_N": linear(*given)["K_N"]}  # noqa: E731
-    line = replace(gear.REDUCED, outputs=stiffness, evaluate=evaluate, exact=exact)
-    monkeypatch.setattr(gear, "REDUCED", line)
+    """Gear contact whose K_N is linear in mu, traction_ratio and load: its distribution is known."""
+
+    def evaluate(self, settings):
+        values = {**self.file.values_by_name, **settings}
+        load = settings.get("f")
+        factor = 1.0 if load is None else load if self.load_is_relative else load / self.loads[-1]
+        rows = slice(None) if self.rows is None else self.rows
+        K_N = factor * self.loads[rows] * (2.0 * values["mu"] + values["traction_ratio"])
+        return {"K_N": K_N, "s_rel": 0.0 * K_N}
+
+    monkeypatch.setattr(worker.JointRamp, "evaluate", evaluate)
+    monkeypatch.setattr(worker.JointRamp, "runs_per_process", 10**9)
 
 
 @pytest.mark.usefixtures("linear_gear")
@@ -134,7 +123,7 @@ def test_bands_of_a_linear_output():
     assert found.mean["K_N"] == pytest.approx(found.loads * 10.5, rel=1e-4)
     assert found.standard_deviation["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
     assert found.refusals.count == 0
-    indices = propagate.compute_sensitivity(task, A[:4096], B[:4096]).outputs["K_N"]
+    indices = propagate.compute_sensitivity(task, found, A[:4096], B[:4096]).outputs["K_N"]
     exact = np.array([0.36, 0.0025]) / 0.3625
     assert np.all(np.abs(indices.first - exact) < 0.01)  # Sobol' sequence of 4096
     assert np.all(np.abs(indices.total - exact) < 0.01)
@@ -153,6 +142,20 @@ def test_an_uncertain_load_scales_the_ramp():
     assert found.quantiles["K_N"][:, 0] == pytest.approx(
         found.nominal["K_N"] * (0.5 + np.array(propagate.QUANTILES)), rel=1e-3
     )
+
+
+def test_results_do_not_depend_on_order_and_processes(monkeypatch):
+    """The numbers of a sample are the same to the bit after any other sample."""
+    task = state_problem(load_default("bolted_joint"), {"H": "+-5%", "mu": "0.1..0.2"}, None, 4)
+    runs = task.list_runs(propagate.sample_designs(task, 8, 0)[0])
+    one = evaluate_runs(task.evaluator, runs, task.units, 4).outputs
+    back = evaluate_runs(task.evaluator, runs[::-1], task.units, 4).outputs
+    monkeypatch.setattr(worker.JointRamp, "runs_per_process", 4)
+    monkeypatch.setattr(worker.JointRamp, "runs_per_job", 3)
+    two = evaluate_runs(task.evaluator, runs, task.units, 4).outputs
+    for name, values in one.items():
+        assert np.array_equal(values, back[name][:, ::-1])
+        assert np.array_equal(values, two[name])
 
 
 def ishigami(x):

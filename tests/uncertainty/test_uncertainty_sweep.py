@@ -1,4 +1,4 @@
-"""`jointfmu sweep`: many runs of an FMU that may be killed at any time and resumed."""
+"""Studies of an FMU, and of a joint, in a folder: they may be killed at any time and resumed."""
 
 import json
 import multiprocessing
@@ -21,8 +21,10 @@ from jointfmu_tools import cli
 from jointfmu_tools.run.ramps import ramp
 from jointfmu_tools.studies.uncertainty import journal
 from jointfmu_tools.studies.uncertainty.problem import state_problem
-from jointfmu_tools.studies.uncertainty.sweep import plan_runs, sweep
-from jointfmu_tools.studies.uncertainty.worker import LoadRamp
+from jointfmu_tools.studies.uncertainty.runs import Execution, evaluate_runs
+from jointfmu_tools.studies.uncertainty.study import unit_cube_points
+from jointfmu_tools.studies.uncertainty.sweep import state_fmu_problem
+from jointfmu_tools.studies.uncertainty.worker import FmuRamp, LoadRamp
 
 from jointfmu.parameters import format_parameter_file, load_default
 
@@ -54,6 +56,20 @@ def cluster():
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as one,
     ):
         yield one.scheduler_address
+
+
+DEPRECATED = (
+    "jointfmu sweep: deprecated, and removed in the next major version; use jointfmu uncertainty FMU\n"
+)
+
+
+def do_runs(task, runs, out, **execution):
+    """Runs of an FMU, kept in a folder."""
+    return evaluate_runs(task.evaluator, runs, task.units, task.loads.size, Execution(out, **execution))
+
+
+def runs_of(task, count, seed=0):
+    return task.list_runs(unit_cube_points(count, len(task.uncertain_parameters), seed))
 
 
 def indices(out):
@@ -195,10 +211,10 @@ def test_a_process_that_dies_as_it_starts_prints_nothing():
 def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
     """On a scheduler's workers, through its address alone; the same numbers as `jointfmu ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
-    record, runs = plan_runs(fmu, DRIVE, given, 8, 0)
-    journal.claim_folder(tmp_path, record)
-    done = sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
-    assert (done.run_count, done.new_runs, done.failed_count) == (8, 8, 0)
+    task = state_fmu_problem(fmu, DRIVE, given)
+    runs = runs_of(task, 8)
+    done = do_runs(task, runs, tmp_path, scheduler=cluster)
+    assert (done.accepted.size, done.new_runs, done.errors) == (8, 8, {})
     found = {entry["run"]: entry for entry in journal.read_entries(tmp_path)}
     for i, settings in enumerate(runs):
         assert (
@@ -216,25 +232,76 @@ def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
         ("fmi2", "HarmonicDriveCompliance", "tau", 5.0, {"surface.D": "2.45..2.6", "K_FTS0": "+-5%"}),
     ],
 )
-def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, native, cluster, tmp_path):
-    """The FMUs themselves, sample by sample, with the evaluation that `jointfmu uncertainty` uses."""
+def test_an_fmu_and_its_joint_have_the_same_numbers(flavour, name, load, to, given, native, tmp_path):
+    """The same samples through the importer and through the library alone."""
     path, drive = native / flavour / f"{name}.fmu", LoadRamp(load, to, to / 6.0)
-    record, runs = plan_runs(path, drive, given, 16, 3)
-    journal.claim_folder(tmp_path, record)
-    assert sweep(path, drive, runs, tmp_path, scheduler=cluster).failed_count == 0
+    task = state_fmu_problem(path, drive, given)
+    runs = runs_of(task, 8, 3)
+    assert do_runs(task, runs, tmp_path).errors == {}
     joint = {"preload": "bolted_joint", "f": "gear_contact", "tau": "harmonic_drive"}[load]
-    task = state_problem(load_default(joint), given, to, 7)
+    alone = state_problem(load_default(joint), given, to, 7)
     for entry in journal.read_entries(tmp_path):
-        values = {**task.values, **entry["parameters"]}
-        found = task.curves.evaluate(task.parameter_class, values, task.loads, np.ones((1, 1)))
+        found = alone.evaluator.evaluate(entry["parameters"])
         for output in set(found) & set(entry["columns"]):
-            fmu_values = np.array(entry["columns"][output])
-            patches = name == "BoltedJoint" and output.endswith(
-                "_xx"
-            )  # C_xx and K_xx: shear on 24 of the nodes
-            assert found[output][0, 1:] == pytest.approx(
-                fmu_values[1:], rel=5e-3 if patches else 1e-4
-            )  # as stated
+            assert found[output][1:] == pytest.approx(entry["columns"][output][1:], rel=1e-9), output
+
+
+def test_bands_of_an_fmu(fmu, tmp_path, capsys):
+    """The same samples as of the deprecated command; without a folder nothing is kept."""
+    arguments = [str(fmu), *SETTINGS, *RAMP, "--samples", "16", "--json"]
+    assert cli.main(["uncertainty", *arguments, "--csv", str(tmp_path / "bands.csv")]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["fmu"] == "HarmonicDriveCompliance.fmu"
+    assert found["load"]["values"] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert found["indices"] is None
+    assert cli.main(["sweep", *arguments, "--out", str(tmp_path / "old")]) == 0
+    assert capsys.readouterr().err == DEPRECATED
+    assert cli.main(["uncertainty", *arguments, "--out", str(tmp_path / "old")]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert (again["now"], again["runs"], again["failed"]) == (0, 16, found["refused"]["count"])
+    assert again["outputs"] == found["outputs"]
+    text = (tmp_path / "old" / journal.BANDS_FILE).read_text()
+    assert text.startswith("tau [N.m],phi_rel 1 % [rad]")
+    assert (tmp_path / "bands.csv").read_text().startswith("tau [N.m],phi_rel nominal [rad]")
+
+
+JOINT = ("uncertainty", "bolted_joint", "--set", "H=+-5%", "mu=normal(0.05, 0.05)", "--points", "30")
+
+
+def test_a_study_of_a_joint_is_killed_and_resumed(tmp_path, capsys):
+    """kill -9 in the middle: the same numbers to the bit as without a folder."""
+    arguments = [*JOINT, "--samples", "512", "--json"]
+    assert cli.main(arguments) == 0
+    expected = json.loads(capsys.readouterr().out)
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "jointfmu", *arguments, "--out", str(out)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    runs = out / journal.RUNS_FILE
+    wait_for(lambda: runs.exists() and runs.read_bytes().count(b"\n") >= 30, process)
+    process.kill()
+    process.wait()
+    before = len(indices(out))
+    assert 30 <= before < 512
+    assert cli.main([*arguments, "--out", str(out)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found.pop("out"), found.pop("runs"), found.pop("now")) == (str(out), 512, 512 - before)
+    assert found.pop("failed") == expected["refused"]["count"] == pytest.approx(0.158655 * 512, abs=2)
+    assert "mu = " in expected["refused"]["reason"]
+    assert found == expected
+    assert sorted(indices(out)) == list(range(512))
+    assert (out / journal.INDEX_RUNS_FILE).exists()
+    assert (out / journal.BANDS_FILE).read_text().startswith("preload [N],K_zz nominal [N/m]")
+    assert "holds another study (points = 30, now 31)" in refused_line(
+        capsys, *arguments[:-3], "--points", "31", "--samples", "512", "--out", out
+    )
+
+
+def test_a_joint_on_a_cluster(cluster, capsys):
+    arguments = [*JOINT, "--samples", "64", "--json"]
+    assert cli.main(arguments) == 0
+    alone = json.loads(capsys.readouterr().out)
+    assert cli.main([*arguments, "--scheduler", cluster]) == 0
+    assert json.loads(capsys.readouterr().out) == alone
 
 
 def test_every_run_fails(fmu, cluster, tmp_path, capsys):
@@ -247,50 +314,54 @@ def test_every_run_fails(fmu, cluster, tmp_path, capsys):
     assert not (tmp_path / "out" / journal.BANDS_FILE).exists()
 
 
-def dies_at_five(key, drive, index, settings):
+def dies_at_five(self, index, settings):
     if index == 5:
         os._exit(11)
     columns = {"tau": [0.0, 1.0], "K_WTS": [1.0, 1.0]}
     return {"run": index, "parameters": dict(settings), "columns": columns}
 
 
-def local_dies_at_five(job):
-    return dies_at_five(*job)
+class DiesAtFive(FmuRamp):
+    """Its run 5 ends its process; four runs make a job."""
+
+    runs_per_job = 4
+    run = dies_at_five
+
+
+def run_until_five_dies(fmu, out, **execution):
+    runs = [{"surface.D": 2.5}] * 24
+    return evaluate_runs(DiesAtFive(fmu, DRIVE), runs, ["K_WTS"], 2, Execution(out, **execution))
 
 
 LOCAL = """
 import sys
 sys.path.insert(0, sys.argv[3])
 import test_uncertainty_sweep as tests
-from jointfmu_tools.studies.uncertainty import sweep
-sweep.run_locally = tests.local_dies_at_five
-fmu, out = map(tests.Path, sys.argv[1:3])
-done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)
-print(done.run_count, done.new_runs, done.failed_count, done.first_failure)
+if __name__ == "__main__":
+    fmu, out = map(tests.Path, sys.argv[1:3])
+    done = tests.run_until_five_dies(fmu, out, workers=2)
+    print(done.accepted.size, done.new_runs, done.errors)
 """
-DIED = {"run": 5, "parameters": {"surface.D": 2.5}, "error": "the process of the run died"}
+DIED = {5: "the process of the run died"}
 
 
 def test_a_local_run_that_kills_its_process(fmu, tmp_path):
     """It is recorded with its parameters. In a process of its own, so that no worker of the tests can die."""
     done = run_host(LOCAL, fmu, tmp_path, Path(__file__).parent)
-    assert done.stdout == f"24 24 1 {DIED}\n", done.stderr
+    assert done.stdout == f"24 24 {DIED}\n", done.stderr
     assert sorted(indices(tmp_path)) == list(range(24))
 
 
-def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path, monkeypatch):
+def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path):
     """It is recorded with its parameters; those whose results went down with it are done again."""
-    monkeypatch.setattr("jointfmu_tools.studies.uncertainty.plugin.run_on_dask_worker", dies_at_five)
-    done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
-    assert (done.run_count, done.new_runs, done.failed_count) == (24, 24, 1)
+    done = run_until_five_dies(fmu, tmp_path, scheduler=cluster)
+    assert (done.accepted.size, done.new_runs, done.errors) == (24, 24, DIED)
     assert sorted(indices(tmp_path)) == list(range(24))
-    assert done.first_failure == DIED
 
 
 def test_bands_of_the_runs(fmu, cluster, tmp_path):
-    record, runs = plan_runs(fmu, DRIVE, GIVEN, 32, 0)
-    journal.claim_folder(tmp_path, record)
-    sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
+    arguments = ["--samples", "32", "--scheduler", cluster, "--out", str(tmp_path)]
+    assert cli.main(["sweep", str(fmu), *SETTINGS, *RAMP, *arguments]) == 0
     head, *rows = (tmp_path / journal.BANDS_FILE).read_text().splitlines()
     column = head.split(",").index("K_WTS 50 % [N.m/rad]")
     good = [entry["columns"]["K_WTS"] for entry in journal.read_entries(tmp_path) if "columns" in entry]
@@ -300,7 +371,7 @@ def test_bands_of_the_runs(fmu, cluster, tmp_path):
 
 
 def test_one_sweep_per_folder(tmp_path):
-    with journal.Journal(tmp_path, 8), pytest.raises(ValueError, match="another sweep is writing here"):
+    with journal.Journal(tmp_path, 8), pytest.raises(ValueError, match="another command is writing here"):
         journal.Journal(tmp_path, 8).__enter__()
 
 
@@ -321,9 +392,9 @@ def test_an_interval_is_that_of_the_file_that_the_fmu_carries(fmu, tmp_path):
         for path in before.namelist():
             carried = fnmatch(path, "extra/*/parameters/*.toml") and not path.endswith("study.toml")
             after.writestr(path, format_parameter_file(known) if carried else before.read(path))
-    record, runs = plan_runs(own, DRIVE, {"surface.D": "interval"}, 4, 0)
-    assert record["parameters"] == {"surface.D": "2.5..2.55"}
-    assert all(2.5 <= run["surface.D"] <= 2.55 for run in runs)
+    task = state_fmu_problem(own, DRIVE, {"surface.D": "interval"})
+    assert task.study_record(4, 0)["parameters"] == {"surface.D": "2.5..2.55"}
+    assert all(2.5 <= run["surface.D"] <= 2.55 for run in runs_of(task, 4))
 
 
 @pytest.mark.parametrize(
@@ -350,7 +421,7 @@ def test_refused_folders_and_schedulers(fmu, tmp_path, capsys):
     arguments = ["sweep", fmu, *SETTINGS, *RAMP, "--samples", "4", "--out"]
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "thesis.tex").write_text("x")
-    assert "contains other files than those of a sweep" in refused_line(capsys, *arguments, tmp_path / "full")
+    assert "contains other files than those of a study" in refused_line(capsys, *arguments, tmp_path / "full")
     line = refused_line(capsys, *arguments, tmp_path / "new" / "one", "--scheduler", "nowhere")
     assert "scheduler = nowhere: cannot be reached" in line
     assert not (tmp_path / "new").exists()

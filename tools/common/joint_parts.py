@@ -24,9 +24,9 @@ TOOL_NAMES = (
     "new",
     "pressure",
     "published",
-    "reduced",
     "report",
     "ringing",
+    "uncertainty",
 )
 """Tools that look for a module in the folder of a joint."""
 

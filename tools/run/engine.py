@@ -195,8 +195,10 @@ class CompiledJoint:
     def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
         """See `JointEngine.follow`."""
         names = list(self._start_values)
-        columns = np.broadcast_arrays(*(np.atleast_1d(x) for x in (self._start_values | {**inputs}).values()))
-        values = np.ascontiguousarray(np.stack(columns, axis=1), np.float64)
+        columns = [np.atleast_1d(x) for x in (self._start_values | {**inputs}).values()]
+        values = np.empty((*np.broadcast_shapes(*(column.shape for column in columns)), len(columns)))
+        for i, column in enumerate(columns):
+            values[:, i] = column
         outputs = [v.name for v in self.model.outputs]
         results = np.empty((len(values), len(outputs)))
         given, read = self._list_references(names), self._list_references(outputs)

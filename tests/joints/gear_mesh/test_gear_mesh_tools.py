@@ -240,8 +240,6 @@ def test_component_gives_the_torques_of_the_package(
     assert np.ptp(exact["E"]) > 0.0
 
 
-REDUCED = 1e-4
-"""Relative error that the reduced evaluation states (docs/uncertainty_reference.md)."""
 STUDIES = {
     "surfaces": {
         "surface1.D": "1.35..1.6",
@@ -268,30 +266,34 @@ STUDIES = {
 @pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 @pytest.mark.parametrize("s_rel", [5e-7, 2e-5, 3e-4], ids=["closing", "default ramp", "end of the table"])
-def test_reduced_evaluation_against_the_spring(name, s_rel):
+def test_samples_are_those_of_the_python_law(name, s_rel):
     """Deflections [m] of the driving flanks; the default table ends at 474 um, with stiff teeth sooner."""
     joint = load_default("gear_mesh")
     shorter = 0.1 if "K_tooth" in STUDIES[name] and s_rel > 1e-6 else 1.0
-    end = shorter * s_rel / joint.values.r_b1
-    task = state_problem(joint, STUDIES[name], end, 9)
-    points = propagate.sample_designs(task, 256, 5)[0][:24]
-    outcome = propagate.evaluate_samples(task, points, task.loads, "")
-    assert np.count_nonzero(outcome.accepted) > 12
-    for i in np.flatnonzero(outcome.accepted):
-        values, factor, _ = propagate.select_sample(task, points, i)
-        exact = task.curves.exact(build_parameter_set(GearMesh, values), factor * task.loads)
-        for output, value in exact.items():
-            found = outcome.outputs[output][:, i]
-            assert found[1:] == pytest.approx(value[1:], rel=REDUCED), (output, values)
+    task = state_problem(joint, STUDIES[name], shorter * s_rel / joint.values.r_b1, 9)
+    points = propagate.sample_designs(task, 256, 5)[0][:16]
+    accepted = 0
+    for i, settings in enumerate(task.list_runs(points)):
+        entry = task.evaluator.run(i, settings)
+        if "error" in entry:
+            continue
+        accepted += 1
+        values = {k: v for k, v in settings.items() if k != "phi1"}
+        mesh = build_parameter_set(GearMesh, {**joint.values_by_name, **values})
+        spring, angle = GearMeshSpring.tabulate(mesh), entry["columns"]["phi1"]
+        exact = spring.evaluate(angle, 0.0, 0.5 * mesh.backlash / mesh.r_b2, 0.0)
+        for output in ("K", "f"):
+            found = entry["columns"][output]
+            assert found[1:] == pytest.approx(exact[output][1:], rel=1e-8), (output, values)
             assert found[0] == 0.0
+    assert accepted > 8
 
 
 @pytest.mark.slow
 def test_bands():
-    """The command's own check, and what turns the band: the teeth are the softer part."""
+    """The teeth are the softer part: they decide the band."""
     task = state_problem(load_default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 0)[0])
-    assert found.reduction_error < REDUCED
     assert found.refusals.count == 0
     low, high = found.quantiles["K"][[0, -1], -1]
     nominal = found.nominal["K"][-1]

@@ -91,7 +91,7 @@ class CellLoads:
         loads = sp.vstack(
             [*(means @ joint.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
         ).tocsr()
-        first, second = joint.bodies
+        first, _ = joint.bodies
         displacement = np.zeros(loads.shape[::-1])
         displacement1, displacement2 = np.split(displacement, [first.unknown_count])
         _solve_body(joint, 0, loads[:, : first.unknown_count], displacement1)
@@ -105,7 +105,9 @@ class CellLoads:
         return cls(joint, spring, normal_stiffness, loads, displacement)
 
 
-def _solve_body(joint: JointFiniteElements, body: int, unit_loads: sp.csr_matrix, displacement: Array) -> None:
+def _solve_body(
+    joint: JointFiniteElements, body: int, unit_loads: sp.csr_matrix, displacement: Array
+) -> None:
     """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed.
 
     body         : index of the body

@@ -4,10 +4,9 @@ from ...common.joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("modelica", "new", "published"),
+    ("modelica", "new", "published", "uncertainty"),
     checks="ramp",
     figures="ramp",
-    reduced="ramp",
     export="load",
     laboratory="load",
     pressure="load",

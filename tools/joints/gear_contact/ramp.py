@@ -1,22 +1,18 @@
-"""Load ramp of the gear contact: check and figure of the main job, evaluation of many samples at once."""
+"""Load ramp of the gear contact: check and figure of the main job."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.gear_contact import KIND
-from jointfmu.joints.gear_contact.spring import ContactParameters, GearContact, GearContactSpring
+from jointfmu.joints.gear_contact.spring import GearContact
 from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
 from ...pages.report.figure import Figure, Panel, Series
 from ...run.ramps.ramp import RampResult
-from ...studies.batch.approach import columns, held, tabulate
 from ...studies.checks import integrate_logarithmically, relative_deviation
-from ...studies.uncertainty.problem import ReducedCurves
 
 
 def _check_approach(folder: Path, result: RampResult) -> tuple[str, float]:
@@ -46,39 +42,3 @@ def figures(job_result: Any) -> list[Figure]:
     ]
     text = "Up to a real contact area of about a tenth of the nominal area."
     return [Figure("Stiffness and approach over load", text, panels, data_file="GearContact.csv")]
-
-
-def evaluate(
-    parameters: type[ContactParameters], values: Mapping[str, object], loads: Array, factor: Array
-) -> dict[str, Array]:
-    """Stiffness K_N (n, m) [N/m] and approach s_rel (n, m) [m] at the forces `load_factors * loads`.
-
-    parameter_class    : class of the parameter set
-    sampled_parameters : {structured name: number, or samples (n)}
-    loads              : (m) [N], ascending
-    load_factors       : (n, 1) [1], one for each sample
-    """
-    contact = columns(parameters, values, 1)
-    scale = factor / contact.A_0
-    touching = loads > 0.0
-    rows, _ = tabulate(contact, scale * np.min(loads[touching]), scale * loads[-1])
-    logs = held(rows, np.log(loads[touching]), np.log(scale), np.log(contact.hardness))
-    K, s = np.zeros((2, factor.size, loads.size))
-    K[:, touching], s[:, touching] = contact.A_0 * np.exp(logs["k"]), np.exp(logs["s"])
-    return {"K_N": K, "s_rel": s}
-
-
-def evaluate_exported(joint: ContactParameters, loads: Array) -> dict[str, Array]:
-    """K_N (m) [N/m] and s_rel (m) [m] of the exported joint at forces (m) [N]; both are 0 at zero force."""
-    state = GearContactSpring.tabulate(joint).evaluate(loads)
-    return {name: np.where(loads > 0.0, state[name], 0.0) for name in REDUCED.units}
-
-
-REDUCED = ReducedCurves(
-    load=KIND.variables["f"],
-    outputs=tuple(KIND.variables[name] for name in ("K_N", "s_rel")),
-    default_end=lambda contact: 3e3,
-    max_load=lambda contact: contact.hardness * contact.A_0,
-    evaluate=evaluate,
-    exact=evaluate_exported,
-)

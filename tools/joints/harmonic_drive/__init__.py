@@ -4,7 +4,7 @@ from ...common.joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("fit", "modelica", "new", "published", "reduced", "report"),
+    ("fit", "modelica", "new", "published", "report", "uncertainty"),
     checks="job",
     figures="job",
     laboratory="job",

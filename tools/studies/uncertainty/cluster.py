@@ -1,51 +1,45 @@
-"""Runs of a sweep on the workers of a dask cluster."""
+"""Runs of a study on the workers of a dask cluster."""
 
 from collections import Counter
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from itertools import islice
-from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from .worker import KILLED_MESSAGE, LoadRamp
+from .worker import Entry, RampEvaluator, Run, killed_entry
 
-RUNS_PER_WORKER = 4
-"""Runs submitted at once for each worker thread [1]: enough to keep the workers busy."""
+JOBS_PER_WORKER = 4
+"""Jobs submitted at once for each worker thread [1]: enough to keep the workers busy."""
 MAX_RESTARTS = 3
-"""Maximum number of restarts of a run whose result was lost with its worker [1]."""
+"""Maximum number of restarts of a job whose result was lost with its worker [1]."""
 
 
 def run_on_cluster(
-    scheduler: str,
-    fmu: Path,
-    load_ramp: LoadRamp,
-    runs: Sequence[Mapping[str, Any]],
-    pending: Sequence[int],
-) -> Generator[dict[str, object]]:
-    """Run the ramps on a dask cluster, and yield the journal entry of each run when it ends.
+    scheduler: str, evaluator: RampEvaluator, jobs: Sequence[Sequence[Run]]
+) -> Generator[list[Entry]]:
+    """Do runs on a dask cluster, and yield the journal entries of each job when it ends.
 
     scheduler : address of the dask scheduler
-    runs      : settings of all runs
-    pending   : indices of the runs to be executed
+    jobs      : runs that a worker does at once
 
-    At most RUNS_PER_WORKER runs for each worker thread are submitted at the same time.
+    At most JOBS_PER_WORKER jobs for each worker thread are submitted at the same time.
 
     Raises ValueError if dask is missing or the scheduler does not answer. Raises RuntimeError if the cluster
-    has no worker, or a worker cannot run the FMU at all.
+    has no worker, or a worker cannot evaluate the study at all.
     """
     with _connect(scheduler) as client:
-        from .plugin import FmuDistribution
+        from .plugin import StudyDistribution
 
         try:
             client.wait_for_workers(1, timeout=60)
         except TimeoutError:
             raise RuntimeError(f"{scheduler}: has had no worker for 60 s") from None
         key = f"jointfmu-{uuid4()}"
-        client.register_plugin(FmuDistribution(key, fmu.name, fmu.read_bytes()), name=key)
+        client.register_plugin(StudyDistribution(key, evaluator.pack()), name=key)
         try:
-            yield from _submit_runs(client, key, load_ramp, runs, pending)
+            yield from _submit_jobs(client, key, jobs)
         finally:
             with suppress(Exception):  # the scheduler may be gone
                 client.unregister_worker_plugin(key)
@@ -58,7 +52,7 @@ def _connect(scheduler: str) -> Iterator[Any]:
         from distributed import Client
     except ImportError as error:
         raise ValueError(
-            f"the package {error.name or 'distributed'} is missing, needed for a sweep on a cluster; "
+            f"the package {error.name or 'distributed'} is missing, needed for a study on a cluster; "
             "install it with: pip install 'jointfmu[cluster]'"
         ) from None
     try:
@@ -72,39 +66,42 @@ def _connect(scheduler: str) -> Iterator[Any]:
         yield client
 
 
-def _submit_runs(
-    client: Any, fmu_key: str, load_ramp: LoadRamp, runs: Sequence[Mapping[str, Any]], pending: Sequence[int]
-) -> Iterator[dict[str, object]]:
-    """Submit runs to a dask client, and yield the journal entry of each run when it ends.
+def _submit_jobs(client: Any, key: str, jobs: Sequence[Sequence[Run]]) -> Iterator[list[Entry]]:
+    """Submit jobs to a dask client, and yield the journal entries of each job when it ends.
 
-    fmu_key : key under which the workers have the FMU
+    key : key under which the workers have the evaluator
     """
     from distributed import KilledWorker, as_completed
 
     from .plugin import run_on_dask_worker
 
-    waiting, indices, lost = iter(pending), {}, Counter[int]()
+    waiting, submitted, lost = iter(jobs), dict[str, Sequence[Run]](), Counter[int]()
 
-    def submit(index: int) -> object:
-        future = client.submit(run_on_dask_worker, fmu_key, load_ramp, index, runs[index], pure=False)
-        indices[future.key] = index
+    def submit(job: Sequence[Run]) -> object:
+        future = client.submit(run_on_dask_worker, key, job, pure=False)
+        submitted[future.key] = job
         return future
 
-    ahead = RUNS_PER_WORKER * max(sum(client.nthreads().values()), 1)
-    queue = as_completed([submit(i) for i in islice(waiting, ahead)])
+    ahead = JOBS_PER_WORKER * max(sum(client.nthreads().values()), 1)
+    queue = as_completed([submit(job) for job in islice(waiting, ahead)])
     for future in queue:
-        index = indices.pop(future.key)
+        job = submitted.pop(future.key)
+        first_run = job[0][0]
         try:
             yield future.result()
         except KilledWorker:
-            yield {"run": index, "parameters": dict(runs[index]), "error": KILLED_MESSAGE}
+            if len(job) > 1:  # find the run that kills
+                for run in job:
+                    queue.add(submit([run]))
+                continue
+            yield [killed_entry(*job[0])]
         except Exception as error:
-            lost[index] += 1
-            if not isinstance(error, CancelledError) or lost[index] > MAX_RESTARTS:
+            lost[first_run] += 1
+            if not isinstance(error, CancelledError) or lost[first_run] > MAX_RESTARTS:
                 text = " ".join(str(error).split())[:200]
                 error_name = type(error).__name__
-                raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None
-            queue.add(submit(index))  # its result was lost when another run killed the worker
+                raise RuntimeError(f"run {first_run}: the worker failed: {error_name}: {text}") from None
+            queue.add(submit(job))  # its result was lost when another run killed the worker
             continue
-        for following in islice(waiting, 1):
-            queue.add(submit(following))
+        for next_job in islice(waiting, 1):
+            queue.add(submit(next_job))

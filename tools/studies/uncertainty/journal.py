@@ -1,7 +1,7 @@
-"""Folder of a sweep: `study.json` describes the study, `runs.jsonl` has one line for each finished run.
+"""Folder of a study: `study.json` describes the study, `runs.jsonl` has one line for each finished run.
 
-A line is appended in one write and flushed to the disk. Therefore a sweep may be killed at any time: at most
-an unfinished last line is lost, and the next sweep removes it. Each line is a JSON object with `run` (index
+A line is appended in one write and flushed to the disk. Therefore a study may be killed at any time: at most
+an unfinished last line is lost, and the next start removes it. Each line is a JSON object with `run` (index
 in the study), `parameters`, and either `columns` (results of the ramp) or `error` (message). Lines are
 checked when they are read, because the folder may come from an untrusted source.
 """
@@ -17,11 +17,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+import numpy as np
+
 from jointfmu.files.reading import check_regular, read_bytes
 from jointfmu.files.text import check_text, replace_unprintable
 from jointfmu.files.writing import ensure_folder, write_text
 
 STUDY_FILE, RUNS_FILE, BANDS_FILE = "study.json", "runs.jsonl", "bands.csv"
+INDEX_RUNS_FILE = "index_runs.jsonl"
+"""Further runs, for Sobol' indices."""
 LOCK_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
@@ -40,17 +44,17 @@ def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
     if not path.exists():
         if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
             raise ValueError(
-                f"{folder}: contains other files than those of a sweep; state a new or empty folder"
+                f"{folder}: contains other files than those of a study; state a new or empty folder"
             )
         write_text(path, json.dumps(study, indent=1) + "\n")
         return
-    data = read_bytes(path, "a study of a sweep")
+    data = read_bytes(path, "a study")
     try:
         present = json.loads(data.decode())
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: is not a study of a sweep ({error}); expected another folder") from None
+        raise ValueError(f"{path}: is not a study ({error}); expected another folder") from None
     if not isinstance(present, dict):
-        raise ValueError(f"{path}: is not a study of a sweep (no JSON object); expected another folder")
+        raise ValueError(f"{path}: is not a study (no JSON object); expected another folder")
     if present == json.loads(json.dumps(study)):
         return
     changed = sorted(key for key in {*present, *study} if present.get(key) != study.get(key))
@@ -81,7 +85,7 @@ def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
 
 
 class Journal:
-    """File of finished runs of a sweep, open for appending and locked by this process.
+    """File of finished runs of a study, open for appending and locked by this process.
 
     run_count     : number of runs of the study
     finished_runs : indices of the finished runs
@@ -92,22 +96,22 @@ class Journal:
     no run of the study.
     """
 
-    def __init__(self, folder: Path, run_count: int) -> None:
+    def __init__(self, folder: Path, run_count: int, file_name: str = RUNS_FILE) -> None:
         self.run_count = run_count
-        self.path = folder / RUNS_FILE
+        self.path = folder / file_name
         self.finished_runs: set[int] = set()
         self.failed_count = 0
         self.first_failure: dict[str, object] | None = None
 
     def __enter__(self) -> "Journal":
-        check_regular(self.path, "the journal of a sweep")
+        check_regular(self.path, "the journal of a study")
         self.file = self.path.open("ab")
         try:
             _lock_file(self.file.fileno())
         except OSError:
             self.file.close()
             raise ValueError(
-                f"{self.path.parent}: another sweep is writing here; wait, or state another folder"
+                f"{self.path.parent}: another command is writing here; wait, or state another folder"
             ) from None
         end = 0
         try:
@@ -128,14 +132,14 @@ class Journal:
     ) -> None:
         self.file.close()
 
-    def add(self, entry: Mapping[str, object]) -> None:
-        """Append the entry of a finished run, unless the run is already in the file."""
-        if entry["run"] in self.finished_runs:
-            return
-        self.file.write(json.dumps(entry).encode() + b"\n")
+    def add(self, *entries: Mapping[str, Any]) -> None:
+        """Append the entries of finished runs, except of runs that are already in the file."""
+        for entry in entries:
+            if entry["run"] not in self.finished_runs:
+                self.file.write(json.dumps(entry, default=np.ndarray.tolist).encode() + b"\n")
+                self._count_entry(entry)
         self.file.flush()
         os.fsync(self.file.fileno())
-        self._count_entry(entry)
 
     def _count_entry(self, entry: Mapping[str, Any]) -> None:
         """Update the counts and the first failure with an entry."""
@@ -145,9 +149,9 @@ class Journal:
             self.first_failure = self.first_failure or dict(entry)
 
 
-def read_entries(folder: Path) -> Iterator[dict[str, Any]]:
+def read_entries(folder: Path, file_name: str = RUNS_FILE) -> Iterator[dict[str, Any]]:
     """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is not a run."""
-    return (entry for entry, _ in _read_lines(folder / RUNS_FILE))
+    return (entry for entry, _ in _read_lines(folder / file_name))
 
 
 def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
@@ -156,7 +160,7 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
     Raises ValueError, one line, for a row that is not a run, a repeated run, or columns of another length.
     """
     end, rows, shape = 0, dict[int, int](), dict[str, int]()
-    check_regular(path, "the journal of a sweep")
+    check_regular(path, "the journal of a study")
     with path.open("rb") as file:
         for row, line in enumerate(file, 1):
             if not line.endswith(b"\n"):
@@ -179,7 +183,7 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
 def _row_error(path: Path, row: int, reason: str) -> ValueError:
     """Error for a row that is not a run of the study."""
     return ValueError(
-        f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the sweep wrote "
+        f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the command wrote "
         "it: delete "
         "the row, and the same command repeats its run"
     )

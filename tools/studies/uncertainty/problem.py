@@ -1,109 +1,68 @@
-"""Statement of an uncertainty propagation: parameters, distributions, load ramp, reduced curves of the joint.
-
-Reduced curves are a fast evaluation of the joint for many samples at once.
-"""
+"""Statement of an uncertainty study: parameters with distributions, load ramp, evaluation of the runs."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Variable
-from jointfmu.parameters import ParameterFile
+from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import Array, Interval, find_problem, flat_fields
 from jointfmu.quantity.refusal import InputRefusal
 
-from ...common.joint_parts import load_tool_module
+from .curves import LoadCurves, load_curves
+from .journal import sha256_text
 from .study import UncertainParameter, draw_samples, is_relative, split_settings
-
-EvaluateFunction = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
-"""Type of `ReducedCurves.evaluate`."""
-
-
-@dataclass(frozen=True, slots=True)
-class ReducedCurves:
-    """Reduced curves of a joint: outputs along a load ramp, for many samples at once.
-
-    load     : the ramped input
-    outputs  : variables computed along the ramp
-    default_end : function: parameter set -> default end of the ramp
-    max_load : function: parameter set (numbers or samples) -> largest load of the tabulated law
-    evaluate : function: class of the parameter set, {name: value or samples (n)}, loads (m), load factors
-        (n, 1) -> outputs (n, m) at factors times loads
-    exact    : function: parameter set, loads (m) -> outputs (m), by the spring model of the exported FMU
-    """
-
-    load: Variable
-    outputs: Sequence[Variable]
-    default_end: Callable[[Any], float]
-    max_load: Callable[[Any], Any]
-    evaluate: EvaluateFunction
-    exact: Callable[[Any, Array], dict[str, Array]]
-
-    @property
-    def units(self) -> dict[str, str]:
-        """{output: unit}."""
-        return {v.name: v.unit for v in self.outputs}
-
-
-def reduced_curves(kind: JointKind) -> ReducedCurves:
-    """Reduced curves of a kind of joint, from its module `reduced`.
-
-    Raises ValueError if the joint has none.
-    """
-    module = load_tool_module(kind, "reduced")
-    if module is None:
-        raise ValueError(f"joint = {kind.name!r} has no evaluation for many samples at once")
-    curves: ReducedCurves = module.REDUCED
-    return curves
-
+from .worker import LOAD_LIMIT_TEXT, JointRamp, RampEvaluator
 
 INTERVAL_SETTING = "interval"
 """Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
 _INTERVAL_PATTERN = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 """Interval in the text of a source: its two ends."""
-LOAD_LIMIT_TEXT = "up to the end of the tabulated law"
-"""Meaning of the load interval, for error messages."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Uncertainty propagation problem of a joint.
+    """Uncertainty study of a joint or an FMU.
 
-    joint      : name of the kind of joint
-    parameter_class : class of the parameter set
-    values     : {name: value} of the parameter file, with the settings that are plain values
+    title     : kind of the joint, or name of the FMU file
+    load      : the ramped input
+    loads     : load ramp (m), ascending for a joint
+    units     : {output: unit}
     uncertain_parameters : parameters with a distribution; the load is the last one if it has a distribution
-    loads      : load ramp (m), ascending; one point if the load itself was set
-    load_is_relative : whether the distribution of the load is a factor on the ramp; None if it has none
+    settings  : {name: value} of all runs of an FMU
+    evaluator : evaluation of one run
+    record    : JSON object that identifies joint or FMU, and ramp
     """
 
-    joint: str
-    parameter_class: type[object]
-    values: Mapping[str, object]
-    uncertain_parameters: tuple[UncertainParameter, ...]
+    title: str
+    load: Variable
     loads: Array
-    load_is_relative: bool | None = None
+    units: Mapping[str, str]
+    uncertain_parameters: tuple[UncertainParameter, ...]
+    settings: Mapping[str, Any]
+    evaluator: RampEvaluator
+    record: Mapping[str, Any]
 
     @property
-    def curves(self) -> ReducedCurves:
-        return reduced_curves(KINDS[self.joint])
+    def variable_units(self) -> dict[str, str]:
+        """{load or output: unit}."""
+        return {self.load.name: self.load.unit, **self.units}
 
-    def sample_values(self, points: Array) -> tuple[dict[str, object], Array]:
-        """Values of all parameters, {name: value or samples (n)}, and load factors (n).
-
-        points : points (n, d) of the unit cube
-        """
+    def list_runs(self, points: Array) -> list[dict[str, Any]]:
+        """Settings of the runs for points (n, d) of the unit cube."""
         samples = draw_samples(self.uncertain_parameters, points)
-        load = samples.pop(self.curves.load.name, None)
-        factor = (
-            np.ones(len(points)) if load is None else load if self.load_is_relative else load / self.loads[-1]
-        )
-        return {**self.values, **samples}, factor
+        rows = zip(*(column.tolist() for column in samples.values()), strict=True)
+        return [{**self.settings, **dict(zip(samples, row, strict=True))} for row in rows]
+
+    def study_record(self, count: int, seed: int) -> dict[str, Any]:
+        """JSON object that identifies the study, for its folder."""
+        distributions = {parameter.name: parameter.text for parameter in self.uncertain_parameters}
+        counts = {"samples": count, "seed": seed}
+        return {**self.record, **counts, "parameters": {**distributions, **self.settings}}
 
 
 def state_problem(
@@ -120,8 +79,7 @@ def state_problem(
     Raises ValueError for an unknown name, a value outside its interval, or a distribution of a parameter that
     cannot be uncertain.
     """
-    kind = KINDS[file.joint]
-    curves, declared = reduced_curves(kind), dict(flat_fields(type(file.values)))
+    curves, declared = load_curves(KINDS[file.joint]), dict(flat_fields(type(file.values)))
     base = dict(file.values_by_name)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     settable = [*(base.keys() - lists), curves.load.name]
@@ -150,9 +108,15 @@ def state_problem(
         ramp_end if ramp_end is not None or single is not None else file.start_value(curves.load.name) or None
     )
     loads = _ramp_loads(curves, nominal.values, single, end, points, load)
-    return Problem(
-        file.joint, type(file.values), nominal.values_by_name, order, loads, relative if load else None
-    )
+    record = {
+        "joint": file.joint,
+        "parameter_file_sha256": sha256_text(format_parameter_file(nominal).encode()),
+        "load": curves.load.name,
+        "to": float(loads[-1]),
+        "points": loads.size,
+    }
+    ramp = JointRamp(nominal, loads, relative)
+    return Problem(file.joint, curves.load, loads, curves.units, order, {}, ramp, record)
 
 
 def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
@@ -194,7 +158,7 @@ def _check_uncertain(parameter: UncertainParameter, item: Any) -> None:
 
 
 def _ramp_loads(
-    curves: ReducedCurves,
+    curves: LoadCurves,
     values: object,
     single_load: object,
     ramp_end: float | None,

@@ -33,7 +33,7 @@ def format_bands_csv(problem: Problem, bands: Bands) -> str:
 
     Numbers are written without rounding.
     """
-    load = problem.curves.load
+    load = problem.load
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
         statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.standard_deviation))
@@ -59,14 +59,13 @@ def as_json(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> 
         }
         for name, unit in bands.units.items()
     }
-    refused, load = bands.refusals, problem.curves.load
+    refused, load = bands.refusals, problem.load
     return {
-        "joint": problem.joint,
+        "fmu" if problem.title.endswith(".fmu") else "joint": problem.title,
         "parameters": {parameter.name: parameter.text for parameter in problem.uncertain_parameters},
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.sample_count,
         "refused": {"count": refused.count, "example": dict(refused.example), "reason": refused.reason},
-        "reduction_error": bands.reduction_error,
         "outputs": outputs,
         "indices": None if sensitivity is None else _indices_json(sensitivity),
     }
@@ -93,7 +92,7 @@ def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None
     load_indices = _table_indices(bands.loads)
     quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
     for name in bands.nonzero_outputs:
-        head = f"{problem.curves.load.name} [{problem.curves.load.unit}]"
+        head = f"{problem.load.name} [{problem.load.unit}]"
         lines.append(f"{name} [{bands.units[name]}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
         for j in load_indices:
@@ -104,7 +103,7 @@ def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None
     if sensitivity is not None:
         lines += _indices_table(problem, sensitivity, bands.nonzero_outputs)
     varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in problem.uncertain_parameters)
-    lines.append(f"over {problem.curves.load.name}: {problem.curves.load.doc}")
+    lines.append(f"over {problem.load.name}: {problem.load.doc}")
     lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on it'}")
     if zero := [name for name in bands.units if name not in bands.nonzero_outputs]:
         lines.append(f"zero at all loads: {', '.join(zero)}")
@@ -112,16 +111,12 @@ def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None
     if bands.refusals.count:
         example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refusals.example.items())
         lines.append(f"the first refused: {example}: {bands.refusals.reason}")
-    lines.append(
-        "fast evaluation against the exported spring: largest relative difference "
-        f"{bands.reduction_error:.1e}"
-    )
     return "\n".join(lines)
 
 
 def _indices_table(problem: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
     """Lines of a table: Sobol' indices at the end of the load ramp."""
-    load = f"{problem.curves.load.name} = {sensitivity.loads[-1]:g} {problem.curves.load.unit}"
+    load = f"{problem.load.name} = {sensitivity.loads[-1]:g} {problem.load.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
     width = max(len(name) for name in sensitivity.parameter_names) + 2
     lines.append(" " * width + "".join(f"{name:>32}" for name in outputs))

@@ -1,0 +1,14 @@
+"""Force of the spring over its elongation."""
+
+import numpy as np
+from jointfmu_tools.studies.uncertainty.curves import LoadCurves
+
+from .. import KIND
+
+CURVES = LoadCurves(
+    model="ToySpring",
+    load=KIND.variables["s_rel"],
+    outputs=(KIND.variables["f"],),
+    default_end=lambda spring: 1e-3,
+    max_load=lambda spring: np.inf,
+)

@@ -1,0 +1,13 @@
+"""Stiffness and approach of the gear contact over its force, for `jointfmu uncertainty`."""
+
+from jointfmu.joints.gear_contact import KIND
+
+from ...studies.uncertainty.curves import LoadCurves
+
+CURVES = LoadCurves(
+    model="GearContact",
+    load=KIND.variables["f"],
+    outputs=tuple(KIND.variables[name] for name in ("K_N", "s_rel")),
+    default_end=lambda contact: 3e3,
+    max_load=lambda contact: contact.hardness * contact.A_0,
+)

@@ -1,0 +1,14 @@
+"""Stiffness and wind-up of the harmonic drive over its torque, for `jointfmu uncertainty`."""
+
+from jointfmu.joints.harmonic_drive import KIND
+
+from ...studies.uncertainty.curves import LoadCurves
+
+CURVES = LoadCurves(
+    model="HarmonicDriveCompliance",
+    load=KIND.variables["tau"],
+    outputs=tuple(KIND.variables[name] for name in ("K_WTS", "phi_rel")),
+    default_end=lambda drive: float(drive.rated_torque),
+    max_load=lambda drive: drive.max_table_torque,
+    settings={"hysteresis_loss": 0.0},
+)

@@ -1,1 +1,0 @@
-"""Laws and parameter sets for many samples at once: rows of samples, columns of loads."""

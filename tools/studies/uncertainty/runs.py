@@ -1,0 +1,169 @@
+"""Runs of a study: in this process, in processes of this machine or on a cluster; kept in a folder or not."""
+
+import math
+import os
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.progress import run_jobs, track_progress
+
+from . import journal
+from .worker import Entry, RampEvaluator, Run, Settings, killed_entry, run_job
+
+Mask = NDArray[np.bool_]
+SinglePrecisionArray = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """Where the runs of a study are done, and where they are kept.
+
+    folder    : folder of the study, see `journal.claim_folder`; None: runs are not kept
+    scheduler : address of a dask scheduler, whose workers do the runs
+    workers   : number of processes on this machine, if there is no scheduler; None: one for each core
+    """
+
+    folder: Path | None = None
+    scheduler: str | None = None
+    workers: int | None = None
+
+
+IN_MEMORY = Execution()
+"""Runs on this machine that are not kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class SampledOutputs:
+    """Outputs of n runs, in single precision.
+
+    outputs  : {name: (m, n)}; NaN for runs that failed
+    errors   : {index of a run that failed: error message}, in ascending order
+    new_runs : number of runs that were not in the folder before
+    """
+
+    outputs: Mapping[str, SinglePrecisionArray]
+    errors: Mapping[int, str]
+    new_runs: int
+
+    @property
+    def accepted(self) -> Mask:
+        """Mask (n) of the runs that did not fail."""
+        mask = np.ones(next(iter(self.outputs.values())).shape[1], dtype=bool)
+        mask[list(self.errors)] = False
+        return mask
+
+
+def evaluate_runs(
+    evaluator: RampEvaluator,
+    runs: Sequence[Settings],
+    names: Iterable[str],
+    row_count: int,
+    execution: Execution = IN_MEMORY,
+    file_name: str = journal.RUNS_FILE,
+    progress_label: str = "samples",
+) -> SampledOutputs:
+    """Do the runs that are not yet in the folder of a study, and keep each run when it is finished.
+
+    runs      : settings of all runs
+    names     : outputs that are returned, of `row_count` values each
+    file_name : file of the runs in the folder
+
+    The results do not depend on the order of the runs, or on where they are done.
+
+    Raises ValueError if dask is missing, the scheduler does not answer or the folder cannot be used,
+    RuntimeError if the workers of the scheduler cannot do any run.
+    """
+    outputs = {name: np.full((row_count, len(runs)), np.nan, np.float32) for name in names}
+    errors: dict[int, str] = {}
+
+    def collect(entry: Entry) -> None:
+        if "error" in entry:
+            errors[entry["run"]] = entry["error"]
+            return
+        columns = entry["columns"]
+        if any(len(columns.get(name, ())) != row_count for name in outputs):
+            text = f"run {entry['run']}: its columns are not those of the study; expected another folder"
+            raise ValueError(f"{execution.folder}: {text}")
+        for name, values in outputs.items():
+            values[:, entry["run"]] = columns[name]
+
+    with _open_journal(execution.folder, len(runs), file_name) as kept:
+        finished: set[int] = set()
+        if kept:
+            finished |= kept.finished_runs
+            for entry in journal.read_entries(kept.path.parent, file_name):
+                collect(entry)
+        pending = [(i, settings) for i, settings in enumerate(runs) if i not in finished]
+        with closing(_execute(evaluator, pending, execution)) as entries:
+            for entry in track_progress(_keep(entries, kept), progress_label, len(pending)):
+                collect(entry)
+    return SampledOutputs(outputs, dict(sorted(errors.items())), len(pending))
+
+
+@contextmanager
+def _open_journal(folder: Path | None, run_count: int, file_name: str) -> Iterator[journal.Journal | None]:
+    if folder is None:
+        yield None
+    else:
+        with journal.Journal(folder, run_count, file_name) as kept:
+            yield kept
+
+
+def _keep(jobs: Iterable[Sequence[Entry]], kept: journal.Journal | None) -> Iterator[Entry]:
+    """Write the entries of each finished job to the journal, and yield them."""
+    for entries in jobs:
+        if kept:
+            kept.add(*entries)
+        yield from entries
+
+
+def _execute(
+    evaluator: RampEvaluator, pending: Sequence[Run], execution: Execution
+) -> Generator[Sequence[Entry]]:
+    """Do runs, and yield the journal entries of each job when it ends."""
+    size = evaluator.runs_per_job
+    jobs = [pending[i : i + size] for i in range(0, len(pending), size)]
+    if not jobs:
+        return
+    if execution.scheduler is None:
+        yield from _run_locally(evaluator, jobs, execution.workers)
+    else:
+        from .cluster import run_on_cluster
+
+        yield from run_on_cluster(execution.scheduler, evaluator, jobs)
+
+
+def _run_locally(
+    evaluator: RampEvaluator, jobs: Sequence[Sequence[Run]], workers: int | None
+) -> Generator[Sequence[Entry]]:
+    """Do jobs on this machine, and yield the journal entries of each job when it ends.
+
+    If the process of a job dies, its runs are repeated one by one, to find the run that kills.
+    """
+    processes = workers or os.cpu_count() or 1
+    with TemporaryDirectory(prefix="study-") as folder:
+        installed = evaluator.install(Path(folder))
+        if share := evaluator.runs_per_process:
+            processes = min(processes, math.ceil(sum(map(len, jobs)) / share))
+            if processes == 1:
+                for job in jobs:
+                    yield [installed.run(*run) for run in job]
+                return
+        while jobs:
+            died: list[Run] = []
+            arguments = ((installed, Path(folder), job) for job in jobs)
+            with closing(run_jobs(run_job, arguments, processes)) as finished:
+                for (_, _, job), entries in finished:
+                    if entries is not None:
+                        yield entries
+                    elif len(job) > 1:
+                        died += job
+                    else:
+                        yield [killed_entry(*job[0])]
+            jobs = [[run] for run in died]
