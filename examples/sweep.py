@@ -1,4 +1,4 @@
-"""What is not known of a joint becomes a band: an FMU over many samples. Needs the extra `sweep`."""
+"""What is not known of a joint becomes a band: an FMU over many samples. Needs the extra `uncertainty`."""
 
 import csv
 import subprocess
@@ -12,7 +12,7 @@ import jointfmu
 if __name__ == "__main__":  # worker processes import this file
     fmu = jointfmu.load("BoltedJoint").build("dist", "fmi2")[0]
     words = "--set surface.D=1.38..1.46 H=+-10% --input preload --to 30e3 --step 1e3 --samples 64 --out study"
-    subprocess.run([sys.executable, "-m", "jointfmu", "sweep", str(fmu), *words.split()], check=True)
+    subprocess.run([sys.executable, "-m", "jointfmu", "uncertainty", str(fmu), *words.split()], check=True)
 
     with open("study/bands.csv", newline="") as file:
         heads, *rows = csv.reader(file)
