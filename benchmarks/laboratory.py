@@ -1,20 +1,21 @@
-"""How long the laboratory takes to redraw when a slider moves, in headless Chromium; and its pictures.
+"""Time of the laboratory to redraw when a slider moves, in headless Chromium; and pictures of its pages.
 
-    python benchmarks/laboratory.py [--pictures DIR]
+    python benchmarks/laboratory.py [--quick] [--pictures DIR]
 
-From the slider's event to the end of the frame that shows it, script, layout and painting, for every joint
-with its first path, on a desktop (1400 x 1000) and on a phone (390 x 800, its processor four times slower by
-Chromium's own brake), while the reader looks at the curves and while he looks at the path. Changes come at
-random moments, as a hand makes them, so what is drawn out of sight is in the way; up to 17 ms are the wait
-for the next frame. The first change is left out.
+The time runs from the event of the slider to the end of the frame that shows the change: script, layout and
+                                                                                          painting.
+It is measured for every joint with its first path, on a desktop (1400 x 1000) and on a phone (390 x 800, with
+a processor that Chromium makes four times slower), with the curves or the path in view. The changes come at
+random moments, as from a hand, so work outside the view delays them. Up to 17 ms are the wait for the next
+frame. The first change is left out.
 """
 
 import argparse
 import os
-import sys
 import tempfile
 from pathlib import Path
 
+import harness
 import numpy as np
 from browser import PROGRAM, browser
 from jointfmu_tools.pages.laboratory.assemble import write_laboratory
@@ -44,10 +45,10 @@ MOVE = """(async () => {
 })()"""
 
 
-def main(pictures: Path | None) -> None:
+def main(options: argparse.Namespace) -> None:
     """Print the times of every joint."""
-    if PROGRAM is None:
-        sys.exit("no Chromium is installed; Debian's package is chromium")
+    harness.require(PROGRAM is not None, "Chromium (Debian: chromium)")
+    pictures, changes = options.pictures, 3 if options.quick else CHANGES
     with tempfile.TemporaryDirectory() as folder, browser() as shown:
         page = Path(folder) / "laboratory.html"
         write_laboratory(page)
@@ -64,7 +65,7 @@ def main(pictures: Path | None) -> None:
                 shown.call("Emulation.setCPUThrottlingRate", rate=slower)
                 shown.run(f"laboratory.then((lab) => lab.choose('{model}', 0))")
                 for view in VIEWS:
-                    script = MOVE.replace("CHANGES", str(CHANGES)).replace("VIEW", f"'{view}'")
+                    script = MOVE.replace("CHANGES", str(changes)).replace("VIEW", f"'{view}'")
                     frame, own = np.array(shown.run(script)).T
                     found = (np.median(frame), np.quantile(frame, 0.95), frame.max(), np.median(own))
                     print(f"{model:24}{screen:>9}{view:>8}" + "".join(f"{t:8.1f}" for t in found), flush=True)
@@ -79,8 +80,9 @@ def main(pictures: Path | None) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    main(
+        harness.read_options(
+            __doc__,
+            pictures={"type": Path, "metavar": "DIR", "help": "write PNG files of every joint there"},
+        )
     )
-    parser.add_argument("--pictures", type=Path, metavar="DIR", help="write PNG files of every joint there")
-    main(parser.parse_args().pictures)

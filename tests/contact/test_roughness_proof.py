@@ -1,15 +1,15 @@
 """The law `roughness` against boundary elements on fresh surfaces, measured joints, a published contact law.
 
-The tables of docs/validity_stiffness.md come from benchmarks/roughness_law.py. The tests have few surfaces,
+The tables of docs/validity_stiffness.md come from studies/validity_stiffness.py. The tests have few surfaces,
 with other seeds, and every measured joint. Bounds are those that the law has to keep.
 """
 
-import interface_laws
 import numpy as np
 import pytest
-import roughness_cases as cases
 from clients import needs
-from measured_joints import GAMMA, joint_law, level, measured
+from oracles import interface_laws
+from oracles import roughness_law as cases
+from oracles.measured_joints import GAMMA, joint_law, level, measured
 
 SEEDS = {1: range(400, 408), 4: range(400, 403)}
 """Of surfaces with waves up to side/1 and side/4: the few hills of the first differ more."""

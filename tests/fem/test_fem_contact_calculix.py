@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from calculix_meshes import body_lines, displacements
 from clients import needs
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.contact import ContactModel
 from jointfmu_tools.fem.geometry import Assembly
+from oracles.calculix import body_lines, displacements
 from scipy.spatial import cKDTree
 from test_fem_contact import BOLTS, PLATE, Linear
 

@@ -1,18 +1,15 @@
-"""The lapped beam (benchmarks/brake_reuss.py): closed forms, and friction over amplitude on a coarse mesh."""
+"""The lapped beam (oracles/lap_beam): closed forms, and friction over amplitude on a coarse mesh."""
 
-import os
-import subprocess
-import sys
 from dataclasses import replace
 
-import brake_reuss
-import brake_reuss_cases as cases
 import numpy as np
 import pytest
 from clients import needs
-from lap_beam_loops import Joint, damping, foundation, frequency, masing
-from lap_beam_plan import Fineness
-from lap_beam_reduction import Structure, reduced, spectrum
+from oracles.lap_beam import brake_reuss as cases
+from oracles.lap_beam.brake_reuss import AMPLITUDES, FRICTION_COEFFICIENT, GLUED_STIFFNESS
+from oracles.lap_beam.loops import Joint, damping, foundation, frequency, masing, with_friction
+from oracles.lap_beam.plan import Fineness
+from oracles.lap_beam.reduction import Structure, reduced, spectrum
 
 from jointfmu.mechanics.curve import tabulate_approach
 
@@ -23,11 +20,11 @@ BAR = replace(cases.beam(), lap=cases.beam().length, bolts=())
 
 
 @needs("gmsh")
-@pytest.mark.parametrize(("shear", "height"), [(brake_reuss.GLUED, 1.0), (0.0, 0.5)])
+@pytest.mark.parametrize(("shear", "height"), [(GLUED_STIFFNESS, 1.0), (0.0, 0.5)])
 def test_bars_on_each_other_have_the_frequency_of_timoshenko(shear, height):
     """Glued they are one bar, sliding two of half the height, which slide rigidly too; 0.05 %: the mesh."""
     structure = Structure.of(BAR, Fineness(far=12e-3, layers=2))
-    normal = np.full(structure.interface.quadrature_area.size, brake_reuss.GLUED)
+    normal = np.full(structure.interface.quadrature_area.size, GLUED_STIFFNESS)
     found, _ = spectrum(structure, np.column_stack([shear * np.ones_like(normal)] * 2 + [normal]))
     expected = cases.solid_bar(replace(BAR, side=height * BAR.side))
     assert found[found > 1.0][0] == pytest.approx(expected, rel=5e-4)
@@ -40,7 +37,7 @@ def joint():
     law = cases.laws()["roughness"]
     curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
     part = reduced(structure, curve, cases.data()["beam"]["preload"], shear)
-    return Joint(part, foundation(curve, shear, brake_reuss.FRICTION))
+    return Joint(part, foundation(curve, shear, FRICTION_COEFFICIENT))
 
 
 @needs("gmsh")
@@ -64,7 +61,7 @@ def test_frequency_falls_and_damping_rises_with_amplitude(joint):
     """The loss of a small cycle grows with the third power of amplitude at constant pressure, so the damping
     ratio with the first; patches of little pressure slip wholly, which takes up to 0.15 off the exponent, and
     the finite number of sliders scatters it by 0.1."""
-    states = joint.backbone(brake_reuss.AMPLITUDES)
+    states = joint.backbone(AMPLITUDES)
     zeta = np.array([damping(*pair) for pair in zip(masing(states), states, strict=True)])
     assert np.all(np.diff([frequency(state) for state in states]) < 0.0)
     assert np.all(np.diff(zeta[3:]) > 0.0)
@@ -85,18 +82,8 @@ def test_a_whole_cycle_closes_and_its_area_is_its_loss(joint):
     assert masing(states)[-1] == pytest.approx(loss, rel=0.2)
 
 
-def test_the_benchmark_needs_no_boundary_elements():
-    """tamaas has wheels for one platform only."""
-    asked = "import sys; sys.modules['tamaas'] = None; import brake_reuss"
-    path = os.pathsep.join(sys.path)
-    done = subprocess.run(
-        [sys.executable, "-c", asked], env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-
-
 @needs("gmsh")
 def test_damping_by_masing_is_never_negative(joint):
     """With much friction little slips; the contact then stiffens under the load, which is no loss."""
-    states = brake_reuss.rubbing(joint, 0.6).backbone(brake_reuss.AMPLITUDES)
+    states = with_friction(joint, 0.6).backbone(AMPLITUDES)
     assert np.all(masing(states) > 0.0)

@@ -1,19 +1,27 @@
-"""What the proofs of the whole bolted joint stand on (benchmarks/whole_joint_nodes.py, measured_beam.py)."""
+"""References of the complete bolted joint: closed forms, Coulomb springs, finite elements with friction."""
 
 from dataclasses import replace
 from importlib.resources import files
 
-import brake_reuss_cases as cases
-import measured_beam
 import numpy as np
 import pytest
 from clients import needs
-from coulomb_springs import Springs
-from elastic_sides import Joint, stiffnesses
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
-from lap_beam_reduction import patches
-from whole_joint_forms import PRESS, Lap, by_hand
-from whole_joint_nodes import JOINTS, STEPS, Elements, along_motion, way
+from oracles.coulomb_springs import Springs
+from oracles.joint_elements import (
+    JOINTS,
+    LAP_LOAD,
+    STEPS,
+    FrictionElements,
+    Lap,
+    PlateJoint,
+    cycle_loads,
+    follow_loads,
+    stiffnesses,
+    vdi_2230,
+)
+from oracles.lap_beam import brake_reuss as cases
+from oracles.lap_beam.reduction import patches
 
 from jointfmu.joints.bolted_joint.joint import JointInputs
 from jointfmu.joints.bolted_joint.kinematics import rigid_opening
@@ -37,17 +45,10 @@ def test_the_form_of_the_lap_is_that_of_the_scan():
 def test_a_crown_touches_first_where_it_is_highest():
     x = np.linspace(-0.06, 0.06, 25)
     for height, first in ((2e-5, 12), (-2e-5, 0)):
-        gap = measured_beam.crown(height, 0.12)(x, 0.0 * x)
+        gap = cases.crown(height, 0.12)(x, 0.0 * x)
         assert gap.argmin() == first
         assert np.ptp(gap) == pytest.approx(2e-5)
         assert gap.min() == pytest.approx(0.0, abs=1e-18)
-
-
-def test_draws_fill_their_intervals():
-    draws = measured_beam.samples()
-    for values, (low, high, _) in zip(draws.T, measured_beam.UNKNOWN.values(), strict=True):
-        assert low <= values.min() < low + 0.1 * (high - low)
-        assert high - 0.15 * (high - low) < values.max() <= high
 
 
 def test_a_bar_of_any_width_has_the_frequency_of_a_square_one():
@@ -55,9 +56,9 @@ def test_a_bar_of_any_width_has_the_frequency_of_a_square_one():
     assert cases.solid_bar(replace(square, width=0.01)) == pytest.approx(cases.solid_bar(square), rel=1e-12)
 
 
-def test_vdi_2230_by_hand():
+def test_vdi_2230_vdi_2230():
     """M16 through 2 x 20 mm under 60 kN with 30 kN at its heads."""
-    factor, added, opens = by_hand(5.575e8, 2.487e9, 9.4e10, 30e3)
+    factor, added, opens = vdi_2230(5.575e8, 2.487e9, 9.4e10, 30e3)
     assert (round(factor, 3), round(added, -2), round(opens, 2)) == (0.187, 5600.0, 1.23)
 
 
@@ -90,15 +91,17 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
     _, spring, _ = lap.linear(4.0)
     bodies = replace(lap.bodies, interface=patches(lap.bodies.interface))
     area = bodies.interface.quadrature_area
-    friction = lap.values.mu * PRESS
-    elements = Elements.of(bodies, np.full(area.size, PRESS / area.sum()), spring, friction, np.eye(6)[0])
-    (small, most), (none, heat) = elements.along([1e-3, 2.0])
+    friction = lap.values.mu * LAP_LOAD
+    elements = FrictionElements.of(
+        bodies, np.full(area.size, LAP_LOAD / area.sum()), spring, friction, np.eye(6)[0]
+    )
+    (small, most), (none, heat) = elements.follow([1e-3, 2.0])
     assert small == pytest.approx(1e-3 * elements.stiffness, rel=1e-6)
     assert none == pytest.approx(0.0, abs=1e-9 * heat)
     # plates held flat, nu = 0: the pressure stays, within what shear does to it at the edges
     assert most / elements.motion[0] == pytest.approx(friction, rel=5e-3)
-    force, loss = elements.along(list(way(0.6)))
-    f, x = force[STEPS - 1 :], way(0.6)[STEPS - 1 :]
+    force, loss = elements.follow(list(cycle_loads(0.6)))
+    f, x = force[STEPS - 1 :], cycle_loads(0.6)[STEPS - 1 :]
     work = 0.5 * np.sum((f[1:] + f[:-1]) * np.diff(x))
     # chords of 8 steps each way lie inside a loop: 1.6 % of its area if it is of parabolas, 3.7 % measured
     assert work < loss[-1] - loss[STEPS - 1] < 1.05 * work
@@ -118,11 +121,11 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
         JointFiniteElements, "from_assembly", lambda assembly, attached, *_: fine(assembly, attached, 0.7)
     )
     attached, drawing, wrench = JOINTS["bracket"]
-    joint = Joint.of(attached, drawing, elements=True)
-    elements = Elements.clamped(joint, wrench)
+    joint = PlateJoint.of(attached, drawing, elements=True)
+    elements = FrictionElements.clamped(joint, wrench)
     loads = [0.5, 1.0, 2.0, 3.0, 2.0, 0.0, -2.0, -3.0]
-    force, heat = elements.along(loads)
-    found, lost = along_motion(joint.spring, joint.preload, elements.motion, loads)
+    force, heat = elements.follow(loads)
+    found, lost = follow_loads(joint.spring, joint.preload, elements.motion, loads)
     assert force[1] < 0.7 * elements.stiffness  # it slips
     np.testing.assert_allclose(found[:2], force[:2], atol=0.02 * force[1])
     np.testing.assert_allclose(found, force, atol=0.025 * force[3])

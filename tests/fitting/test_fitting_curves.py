@@ -1,9 +1,7 @@
 """Fits of measured curves: round trips, what the data do not determine, loops, bad files."""
 
-import importlib.util
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,29 +13,27 @@ from jointfmu_tools.inputs.fitting.least_squares import Unknown, solve
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
+from oracles import curve_measurements as measurements
+from oracles.joint_measurements import save
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 
-SCRIPT = Path(__file__).resolve().parents[2] / "benchmarks" / "fit_round_trips.py"
-SPEC = importlib.util.spec_from_file_location(SCRIPT.stem, SCRIPT)
-trips = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(trips)
 ARCMIN = np.pi / 10800.0
 
 
 @pytest.fixture
 def loops(tmp_path):
-    torque, angle = trips.loops(np.random.default_rng(1))
-    return trips.save(tmp_path / "loops.csv", "torque [N.m], angle [arcmin]", torque, angle / ARCMIN)
+    torque, angle = measurements.loops(np.random.default_rng(1))
+    return save(tmp_path / "loops.csv", "torque [N.m], angle [arcmin]", torque, angle / ARCMIN)
 
 
 @pytest.fixture
 def stiffness(tmp_path):
-    columns = trips.preloads(np.random.default_rng(1), "stiffness", 0.02)
-    return trips.save(tmp_path / "stiffness.csv", "preload [N], stiffness [N/m]", *columns)
+    columns = measurements.preload_series(np.random.default_rng(1), "stiffness", 0.02)
+    return save(tmp_path / "stiffness.csv", "preload [N], stiffness [N/m]", *columns)
 
 
 # Least squares
@@ -58,22 +54,13 @@ def test_a_line_has_its_textbook_covariance():
     np.testing.assert_allclose(found.covariance, expected, rtol=1e-3)
 
 
-@pytest.mark.parametrize("case", trips.CASES)
+@pytest.mark.parametrize("case", measurements.CASES)
 def test_round_trip(case, tmp_path):
     """The script's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
-    found = [trips.errors(trips.CASES[case], seed, tmp_path) for seed in range(3)]
+    found = [measurements.errors(measurements.CASES[case], seed, tmp_path) for seed in range(3)]
     within = [all(abs(z) <= 3.0 for _, z in one.values()) for one in found]
     assert sum(within) >= 2
     assert all(abs(error) < 0.6 for one in found for error, _ in one.values())
-
-
-def test_the_script_counts(monkeypatch, capsys):
-    monkeypatch.setattr(trips, "SEEDS", 1)
-    monkeypatch.setattr(trips, "CASES", {"stiffness over preload": trips.stiffness_fit})
-    monkeypatch.setattr(trips.memory_measurements, "CASES", {})
-    monkeypatch.setattr(trips.drive_measurements, "CASES", {})
-    trips.main()
-    assert " of 1 " in capsys.readouterr().out.splitlines()[1]
 
 
 # Torque-angle
@@ -82,7 +69,7 @@ def test_the_script_counts(monkeypatch, capsys):
 def test_loop_is_taken_apart(loops):
     """What the script put in: its loop without noise, drift 0.3 arcmin, offset 5 arcmin."""
     facts = torque_angle.fit(loops).facts
-    torque, angle = trips.loops(np.random.default_rng(1), noise=0.0, drift=0.0)
+    torque, angle = measurements.loops(np.random.default_rng(1), noise=0.0, drift=0.0)
     (fall, up), (rise, down) = (
         (torque[k][::way], angle[k][::way]) for k, way in ((slice(200, 400), -1), (slice(400, 600), 1))
     )
@@ -99,8 +86,8 @@ def test_loop_is_taken_apart(loops):
 
 def test_the_loop_of_a_drive_has_its_midline():
     """At the tips friction acts on both branches: their mean is half the gap at zero torque off there."""
-    line = find_backbone(*trips.loops(np.random.default_rng(1), noise=0.0, drift=0.0))
-    drive = load_default("harmonic_drive").with_values(trips.DRIVE, "user", "true").values
+    line = find_backbone(*measurements.loops(np.random.default_rng(1), noise=0.0, drift=0.0))
+    drive = load_default("harmonic_drive").with_values(measurements.DRIVE, "user", "true").values
     rest = line.angle - 5.0 * ARCMIN - wind_up(drive, line.torque)
     # 0.5 mN m of noise in the torque moves the angle by 2e-3 arcmin where the drive is soft
     assert np.max(np.abs(rest)) < 0.01 * ARCMIN
@@ -157,18 +144,18 @@ def test_what_is_not_determined_is_said_by_name(loops):
 
 def test_a_small_range_leaves_the_end_open(tmp_path):
     """Up to 2 N m hardly anything of K_FTS0 is seen."""
-    torque, angle = trips.loops(np.random.default_rng(1), amplitude=2.0, gap=0.0)
-    path = trips.save(tmp_path / "small.csv", "torque [N.m], angle [rad]", torque, angle)
+    torque, angle = measurements.loops(np.random.default_rng(1), amplitude=2.0, gap=0.0)
+    path = save(tmp_path / "small.csv", "torque [N.m], angle [rad]", torque, angle)
     assert "K_FTS0" in torque_angle.fit(path).warnings()[0]
 
 
 def test_another_size_of_drive(tmp_path):
     """A drive 50 times stiffer at 50 times the torque has the same wind-up."""
-    torque, angle = trips.loops(np.random.default_rng(1))
-    path = trips.save(tmp_path / "big.csv", "torque [N.m], angle [rad]", 50.0 * torque, angle)
+    torque, angle = measurements.loops(np.random.default_rng(1))
+    path = save(tmp_path / "big.csv", "torque [N.m], angle [rad]", 50.0 * torque, angle)
     found = torque_angle.fit(path, rated_torque=250.0)
     assert found.parameters.values.max_torque == pytest.approx(1500.0)
-    assert found.solution.values["K_FTS0"] == pytest.approx(50.0 * trips.DRIVE["K_FTS0"], rel=0.1)
+    assert found.solution.values["K_FTS0"] == pytest.approx(50.0 * measurements.DRIVE["K_FTS0"], rel=0.1)
 
 
 def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, capsys):
@@ -213,10 +200,10 @@ def test_area_has_no_effect(stiffness):
 
 
 def test_frequency_without_mass_keeps_the_surface(tmp_path):
-    path = trips.save(
+    path = save(
         tmp_path / "f.csv",
         "preload [N], frequency [Hz]",
-        *trips.preloads(np.random.default_rng(1), "frequency", 1e-3),
+        *measurements.preload_series(np.random.default_rng(1), "frequency", 1e-3),
     )
     found = preload.fit(path)
     assert set(found.solution.values) == {"surface.D", "mass"}

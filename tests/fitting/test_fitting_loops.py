@@ -4,7 +4,6 @@ import json
 from dataclasses import replace
 from itertools import pairwise
 
-import memory_measurements as measurements
 import numpy as np
 import pytest
 from conftest import refused_line
@@ -16,6 +15,7 @@ from jointfmu_tools.inputs.fitting.measurement import MIN_ROWS, ColumnNames, rea
 from jointfmu_tools.inputs.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
+from oracles import joint_measurements as measurements
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default, load_parameter_file
@@ -210,7 +210,7 @@ def test_round_trip(case, tmp_path):
 def test_the_command_writes_what_it_found(tmp_path, capsys):
     path, out, picture = tmp_path / "shear.csv", tmp_path / "joint.toml", tmp_path / "fit.png"
     run, motion, force = joint_loops()
-    measurements.save(path, "run [1], displacement [um], force [kN]", (run, 1e6 * motion, 1e-3 * force))
+    measurements.save(path, "run [1], displacement [um], force [kN]", run, 1e6 * motion, 1e-3 * force)
     words = [
         "fit",
         "loop",
@@ -244,7 +244,7 @@ def test_law_of_a_roughness_has_a_level_and_no_exponent(tmp_path):
     law = loop.first_loading(file.with_values({"mu": 0.3, "h": 4e-6}, "user", "true").values, PRELOAD)[0]
     run, motion, force = measurements.loops(law, (1e-6, 4e-6), np.random.default_rng(1))
     path = measurements.save(
-        tmp_path / "m.csv", "run [1], displacement [um], force [N]", (run, 1e6 * motion, force)
+        tmp_path / "m.csv", "run [1], displacement [um], force [N]", run, 1e6 * motion, force
     )
     found = loop.fit(path, file, preload=PRELOAD).solution
     assert found.values.keys() == {"mu", "h"}
@@ -259,7 +259,7 @@ VIBRATION = ["--preload", "9e3", "--modal-mass", "50"]
 
 
 def write(folder, heading, *columns):
-    return measurements.save(folder / "bad.csv", heading, columns)
+    return measurements.save(folder / "bad.csv", heading, *columns)
 
 
 def ringing(folder, growth=-3.0, samples=500):

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from elastic_ring.nodes import Footprint
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oracles.elastic_ring.nodes import Footprint
 
 from jointfmu.joints.bolted_joint.law import preload_pressure, row_forces
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, bolt_pressures, frame_cells, pressure_distribution

@@ -3,8 +3,8 @@
 from functools import cache
 
 import numpy as np
-import patch_reduction
 import pytest
+from oracles import contact_patches
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
@@ -23,11 +23,11 @@ CONTACTS = ("frame", "plate", "row")
 def contact(name: str) -> PressureDistribution:
     """The default frame, a plate without symmetry, one with bolts at random, one with a row of bolts."""
     if name == "random":
-        return patch_reduction.random_plate(4)
+        return contact_patches.random_plate(4)
     if name == "annulus":
-        return patch_reduction.annulus()
+        return contact_patches.annulus()
     if name == "square":
-        return dict(patch_reduction.contacts())["plate, 4 x M12"]
+        return dict(contact_patches.contacts())["plate, 4 x M12"]
     if name == "frame":
         return pressure_distribution(load_default("bolted_joint").values.pattern)
     if name == "plate":
@@ -138,9 +138,9 @@ def spring() -> BoltedJointSpring:
 def test_force_and_stiffness_are_those_of_all_nodes(spring, name, states, force, stiffness):
     """160 points, over preload, moment, displacement and tilt: about four times what the benchmark prints."""
     shape = contact(name)
-    states = patch_reduction.ranges(patch_reduction.opening_moment(shape))[states]
-    mean = patch_reduction.mean_pressure(spring)
-    found = patch_reduction.deviation(spring.curve, mean, shape, reduced(name, 160), states, 16)
+    states = contact_patches.ranges(contact_patches.opening_moment(shape))[states]
+    mean = contact_patches.mean_pressure(spring)
+    found = contact_patches.deviation(spring.curve, mean, shape, reduced(name, 160), states, 16)
     assert found[0] < force
     assert found[1] < stiffness
 
@@ -153,15 +153,15 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
     """
     shape, patches, rng = contact(name), moved(name), np.random.default_rng(6)
     gyration = np.sqrt(shape.area_share @ np.sum(shape.position**2, axis=1))
-    moment = 0.9 * patch_reduction.opening_moment(shape)
+    moment = 0.9 * contact_patches.opening_moment(shape)
     reach = np.max(np.abs(shape.position), axis=0)
-    mean = patch_reduction.mean_pressure(spring)
-    largest = np.max(patch_reduction.tightened(spring.curve, shape, (mean, 0.0)))
+    mean = contact_patches.mean_pressure(spring)
+    largest = np.max(contact_patches.preloaded_approaches(spring.curve, shape, (mean, 0.0)))
     largest -= spring.curve.displacement[0]
     circle = torsion_directions(FOUNDATION_SLIDERS)[::-1].T
 
     def friction(points, load, turn, pole):
-        start = patch_reduction.tightened(spring.curve, points, load)
+        start = contact_patches.preloaded_approaches(spring.curve, points, load)
         p = spring.curve.derivatives(start - largest * (points.position @ turn), 0)[0]
         places = points.position[:, None] + points.radius[:, None, None] * circle
         arm = np.mean(np.hypot(*np.moveaxis(places - pole, -1, 0)), axis=1)
@@ -187,11 +187,11 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
     1.3 %), all within 2 %. Seen: 0.9, 1.0, 0.8 and 1.2 %; largest 1.8 %. Points would have 4 to 5 and 9 %.
     """
     patches = moved(name)
-    found = patch_reduction.pole_deviations(contact(name), patches)
+    found = contact_patches.pole_deviations(contact(name), patches)
     assert found[0] < most
     assert found[1] < 0.02
     assert (
-        patch_reduction.pole_deviations(contact(name), PressureDistribution.as_patches(patches))[0]
+        contact_patches.pole_deviations(contact(name), PressureDistribution.as_patches(patches))[0]
         > 2.0 * most
     )
 
@@ -200,7 +200,7 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
 @pytest.mark.parametrize(
     ("plate", "motion"),
     [
-        *(("row", motion) for motion in patch_reduction.MOTIONS),
+        *(("row", motion) for motion in contact_patches.MOTIONS),
         *(("random", motion) for motion in ("along, moment", "turning, tilt 0.1 back", "both, tilt 0.1")),
     ],
 )
@@ -210,13 +210,15 @@ def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion, mon
     A turn about a pole under a bolt has less friction, and 3 % of it. Every second of the benchmark's ways,
     the last one with them.
     """
-    monkeypatch.setattr(patch_reduction, "WAYS", patch_reduction.WAYS[1::2])
+    monkeypatch.setattr(contact_patches, "DISPLACEMENTS", contact_patches.DISPLACEMENTS[1::2])
     shape = contact(plate)
-    motion = patch_reduction.MOTIONS[motion]
+    motion = contact_patches.MOTIONS[motion]
     part = 0.01 if motion.turn in (0.0, 1.0) else 0.03
-    start = patch_reduction.tightened(spring.curve, shape, (patch_reduction.mean_pressure(spring), 0.0))
+    start = contact_patches.preloaded_approaches(
+        spring.curve, shape, (contact_patches.mean_pressure(spring), 0.0)
+    )
     largest = float(np.max(start) - spring.curve.displacement[0])
-    force, loss = patch_reduction.friction(spring, shape, True, largest, motion)
-    few, lost = patch_reduction.friction(spring, moved(plate), False, largest, motion)
+    force, loss = contact_patches.friction_and_losses(spring, shape, True, largest, motion)
+    few, lost = contact_patches.friction_and_losses(spring, moved(plate), False, largest, motion)
     np.testing.assert_allclose(few, force, rtol=0.0, atol=part * np.max(np.abs(force)))
     np.testing.assert_allclose(lost, loss, rtol=0.03)

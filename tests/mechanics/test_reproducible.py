@@ -1,8 +1,8 @@
 """Points and patches of a contact do not hang on the last bits of what they are made of."""
 
 import numpy as np
-import patch_reduction
 import pytest
+from oracles import contact_patches
 from test_patches import CONTACTS, balance, contact
 
 from jointfmu.mechanics.footprint import patch_reduction as reduction
@@ -26,8 +26,8 @@ def shape_of(name: str) -> PressureDistribution:
     """The default frame, plates without symmetry and with a row, a nodal field, the README's plate."""
     if name == "readme":
         bolts = ((x, y) for x in (-0.08, 0.08) for y in (-0.03, 0.03))
-        return patch_reduction.plate(*bolts, size=(0.2, 0.1), hole=0.0135, cone=0.0411)
-    return patch_reduction.field() if name == "field" else contact(name)
+        return contact_patches.bolted_plate(*bolts, size=(0.2, 0.1), hole=0.0135, cone=0.0411)
+    return contact_patches.nodal_field() if name == "field" else contact(name)
 
 
 def perturbed(shape: PressureDistribution, rng: np.random.Generator) -> PressureDistribution:

@@ -1,24 +1,24 @@
 """Friction with memory: the sliders against closed forms and against many springs, and laws of any path.
 
 The sphere's load is the approach to the power 1.5. Tolerances of forces and losses that come from the
-number of heights are about twice what benchmarks/friction_sliders.py prints for as many.
+number of heights are about twice what studies/fields_explanation.py prints for as many.
 """
 
 import numpy as np
 import pytest
-from friction_sliders import (
+from oracles.sphere_friction import (
     FRICTION,
     MOTIONS,
     RATIO,
     Foundation,
     backbone,
     displacement,
+    follow_path,
+    follow_springs,
     foundation,
     load,
     loop_area,
-    of_springs,
     stiffness,
-    walk,
 )
 
 from jointfmu.mechanics.jenkins import return_map
@@ -43,14 +43,14 @@ def along(*ways: float, approach: float = APPROACH) -> np.ndarray:
 def test_backbone_is_cattaneos(sliders):
     """Within 1e-3 of the friction; gross slip at it exactly."""
     way = np.linspace(0.0, 1.3 * GROSS, 66)
-    found = walk(sliders, along(*way))[0][:, 0]
+    found = follow_path(sliders, along(*way))[0][:, 0]
     np.testing.assert_allclose(found, backbone(APPROACH, way[1:]), rtol=0.0, atol=1e-3 * LARGEST)
     np.testing.assert_allclose(found[-1], LARGEST, rtol=1e-13)
 
 
 def test_full_stick_is_exact(sliders):
     """A displacement that lets no slider slip meets the ratio of the normal stiffness."""
-    found = walk(sliders, along(0.0, 1e-5 * GROSS))[0][0, 0]
+    found = follow_path(sliders, along(0.0, 1e-5 * GROSS))[0][0, 0]
     np.testing.assert_allclose(found, RATIO * stiffness(APPROACH) * 1e-5 * GROSS, rtol=1e-9)
 
 
@@ -58,7 +58,7 @@ def test_full_stick_is_exact(sliders):
 def test_area_of_a_loop_is_mindlins(sliders, part):
     """Within 1 %."""
     u = float(displacement(APPROACH, part))
-    losses = walk(sliders, along(0.0, u, -u, u))[1]
+    losses = follow_path(sliders, along(0.0, u, -u, u))[1]
     np.testing.assert_allclose(np.sum(losses[1:]), loop_area(APPROACH, part), rtol=1e-2)
 
 
@@ -66,8 +66,8 @@ def test_area_is_the_integral_of_the_force(sliders):
     """The loss of a loop is what the force does around it; trapezoids of 400 steps a side."""
     u = float(displacement(APPROACH, 0.7))
     way = np.concatenate([np.linspace(u, -u, 401), np.linspace(-u, u, 401)[1:]])
-    before = walk(sliders, along(0.0, u))
-    tractions, losses, _ = walk(sliders, along(*way), force=before[2])
+    before = follow_path(sliders, along(0.0, u))
+    tractions, losses, _ = follow_path(sliders, along(*way), force=before[2])
     force = np.concatenate([before[0][:, 0], tractions[:, 0]])
     assert np.sum(losses) == pytest.approx(np.trapezoid(force, way), rel=1e-4)
 
@@ -76,7 +76,7 @@ def test_small_loops_lose_with_the_third_power():
     """Exponent 3.00 +- 0.05 from 2 to 6 % of the friction; by Mindlin it is 3.02 to 3.04 there."""
     fine, parts = foundation(0.004), np.geomspace(0.02, 0.06, 9)
     size = displacement(APPROACH, parts)
-    losses = [np.sum(walk(fine, along(0.0, u, -u, u))[1][1:]) for u in size.tolist()]
+    losses = [np.sum(follow_path(fine, along(0.0, u, -u, u))[1][1:]) for u in size.tolist()]
     assert np.polyfit(np.log(size), np.log(losses), 1)[0] == pytest.approx(3.0, abs=0.05)
 
 
@@ -89,11 +89,11 @@ def test_force_and_load_that_grow_in_a_line_do_not_slip(sliders, slope, start):
     """
     end = 0.6
     path = np.array([[start, 0.0, 0.0], [end, slope * FRICTION / RATIO * (end - start), 0.0]])
-    tractions, losses, force = walk(sliders, path, 40)
+    tractions, losses, force = follow_path(sliders, path, 40)
     expected = slope * FRICTION * (load(end) - load(start))
     np.testing.assert_allclose(tractions[0, 0], expected, rtol=1e-12)
     assert losses[0] < 1e-4 * LARGEST * GROSS
-    back, _, _ = walk(sliders, path[::-1], 40, force)
+    back, _, _ = follow_path(sliders, path[::-1], 40, force)
     assert abs(back[0, 0]) < 1e-5 * LARGEST
 
 
@@ -101,7 +101,7 @@ def test_force_and_load_that_grow_in_a_line_do_not_slip(sliders, slope, start):
 def test_nearly_as_steep_as_friction_does_not_slip(sliders, slope):
     """As above; the slider that is touching slips too early, which the number of heights makes small."""
     path = np.array([[0.1, 0.0, 0.0], [0.6, slope * FRICTION / RATIO * 0.5, 0.0]])
-    found = walk(sliders, path, 40)[0][0, 0]
+    found = follow_path(sliders, path, 40)[0][0, 0]
     np.testing.assert_allclose(found, slope * FRICTION * (load(0.6) - load(0.1)), rtol=4e-3)
 
 
@@ -110,7 +110,7 @@ def test_nearly_as_steep_as_friction_does_not_slip(sliders, slope):
 def test_steeper_than_friction_slips_as_under_the_last_load(sliders, slope, start):
     """Mindlin and Deresiewicz 1953: dT/dN > mu leads where the last load and the displacement do alone."""
     end, way = 0.6, slope * FRICTION / RATIO * (0.6 - start)
-    found = walk(sliders, np.array([[start, 0.0, 0.0], [end, way, 0.0]]), 40)[0][0, 0]
+    found = follow_path(sliders, np.array([[start, 0.0, 0.0], [end, way, 0.0]]), 40)[0][0, 0]
     np.testing.assert_allclose(found, backbone(end, way), rtol=0.0, atol=1e-3 * FRICTION * load(end))
 
 
@@ -124,7 +124,7 @@ def test_less_load_lets_an_inclined_contact_slip_from_its_edge(sliders, slope, e
     """
     way = slope * FRICTION / RATIO * 0.6
     path = np.array([[0.0, 0.0, 0.0], [0.6, way, 0.0], [end, way, 0.0]])
-    found = walk(sliders, path, 60)[0][-1, 0]
+    found = follow_path(sliders, path, 60)[0][-1, 0]
     h = max((end - 0.6 * slope) / (1.0 - slope), 0.0)
     below_then, below_now = (load(h) + stiffness(h) * (x - h) for x in (0.6, end))
     expected = FRICTION * (slope * below_then + load(end) - below_now)
@@ -135,7 +135,7 @@ def test_unloading_and_reloading_are_twice_the_backbone(sliders):
     """Masing's rule, which Mindlin's sphere follows under constant load."""
     u = float(displacement(APPROACH, 0.8))
     way = np.linspace(u, -u, 41)
-    found = walk(sliders, along(0.0, *way))[0][:, 0]
+    found = follow_path(sliders, along(0.0, *way))[0][:, 0]
     expected = backbone(APPROACH, u) - 2.0 * backbone(APPROACH, 0.5 * (u - way))
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-3 * LARGEST)
 
@@ -143,28 +143,28 @@ def test_unloading_and_reloading_are_twice_the_backbone(sliders):
 def test_minor_loops_close_and_larger_ones_wipe_out_memory(sliders):
     """Every slider is where it was; after a larger loop nothing is left of the smaller ones."""
     u = 0.8 * GROSS
-    start = walk(sliders, along(0.0, u, 0.2 * u))[2]
-    tractions, _, around = walk(
+    start = follow_path(sliders, along(0.0, u, 0.2 * u))[2]
+    tractions, _, around = follow_path(
         sliders, along(0.2 * u, 0.6 * u, 0.3 * u, 0.5 * u, 0.3 * u, 0.6 * u, 0.2 * u), force=start
     )
     np.testing.assert_allclose(around, start, rtol=0.0, atol=1e-15)
     assert np.ptp(tractions) > 0.1 * LARGEST
-    wiped = walk(sliders, along(0.2 * u, u, -u), force=around)[2]
-    np.testing.assert_allclose(wiped, walk(sliders, along(0.0, u, -u))[2], rtol=0.0, atol=1e-15)
+    wiped = follow_path(sliders, along(0.2 * u, u, -u), force=around)[2]
+    np.testing.assert_allclose(wiped, follow_path(sliders, along(0.0, u, -u))[2], rtol=0.0, atol=1e-15)
 
 
 def test_new_load_touches_new_springs_without_force(sliders):
     """More load at rest adds no force along the surface, and its springs are loaded from there on."""
     u = 0.3 * GROSS
     path = np.array([[APPROACH, 0.0, 0.0], [APPROACH, u, 0.0], [0.6, u, 0.0], [0.6, u + 1e-6, 0.0]])
-    tractions = walk(sliders, path)[0][:, 0]
+    tractions = follow_path(sliders, path)[0][:, 0]
     assert tractions[1] == pytest.approx(tractions[0], rel=1e-13)
     assert (tractions[2] - tractions[1]) / 1e-6 == pytest.approx(RATIO * stiffness(0.6), rel=1e-6)
 
 
 def test_opening_forgets(sliders):
     path = np.array([[APPROACH, 0.0, 0.0], [APPROACH, 0.5 * GROSS, 0.0], [-0.1, 0.5 * GROSS, 0.0]])
-    assert not np.any(walk(sliders, path, 10)[2])
+    assert not np.any(follow_path(sliders, path, 10)[2])
 
 
 @pytest.mark.parametrize(
@@ -174,7 +174,7 @@ def test_ten_times_larger_steps_agree_along_straight_paths(sliders, approaches):
     """To rounding: under constant load with slip, under another one without."""
     way = 1.2 * GROSS if approaches[0] == approaches[1] else 0.02 * GROSS
     path = np.array([[approaches[0], 0.0, 0.0], [approaches[1], 0.6 * way, 0.8 * way]])
-    (one, loss, _), (ten, losses, _) = walk(sliders, path), walk(sliders, path, 10)
+    (one, loss, _), (ten, losses, _) = follow_path(sliders, path), follow_path(sliders, path, 10)
     np.testing.assert_allclose(one, ten, rtol=1e-12)
     if approaches[0] == approaches[1]:
         np.testing.assert_allclose(loss, losses, rtol=1e-11)
@@ -187,7 +187,7 @@ def test_steps_on_a_circle_converge_with_second_order(sliders):
     def around(count: int) -> tuple[np.ndarray, float]:
         angle = np.linspace(0.0, 6.0 * np.pi, 3 * count + 1)
         x, y = 1.5 * GROSS * np.array([np.cos(angle) - 1.0, np.sin(angle)])
-        tractions, losses, _ = walk(sliders, np.column_stack([np.full_like(x, APPROACH), x, y]))
+        tractions, losses, _ = follow_path(sliders, np.column_stack([np.full_like(x, APPROACH), x, y]))
         return tractions[-1], float(np.sum(losses[-count:]))
 
     force, loss = around(512)
@@ -219,8 +219,8 @@ def test_a_slipping_force_turns_towards_the_shift():
 def test_combined_motions_follow_many_springs(name):
     """Load and displacement swing together: 126 sliders against 20 000 springs."""
     path = MOTIONS[name]
-    forces, loss = of_springs(path)
-    tractions, losses, _ = walk(foundation(0.1), path)
+    forces, loss = follow_springs(path)
+    tractions, losses, _ = follow_path(foundation(0.1), path)
     np.testing.assert_allclose(tractions, forces, rtol=0.0, atol=2e-3 * FRICTION * np.max(load(path[:, 0])))
     assert np.sum(losses) == pytest.approx(loss, rel=2.5e-2)
 

@@ -27,8 +27,6 @@ from jointfmu_tools.studies.published.validation import (
     missed_points,
     validate,
 )
-from matplotlib.lines import Line2D
-from published_marks import published_mark
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_default
@@ -317,19 +315,6 @@ def test_counts(rows):
     }
     assert len(found.contradictions) == 3
     assert found.missed == []
-
-
-def test_filled_marks_are_predictions():
-    """In pictures, whatever the role; every mark has its own legend."""
-    lines = {role: Line2D([0.0], [0.0], **published_mark(role)) for role in ROLES}
-    filled = {
-        role
-        for role, line in lines.items()
-        if line.get_marker() in line.filled_markers and line.get_markerfacecolor() != "white"
-    }
-    assert filled == {"prediction"}
-    assert lines["calibration"].get_label() == "published, used for calibration"
-    assert len({line.get_label() for line in lines.values()}) == len(ROLES)
 
 
 def test_the_guide_explains_every_role():

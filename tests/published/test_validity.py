@@ -1,18 +1,17 @@
 """Boundary elements against closed forms, and claims of docs/validity_stiffness.md, on small grids.
 
-The numbers of the document come from benchmarks/validity.py; the bounds here are wide enough for grids
+The numbers of the document come from studies/validity_stiffness.py; the bounds here are wide enough for grids
 of 64 and 128 points, whose answers were seen to lie within a factor of two of those of 256.
 """
 
 from dataclasses import replace
 
-import boundary_element
-import interface_laws
 import numpy as np
 import pytest
-from band_of_waves import periodic, rms_height, rms_slope
 from clients import needs
-from measured_joints import measured
+from oracles import boundary_element, interface_laws
+from oracles.measured_joints import measured
+from oracles.rough_surfaces import periodic, rms_height, rms_slope
 
 from jointfmu.contact.interface import evaluate_at_pressure, stiffness_curve
 

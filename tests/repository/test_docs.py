@@ -133,7 +133,7 @@ def test_the_house_is_drawn_as_it_is_built() -> None:
 
 # Names of files in the text
 
-FOLDERS = ("benchmarks", "core", "docs", "examples", "fmu_src", "models", "tests", "tools")
+FOLDERS = ("benchmarks", "core", "docs", "examples", "fmu_src", "models", "studies", "tests", "tools")
 ELSEWHERE = ("dist/", "sources/", "documentation/", "law.", "variables.c", "fmpy/", "fmpy.", "simulate.py")
 """Beginnings of paths that are not the repository's: built or generated, fmpy's, the tutorial's."""
 
@@ -154,7 +154,9 @@ def named_files(path: Path) -> list[str]:
     return [name for name in (*code, *data) if not name.startswith(ELSEWHERE)]
 
 
-@pytest.mark.parametrize("path", [ROOT / "benchmarks" / "README.md", *TEXTS], ids=shown)
+@pytest.mark.parametrize(
+    "path", [ROOT / "benchmarks" / "README.md", ROOT / "studies" / "README.md", *TEXTS], ids=shown
+)
 def test_files_that_are_named_exist(path: Path) -> None:
     """A name is a path in the repository or its end; KIND, NAME and * stand for a part of it."""
     for name in named_files(path):

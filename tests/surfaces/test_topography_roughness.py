@@ -1,12 +1,12 @@
 """h and slope over a longest wave: of scans against sums of waves, of D and G against made surfaces."""
 
-import band_of_waves
 import numpy as np
 import pytest
-from jointfmu_tools.inputs import fractal
+from jointfmu_tools import fractal
 from jointfmu_tools.inputs.surfaces import form, synthesis
 from jointfmu_tools.inputs.surfaces.form import remove_form
 from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
+from oracles import rough_surfaces
 
 SIZE, POINTS, G = 1e-3, 256, 1e-9
 
@@ -20,7 +20,7 @@ def sine(wave, amplitude, points=1000, length=1e-3):
 def test_height_and_slope_of_D_and_G_are_those_of_a_made_surface(D):
     """All waves of a band, so the spectrum's integral: a percent is the sum over a grid of modes."""
     longest, shortest = SIZE / 8.0, SIZE / 32.0
-    z = band_of_waves.periodic(SIZE, POINTS, D, G, (longest, shortest), 1).z
+    z = rough_surfaces.periodic(SIZE, POINTS, D, G, (longest, shortest), 1).z
     h = np.sqrt(
         fractal.rms_height(D, G, longest, is_areal=True) ** 2
         - fractal.rms_height(D, G, shortest, is_areal=True) ** 2
@@ -28,7 +28,7 @@ def test_height_and_slope_of_D_and_G_are_those_of_a_made_surface(D):
     assert z.std() == pytest.approx(h, rel=0.02)
     step = 2.0 * np.pi * np.fft.fftfreq(POINTS, SIZE / POINTS)
     squared = np.abs(np.fft.fft2(z) / z.size) ** 2 * (step[:, None] ** 2 + step**2)
-    slope = band_of_waves.rms_slope(3.0 - D, G, longest, shortest)
+    slope = rough_surfaces.rms_slope(3.0 - D, G, longest, shortest)
     assert np.sqrt(squared.sum()) == pytest.approx(slope, rel=0.02)
 
 
@@ -86,15 +86,15 @@ def test_a_sine_counts_up_to_its_wavelength():
 @pytest.mark.parametrize("D", [2.3, 2.7])
 def test_height_of_a_scan_over_a_longest_wave(D):
     """A scan of a surface with longer waves: what is left below the longest is the spectrum's, within 6 %."""
-    made = band_of_waves.periodic(SIZE, POINTS, D, G, (SIZE / 2.0, 2.0 * SIZE / POINTS), 2)
+    made = rough_surfaces.periodic(SIZE, POINTS, D, G, (SIZE / 2.0, 2.0 * SIZE / POINTS), 2)
     cut = ArealMap(z=made.z[:160, :200].copy(), dx=made.dx, dy=made.dy, name="cut")
     flat = remove_form(cut)
     shortest = 2.0 * SIZE / POINTS
     for longest in (SIZE / 5.0, SIZE / 10.0):
         found = form.scan_roughness(flat, flat, longest)
         H = 3.0 - D
-        assert found.h == pytest.approx(band_of_waves.rms_height(H, G, longest, shortest), rel=0.06)
-        slope = band_of_waves.rms_slope(H, G, longest, found.shortest_wave)
+        assert found.h == pytest.approx(rough_surfaces.rms_height(H, G, longest, shortest), rel=0.06)
+        slope = rough_surfaces.rms_slope(H, G, longest, found.shortest_wave)
         assert found.slope == pytest.approx(slope, rel=0.06)
 
 

@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import box_specimen_lengths as box
 import numpy as np
 import pytest
 from clients import needs
@@ -19,6 +18,7 @@ from jointfmu_tools.cli import main
 from jointfmu_tools.fem.geometry import Plate
 from jointfmu_tools.systems.master import peak_frequency
 from numpy.typing import NDArray
+from oracles import box_specimen as box
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 
-import elastic_sides
 import numpy as np
 import pytest
 from clients import needs
@@ -27,6 +26,7 @@ from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
 from jointfmu_tools.pages.report.course import LoadHistory
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
+from oracles.joint_elements import pole_deviations
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import equilibrium
@@ -111,7 +111,7 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(made):
     within 3 %. As tightened: bodies that bend move some of the pressure. Seen: 1.7 %; 200 poles of the
     README's plate have 1.3 and 2.4 %.
     """
-    most, largest = elastic_sides.pole_deviations(made(*FOUR, preload=15e3).spring, 15e3, 40)
+    most, largest = pole_deviations(made(*FOUR, preload=15e3).spring, 15e3, 40)
     assert most < 0.02
     assert largest < 0.03
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import patch_reduction
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build
@@ -22,6 +21,7 @@ from jointfmu_tools.inputs.fields.sums import (
 )
 from jointfmu_tools.joints.bolted_joint.published import pressure_between_bolts
 from jointfmu_tools.run.ramps import ramp
+from oracles import contact_patches
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
@@ -83,7 +83,7 @@ def test_points_keep_the_sums(reduced):
     assert found.largest_deviation <= RELATIVE_TOLERANCE
     rng = np.random.default_rng(11)
     lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve.displacement[0]
-    for _ in range(15):  # many in benchmarks/field_reduction.py
+    for _ in range(15):  # many in studies/fields_explanation.py
         load = LoadCase(
             float(np.exp(rng.uniform(*np.log(PRELOAD_RATIO_RANGE)))),
             found.max_tested_moment_ratio * rng.uniform(-1, 1),
@@ -138,7 +138,7 @@ def test_a_field_that_is_a_bit_off_is_the_same():
 def test_patches_come_from_the_nodes(tmp_path):
     """A ring under pure torsion has its moment, within 2e-3, and no lateral force, within 4e-3 of its
     friction; the file keeps the patches, and those that do not balance are refused."""
-    ring = patch_reduction.annulus(48, 5)
+    ring = contact_patches.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     contact = ContactField(ring.area_share * JOINT.A_0, ring.position, mean * ring.preload_shape)
     (tmp_path / "ring.toml").write_text(

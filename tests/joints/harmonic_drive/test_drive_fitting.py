@@ -1,12 +1,10 @@
 """Fits of a drive: a catalogue row to a smooth law, loops and decays, measured torque-angle curves."""
 
 import csv
-import importlib.util
 import json
 from importlib.resources import files
 from pathlib import Path
 
-import drive_measurements as measurements
 import numpy as np
 import pytest
 from conftest import here_alone, refused_line
@@ -17,7 +15,9 @@ from jointfmu_tools.inputs.fitting.hysteresis import Oscillator
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 from jointfmu_tools.run.ramps import ramp
-from memory_measurements import save
+from oracles import curve_measurements
+from oracles import drive_measurements as measurements
+from oracles.joint_measurements import save
 
 from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
@@ -238,7 +238,7 @@ def test_the_command_writes_the_hysteresis(tmp_path, capsys):
     rng = np.random.default_rng(1)
     run, angle, torque = measurements.loops(measurements.drive_law(), measurements.TURNS, rng)
     path, out = tmp_path / "loops.csv", tmp_path / "drive.toml"
-    save(path, "run [1], angle [deg], torque [N.m]", (run, np.degrees(angle) + 0.5, torque - 1.0))
+    save(path, "run [1], angle [deg], torque [N.m]", run, np.degrees(angle) + 0.5, torque - 1.0)
     assert cli.main(["fit", "loop", str(path), "--out", str(out), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     # a hundredth of the amplitude: what the noise of 1e3 samples leaves
@@ -255,7 +255,7 @@ def test_mid_line_and_hysteresis_at_once(tmp_path):
     true = {**measurements.DRIVE, "drive_scale": 4.3}
     law = hysteresis.make_law(measurements.file("harmonic_drive", true).values)
     run, angle, torque = measurements.loops(law, measurements.TURNS, np.random.default_rng(1))
-    path = save(tmp_path / "loops.csv", "run [1], angle [rad], torque [N.m]", (run, angle, torque))
+    path = save(tmp_path / "loops.csv", "run [1], angle [rad], torque [N.m]", run, angle, torque)
     found = hysteresis.fit(path, fitted_names=[*hysteresis.FITTED_PARAMETERS, "drive_scale"]).solution
     for name, deviation in found.relative_deviations.items():
         assert abs(np.log(found.values[name] / true[name])) < 3.0 * deviation, name
@@ -264,17 +264,11 @@ def test_mid_line_and_hysteresis_at_once(tmp_path):
 # Measured curves and the laws of a given midline
 
 
-SCRIPT = Path(__file__).resolve().parents[3] / "benchmarks" / "fit_round_trips.py"
-SPEC = importlib.util.spec_from_file_location("table_trips", SCRIPT)
-trips = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(trips)
-
-
 @pytest.fixture
 def loops(tmp_path):
     """Two loops of the default drive with levels of its own, 0.03 arcmin of noise, an offset and a drift."""
-    torque, angle = trips.loops(np.random.default_rng(1))
-    return trips.save(tmp_path / "loops.csv", "torque [Nm], angle [°]", torque, np.degrees(angle))
+    torque, angle = curve_measurements.loops(np.random.default_rng(1))
+    return save(tmp_path / "loops.csv", "torque [Nm], angle [°]", torque, np.degrees(angle))
 
 
 @pytest.mark.slow
@@ -311,7 +305,7 @@ def test_the_stiffnesses_of_lines_are_found(tmp_path):
     truth = start.with_values({"K1": 4000.0, "K2": 7000.0, "K3": 7500.0}, "user", "test")
     T = np.concatenate([np.linspace(0, 25, 120), np.linspace(25, -25, 240), np.linspace(-25, 0, 120)])
     noise = 1e-6 * np.random.default_rng(0).standard_normal(T.size)
-    path = trips.save(tmp_path / "c.csv", "torque [N.m], angle [rad]", T, wind_up(truth.values, T) + noise)
+    path = save(tmp_path / "c.csv", "torque [N.m], angle [rad]", T, wind_up(truth.values, T) + noise)
     found = torque_angle.fit(path, start)
     assert found.parameters.law == "catalogue"
     for name, value in {"K1": 4000.0, "K2": 7000.0, "K3": 7500.0}.items():

@@ -4,7 +4,6 @@ import json
 import math
 from importlib.resources import files
 
-import log_round_trips
 import numpy as np
 import pytest
 from conftest import refused_line
@@ -13,8 +12,9 @@ from jointfmu_tools.common import columns
 from jointfmu_tools.inputs.fitting import outcome
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from log_round_trips import CASES, TRUE, trip
 from matplotlib.figure import Figure
+from oracles import robot_log
+from oracles.robot_log import CASES, TRUE, fit_log
 
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.parameters import format_parameter_file, load_parameter_file
@@ -39,7 +39,7 @@ def drive(tmp_path):
 @pytest.fixture(autouse=True)
 def shorter(monkeypatch):
     """Half of the script's minute, nine periods of the slowest wave."""
-    monkeypatch.setattr(log_round_trips, "TIME", 30.0)
+    monkeypatch.setattr(robot_log, "TIME", 30.0)
 
 
 def check_friction(found, undetermined=frozenset()):
@@ -60,21 +60,21 @@ def check_friction(found, undetermined=frozenset()):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_steady_speeds_give_their_friction_back(seed):
     (steady,) = (case for name, case in CASES.items() if "steady" in name)
-    check_friction(trip(*steady, seed))
+    check_friction(fit_log(*steady, seed))
 
 
 @pytest.mark.slow
 def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
     """Inertias and gravity come beside: the rotor's, which nobody states, from the wind-up. In half a minute
     the arm is slow too seldom for Stribeck's part, which steady speeds determine."""
-    monkeypatch.setattr(log_round_trips, "STEP", 8e-3)
-    found = trip(log_round_trips.moving, {"torque_constant": log_round_trips.CONSTANT}, 1)
+    monkeypatch.setattr(robot_log, "STEP", 8e-3)
+    found = fit_log(robot_log.write_swing, {"torque_constant": robot_log.CONSTANT}, 1)
     check_friction(found, {"friction_stribeck"})
-    assert found.facts["motor_inertia"][0] == pytest.approx(log_round_trips.ROTOR, rel=0.05)
-    whole = log_round_trips.ARM + log_round_trips.ROTOR * 100.0**2
+    assert found.facts["motor_inertia"][0] == pytest.approx(robot_log.ROTOR, rel=0.05)
+    whole = robot_log.ARM + robot_log.ROTOR * 100.0**2
     assert found.facts["inertia"][0] == pytest.approx(whole, rel=0.02)
-    assert found.facts["gravity_cos"][0] == pytest.approx(log_round_trips.GRAVITY, rel=0.02)
-    assert abs(found.facts["gravity_sin"][0]) < 0.02 * log_round_trips.GRAVITY
+    assert found.facts["gravity_cos"][0] == pytest.approx(robot_log.GRAVITY, rel=0.02)
+    assert abs(found.facts["gravity_sin"][0]) < 0.02 * robot_log.GRAVITY
     assert [picture.axis_labels[0].split(" [")[0] for picture in found.pictures] == [
         "speed of the joint",
         "time",
@@ -86,8 +86,8 @@ def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
 
 def test_a_load_that_is_measured_gives_the_losses(tmp_path):
     """Steady speeds both ways against and with gravity; two files are one log."""
-    file = log_round_trips.drive()
-    start, paths = log_round_trips.start(), []
+    file = robot_log.drive()
+    start, paths = robot_log.start(), []
     for number, held in enumerate((-40.0, 0.0, 40.0)):
         dq = np.array([-2.0, -1.0, -0.5, -0.02, 0.02, 0.5, 1.0, 2.0])
         w1 = 100.0 * dq

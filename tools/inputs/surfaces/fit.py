@@ -32,7 +32,7 @@ MAX_DEVIATION = 0.25
 MIN_DECADES = 0.5
 """Shortest range [decades] that the search considers."""
 COVARIANCE_FACTOR = 1.15
-"""Factor on the covariance of the result, from simulation (benchmarks/surface_round_trip.py: coverage)."""
+"""Factor on the covariance of the result, from simulation (studies/surfaces_explanation.py: coverage)."""
 OFFSET_DEVIATION = 2.0
 """Prior standard deviation of the offset [1], relative to the value at the shortest scale."""
 MAX_VARIANCE = 0.3

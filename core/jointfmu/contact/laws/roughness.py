@@ -19,7 +19,7 @@ from .persson import bearing_curve_log_slope, contact_area_shares
 
 FEW_SPOTS_FACTOR = 0.3
 """Factor C [1] of the stiffness at small load, see `RoughnessLaw.spots`; fitted to boundary elements
-(benchmarks/roughness_law.py)."""
+(studies/validity_stiffness.py roughness)."""
 ONSET_LOAD_RATIO = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
 MIN_LOAD_RATIO = 0.3

@@ -32,8 +32,8 @@ class BoltedPlate:
         p(r) ~ (R - r)^3 (3 r + R - 4 a),   a <= r <= R.
 
     R follows from the deformation cone under the head (VDI 2230, part 1): the mean square radius of p equals
-    that of a uniform pressure on the section of the cone at the interface. benchmarks/plate_pressure.py
-    compares p with two elastic plates.
+    that of a uniform pressure on the section of the cone at the interface.
+    studies/bolted_joint_explanation.py compares p with two elastic plates.
 
     If an edge of the plate or another hole cuts the disc of a bolt, its pressure is multiplied by an
     exponential function of the position, so that the resultant stays on the axis of the bolt.

@@ -7,7 +7,7 @@ So a subset of the nodes with other shares has nearly the same sums (`eliminatio
 symmetric.
 
 The choice of nodes and their shares are computed with rounded numbers (`reproducible`); the result contains
-the unrounded nodes. benchmarks/patch_reduction.py prints the deviation from the sums over all nodes.
+the unrounded nodes. studies/fields_explanation.py prints the deviation from the sums over all nodes.
 """
 
 import numpy as np

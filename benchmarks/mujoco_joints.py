@@ -1,0 +1,261 @@
+"""Joints in MuJoCo: the plugin over the FMU called from Python, and elastic arms over the rigid arm.
+
+    python benchmarks/mujoco_joints.py --run plugin|throughput [--quick] [--hysteresis ARCMIN]
+
+plugin     : a row of links on locked motors, each driven by a sine; the steps run in C (`mj_step` with
+             `nstep`). MuJoCo's Euler scheme evaluates each joint twice a step: for the torque, and to accept
+             the history at the end. The time of the same model without drives is subtracted. The obvious way
+             is a Python callback that sets the inputs of each FMU by fmpy and reads its torques.
+throughput : 4096 environments of a six-axis arm that fall from random poses, in MuJoCo's own rollout on two
+             cores: the rigid arm; the rigid arm with the friction of the motors, each a constraint; elastic
+                    joints in plain
+             MJCF, with and without this friction; elastic joints by the plugin, with friction. Damping is
+             explicit (`eulerdamp` is off) except where stated. Shortest processor times of rounds in turn.
+"""
+
+import sys
+import tempfile
+from copy import copy
+from pathlib import Path
+from time import perf_counter, process_time
+
+import fmpy
+import mujoco
+import numpy as np
+from harness import ROOT, read_options, require, verdict
+from jointfmu_fmu_src.building import build
+from jointfmu_tools.api import drive
+from jointfmu_tools.exchange.mujoco import plugin
+from jointfmu_tools.exchange.robots import elastic, plugged
+from jointfmu_tools.exchange.robots.transmission import make_transmission
+from jointfmu_tools.run.host import Instance
+from mujoco import rollout
+
+# plugin
+
+PLUGIN = "HarmonicDriveSpring"
+JOINTS, STEPS, REPEATS, PYTHON_STEPS = 6, 2000, 21, 200
+QUICK = 2, 2
+"""REPEATS and PYTHON_STEPS with --quick."""
+CASES = {
+    "elastic": {},
+    "hysteresis": {"hysteresis_loss": 3e-4},
+    "hysteresis and friction": {
+        "hysteresis_loss": 3e-4,
+        "friction_coulomb": 0.01,
+        "friction_stribeck": 0.005,
+    },
+}
+"""{losses of the drive: its parameters}."""
+TARGET = 2e-6
+"""Target for a joint and step [s]."""
+
+
+def row_model(parameters: dict[str, float] | None) -> mujoco.MjModel:
+    """Row of links on locked motors, with drives between them if `parameters` is given."""
+    bodies = "".join(
+        f'<body><joint name="motor{i}" type="hinge" armature="1e-4"/><inertial pos="0 0 0" mass="1" '
+        f'diaginertia="1e-4 1e-4 1e-4"/></body><body><joint name="link{i}" type="hinge"/>'
+        '<inertial pos="0 0 0" mass="1" diaginertia="0.05 0.05 0.05"/></body>'
+        for i in range(JOINTS)
+    )
+    instances = "".join(
+        f'<instance name="drive{i}"><config key="phi1" value="motor{i}"/><config key="phi2" value="link{i}"/>'
+        + "".join(f'<config key="{k}" value="{v}"/>' for k, v in (parameters or {}).items())
+        + "</instance>"
+        for i in range(JOINTS)
+    )
+    drives = f'<extension><plugin plugin="jointfmu.{PLUGIN}">{instances}</plugin></extension>'
+    return mujoco.MjModel.from_xml_string(
+        '<mujoco><option timestep="0.0005" gravity="0 0 0"/>'
+        f"{drives if parameters is not None else ''}<worldbody>{bodies}</worldbody></mujoco>"
+    )
+
+
+def start_motion(made: mujoco.MjModel) -> mujoco.MjData:
+    """Data with all links in motion."""
+    data = mujoco.MjData(made)
+    data.qvel[1::2] = np.linspace(0.1, 0.2, JOINTS)
+    return data
+
+
+def step_times(parameters: dict[str, float], repeats: int) -> tuple[float, float]:
+    """Times [s] of a step without drives, and of the drives; medians of runs in turn."""
+    made = row_model(None), row_model(parameters)
+    data = [start_motion(each) for each in made]
+    times = np.empty((repeats, 2))
+    for row in times:
+        for i in range(2):
+            begin = perf_counter()
+            mujoco.mj_step(made[i], data[i], STEPS)
+            row[i] = (perf_counter() - begin) / STEPS
+    assert np.isfinite(data[1].qpos).all()
+    return float(np.median(times[:, 0])), float(np.median(times[:, 1] - times[:, 0]))
+
+
+def python_time(fmu: Path, parameters: dict[str, float], folder: Path, steps: int) -> float:
+    """Time [s] of a joint and step with the FMU called from a Python callback."""
+    description = fmpy.read_model_description(str(fmu))
+    refs = {v.name: v.valueReference for v in description.modelVariables}
+    inputs, torques = [refs[n] for n in ("phi1", "w1", "phi2", "w2")], [refs["tau1"], refs["tau2"]]
+    unpacked = fmpy.extract(str(fmu), str(folder))
+    slaves = []
+    for i in range(JOINTS):
+        instance = Instance(unpacked, description, f"drive{i}", model_exchange=True)
+        instance.instantiate()
+        instance.set_values(parameters)
+        instance.enter_initialization()
+        slave = instance.fmu
+        slave.exitInitializationMode()
+        slave.enterContinuousTimeMode()
+        slaves.append(slave)
+
+    def set_inputs(data: mujoco.MjData) -> None:
+        moves = np.stack([data.qpos.reshape(-1, 2), data.qvel.reshape(-1, 2)], axis=2).reshape(-1, 4)
+        for slave, row in zip(slaves, moves.tolist(), strict=True):
+            slave.setFloat64(inputs, row)
+
+    def passive(made: mujoco.MjModel, data: mujoco.MjData) -> None:
+        set_inputs(data)
+        data.qfrc_passive[:] += [tau for slave in slaves for tau in slave.getFloat64(torques)]
+
+    made = row_model(None)
+    data = start_motion(made)
+    mujoco.set_mjcb_passive(passive)
+    try:
+        begin = perf_counter()
+        for _ in range(steps):
+            mujoco.mj_step(made, data)
+            set_inputs(data)
+            for slave in slaves:
+                slave.completedIntegratorStep()
+        return (perf_counter() - begin) / steps / JOINTS
+    finally:
+        mujoco.set_mjcb_passive(None)
+        for slave in slaves:
+            slave.terminate()
+            slave.freeInstance()
+
+
+def print_plugin(quick: bool) -> None:
+    """Time of the plugin for a joint and step, beside the FMU called from Python."""
+    repeats, python_steps = QUICK if quick else (REPEATS, PYTHON_STEPS)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        build([PLUGIN], ["fmi3"], None, folder)
+        fmu = folder / "fmi3" / f"{PLUGIN}.fmu"
+        mujoco.mj_loadPluginLibrary(str(plugin(fmu, folder)))
+        print(f"{'per joint and step':26} {'plugin':>10} {'Python':>10}")
+        for label, parameters in CASES.items():
+            bare, added = step_times(parameters, repeats)
+            taken = added / JOINTS
+            other = python_time(fmu, parameters, folder / label, python_steps)
+            times = f"{taken * 1e6:7.3f} us {other * 1e6:7.1f} us"
+            print(f"{label:26} {times}  of {TARGET * 1e6:g} us {verdict(taken, TARGET)}")
+        print(f"MuJoCo's own step of {2 * JOINTS} joints: {bare * 1e6:.2f} us")
+
+
+# throughput
+
+ROBOT = ROOT / "models/robots/six_axis.xml"
+SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
+ENVIRONMENTS, THREADS, ROLLOUT_STEPS, ROUNDS = 4096, 2, 10, 5
+QUICK_ENVIRONMENTS = 16
+STEP = 5e-4
+"""Step [s]: at most a fifth of the period of the stiffest axis, 409 Hz."""
+TARGETS = {"plain": 1.5, "plain, no friction": 1.5, "plugin": 2.5}
+
+
+def arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
+    """Arm models: rigid, elastic in plain MJCF, elastic with the plugin."""
+    spec = elastic.read_robot(ROBOT)
+    spec.option.timestep = STEP
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
+    for actuator in [*spec.actuators]:
+        spec.delete(actuator)
+    stated = {} if hysteresis is None else {"hysteresis": hysteresis}
+    files = {f"joint{i}": drive(size, **stated).file for i, size in enumerate(SIZES, 1)}
+    axes = elastic.make_axes(spec, {joint: make_transmission(file) for joint, file in files.items()})
+    for library in plugged.compile_plugins(files, folder).values():
+        mujoco.mj_loadPluginLibrary(str(library))
+    rough, smooth = spec.copy(), elastic.add_drives(spec, axes)
+    for axis in axes:
+        rough.joint(axis.joint).frictionloss = axis.drive.dry_friction * abs(axis.drive.ratio)
+    for actuator in [*smooth.actuators]:
+        smooth.delete(actuator)
+    plain = elastic.add_drives(spec, axes).compile()
+    implicit = copy(plain)
+    implicit.opt.disableflags = 0
+    return {
+        "rigid": spec.compile(),
+        "rigid, friction": rough.compile(),
+        "plain": plain,
+        "plain, implicit": implicit,
+        "plain, no friction": smooth.compile(),
+        "plugin": mujoco.MjModel.from_xml_string(plugged.format_plugin_robot(spec, axes, files)),
+    }
+
+
+def initial_states(model: mujoco.MjModel, count: int) -> np.ndarray:
+    """Initial states (count, n): random poses at rest, the motors at the angles of their links."""
+    data, kind = mujoco.MjData(model), mujoco.mjtState.mjSTATE_FULLPHYSICS
+    poses = np.random.default_rng(1).uniform(-1.0, 1.0, (count, len(SIZES)))
+    found = np.empty((count, mujoco.mj_stateSize(model, kind)))
+    motors = model.njnt > len(SIZES)
+    for row, pose in zip(found, poses, strict=True):
+        mujoco.mj_resetData(model, data)
+        for i, angle in enumerate(pose, 1):
+            data.joint(f"joint{i}").qpos[0] = angle
+            if motors:
+                data.joint(f"joint{i}_motor").qpos[0] = -100.0 * angle
+        mujoco.mj_getState(model, data, row, kind)
+    return found
+
+
+def print_throughput(hysteresis: float | None, quick: bool) -> None:
+    """Processor time of an environment and step, over the rigid arm."""
+    count, rounds = (QUICK_ENVIRONMENTS, 1) if quick else (ENVIRONMENTS, ROUNDS)
+    with tempfile.TemporaryDirectory() as folder:
+        made = arm_models(Path(folder), hysteresis)
+    starts = {name: initial_states(model, count) for name, model in made.items()}
+    pool = {name: [mujoco.MjData(model) for _ in range(THREADS)] for name, model in made.items()}
+    room = {name: np.zeros((count, ROLLOUT_STEPS, own.shape[1])) for name, own in starts.items()}
+    times = {name: [] for name in made}
+    with rollout.Rollout(nthread=THREADS) as run:
+        for _ in range(rounds):
+            for name, model in made.items():
+                before = process_time()
+                run.rollout(model, pool[name], starts[name], nstep=ROLLOUT_STEPS, state=room[name])
+                times[name].append(process_time() - before)
+                assert not any(data.warning.number.any() for data in pool[name])
+    least = {name: min(own) for name, own in times.items()}
+    for name, own in least.items():
+        ratios = own / least["rigid"], own / least["rigid, friction"]
+        most = TARGETS.get(name)
+        target = f", of {most:g} {verdict(ratios[0], most)}" if most else ""
+        print(
+            f"{name:18} {1e6 * own / count / ROLLOUT_STEPS:6.2f} us per environment and step, "
+            f"{ratios[0]:5.2f} x rigid, {ratios[1]:5.2f} x rigid with friction{target}"
+        )
+
+
+def main() -> None:
+    """Run one of the two benchmarks: MuJoCo accepts a plugin of a name once in a process."""
+    options = read_options(
+        __doc__,
+        hysteresis={
+            "type": float,
+            "metavar": "ARCMIN",
+            "help": "throughput: hysteresis of each drive (none)",
+        },
+        run={"choices": ("plugin", "throughput"), "required": True},
+    )
+    require(sys.platform != "win32", "Linux or macOS")
+    if options.run == "plugin":
+        print_plugin(options.quick)
+    else:
+        print_throughput(options.hysteresis, options.quick)
+
+
+if __name__ == "__main__":
+    main()

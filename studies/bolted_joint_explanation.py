@@ -1,0 +1,140 @@
+"""Figures of docs/bolted_joint_explanation.md: contact pressure of two plates, stiffness by attachment.
+
+    python studies/bolted_joint_explanation.py [SECTION ...]
+
+pressure    : share of the force inside circles around the bolts, radius of gyration, stiffness: cones of VDI
+              2230 beside finite elements of the plates
+attachments : stiffness of the README's joint with its plates and bolts, by attachment, beside its interface
+              alone
+"""
+
+import tempfile
+from contextlib import redirect_stdout
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+from common import heading, row, run_study
+from jointfmu_tools import cli
+from jointfmu_tools.fem.bolted_contact import BoltedContact
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
+from jointfmu_tools.inputs.fields.joint_parameters import pressure_shape
+from jointfmu_tools.joints.bolted_joint.new import NEW
+from oracles.joint_elements import EXAMPLE
+
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.mechanics.footprint import plate
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
+from jointfmu.parameters import ParameterFile, load_parameter_file
+from jointfmu.quantity import flatten_parameters
+
+PLATES = {
+    "four M12, 2 x 20 mm": "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --preload 30e3",
+    "four M12, 2 x 10 mm": "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 20 --preload 30e3",
+    "one M16, 2 x 20 mm": "--plate 100x100 --bolts M16 --grip 40 --preload 60e3",
+    "one M16 tapped, 20 and 60 mm": "--plate 100x100 --bolts M16 --grip 20 --preload 60e3 --tapped "
+    "--thickness 20 60",
+    "one M16 tapped, 30 and 60 mm": "--plate 80x80 --bolts M16 --grip 30 --preload 60e3 --tapped "
+    "--thickness 30 60",
+    "one M12 tapped, 15 and 40 mm": "--plate 100x100 --bolts M12 --grip 15 --preload 30e3 --tapped "
+    "--thickness 15 40",
+}
+"""{name: options of `jointfmu new`} of steel plates, Ra 0.8 um."""
+RADII = (0.010, 0.0125, 0.015, 0.02, 0.025)
+"""Radii of the circles [m]."""
+OUTPUTS = ("K_zz", "K_rx", "K_ry", "K_rz", "p_max")
+FINE_CELLS = 20
+"""Cells from the bolt axis to the edge of the pressure; more than in a joint, to resolve the circles."""
+
+
+def make_joint(options: str, folder: Path) -> ParameterFile:
+    """Make the joint of a drawing, with bolts of no stiffness."""
+    path = folder / "plate.toml"
+    words = f"new bolted-joint {options} --embedding 0 --material steel --Ra 0.8 --out {path}"
+    with redirect_stdout(StringIO()):
+        if cli.main(words.split()):
+            raise SystemExit(f"{words} failed")
+    return load_parameter_file(path).with_values({"bolt_stiffness": 0.0}, "user", "the interface alone")
+
+
+def compute_pressure(file: ParameterFile, options: str) -> PressureDistribution:
+    """Contact pressure of two elastic plates by finite elements."""
+    pattern, words = file.values.pattern, options.split()
+    thread = read_threads()[words[words.index("--bolts") + 1].rpartition("x")[2]]
+    thickness = 0.5e-3 * float(words[words.index("--grip") + 1])
+    side = Plate(
+        length=pattern.length, width=pattern.width, thickness=thickness, E=210e9, nu=0.3, density=7850.0
+    )
+    sides = [side, side]
+    if "--tapped" in words:
+        first, second = (1e-3 * float(word) for word in words[words.index("--thickness") + 1 :][:2])
+        sides = [
+            replace(side, thickness=first),
+            TappedPlate(**flatten_parameters(side) | {"thickness": second, "depth": thread.d}),
+        ]
+    bolts = BoltList(
+        x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=thread.hexagon
+    )
+    contact = BoltedContact.from_assembly(Assembly(file.name, *sides, bolts))
+    preload = file.start_value("preload")
+    field = contact.solve(tabulate_approach(file.values), preload).field
+    return pressure_shape(replace(file.values, A_0=float(field.area.sum())), field, preload)
+
+
+def format_pressure(file: ParameterFile, shape: PressureDistribution, fine: PressureDistribution) -> str:
+    """Format two lines: force inside the circles, and stiffness of the joint."""
+    bolts = file.values.pattern.bolts
+    apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
+    force, rest = fine.area_share * fine.preload_shape, (0.0, 0.0, 0.0)
+    shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
+    shares += f"  radius of gyration {1e3 * np.sqrt(force @ apart**2):.4g} mm"
+    spring = BoltedJointSpring.of_nodes(file.values, shape)
+    state = spring.evaluate(file.start_value("preload"), 0.0, rest, rest)
+    return f"{shares}\n  {'':9} " + "  ".join(f"{name} {float(state[name]):.4g}" for name in OUTPUTS)
+
+
+def print_pressures() -> None:
+    """Pressure of the cones and of finite elements."""
+    usual = plate.MIN_CELLS_PER_RADIUS
+    for name, options in PLATES.items():
+        print(name)
+        with tempfile.TemporaryDirectory() as folder:
+            file = make_joint(options, Path(folder))
+        cones = file.values.pattern.pressure_distribution()
+        plate.MIN_CELLS_PER_RADIUS = FINE_CELLS
+        fine = file.values.pattern.pressure_distribution()
+        plate.MIN_CELLS_PER_RADIUS = usual
+        elastic = compute_pressure(file, options)
+        for what, shape, finer in (("cones", cones, fine), ("computed", elastic, elastic)):
+            print(f"  {what:9} {format_pressure(file, shape, finer)}")
+
+
+# attachments
+
+STIFFNESSES = ("xx", "yy", "zz", "rx", "ry", "rz")
+
+
+def joint_facts(attached: str, example: dict[str, object]) -> dict[str, float]:
+    """Values that `jointfmu new bolted-joint` prints."""
+    options = dict.fromkeys(option.name for option in NEW.options) | example | {"attached": attached}
+    return {name: value for name, (value, _, _) in dict(NEW.make_joint(options).facts).items()}
+
+
+def print_attachments() -> None:
+    """Stiffness and load factor by attachment; a joint with one bolt beside VDI 2230."""
+    heading("", "attached", *(f"K_{name}" for name in STIFFNESSES), "load factor", "interface")
+    for attached in ("faces", "edge", "heads"):
+        found = joint_facts(attached, EXAMPLE)
+        cells = [f"{found[f'joint_K_{name}']:.3g}" for name in STIFFNESSES]
+        row(f"`{attached}`", *cells, f"{found['joint_load_factor']:.3f}", f"{found['interface_share']:.1%}")
+    found = joint_facts("heads", EXAMPLE | {"plate": "80x80", "bolts": "M16", "at": None, "preload": "60e3"})
+    members = found["joint_K_zz"] - found["bolt_stiffness"]
+    print(f"\none M16, heads: members with interface {members:.4g} N/m, ", end="")
+    print(f"VDI 2230 {found['member_stiffness']:.4g};")
+    print(f"load factor {found['joint_load_factor']:.4f}, VDI 2230 {found['load_factor']:.4f}")
+
+
+if __name__ == "__main__":
+    run_study(__doc__, {"pressure": print_pressures, "attachments": print_attachments})

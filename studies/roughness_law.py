@@ -1,0 +1,141 @@
+"""Tables of docs/validity_stiffness.md on the law `roughness`; part of validity_stiffness.py."""
+
+from dataclasses import replace
+
+import numpy as np
+from common import heading, row, spread
+from oracles import interface_laws as compare
+from oracles import roughness_law as cases
+from oracles.measured_joints import LONGEST, joint_law, level, measured
+from scipy.optimize import least_squares
+
+from jointfmu.contact.interface import stiffness_curve
+from jointfmu.progress import track_progress
+
+CHOICES = [(area, spot) for area in ("continuity", "printed", "yield") for spot in ("family", "hertz")]
+"""Choices of the law `zhao2018`: critical area, spot stiffness."""
+WAVES = (5e-3, 40e-3)
+"""Longest waves [m] beside the default; the second is the side of the joints."""
+HEIGHTS = (0.3e-6, 1e-6, 3e-6)
+"""Rms heights [m] of a second roughness scale."""
+FITTED = slice(0, 4)
+"""Pressures of `cases.MEASURED` to which a second scale is fitted: 0.1 to 2 MPa."""
+
+
+def wave_name(roll_off):
+    """Longest wave as text."""
+    return "side" if roll_off == 1 else f"side/{roll_off}"
+
+
+def two_digits(values):
+    """Format numbers with two decimals."""
+    return (f"{value:.2f}" for value in values)
+
+
+def print_elastic():
+    """Law over boundary elements, elastic, on surfaces with fresh seeds."""
+    print(f"\nseeds of development {list(cases.DEVELOPMENT)}, here {cases.SEEDS}")
+    kinds = [(H, roll_off) for H in cases.HURST for roll_off in cases.LOADS]
+    found = {kind: cases.pressed(*kind) for kind in track_progress(kinds, "surfaces")}
+    beyond = all_cases = 0
+    for roll_off, loads in cases.LOADS.items():
+        band = f"waves up to {wave_name(roll_off)}, at y (x)"
+        title = f"law over boundary elements, mean (least to largest), {band}"
+        heading(title, "H", *(f"{y:g} ({y * roll_off**2:.2g})" for y in loads), "beyond 30 %")
+        for H in cases.HURST:
+            one = found[H, roll_off]
+            ratio, use = one["law"] / one["k"], cases.held(roll_off, one["area"])
+            mean = one["law"].mean(axis=0) / one["k"].mean(axis=0)
+            cells = [f"{m:.2f} ({r.min():.2f} to {r.max():.2f})" for m, r in zip(mean, ratio.T, strict=True)]
+            missed = int((np.abs(ratio - 1.0) > 0.3)[use].sum())
+            row(H, *cells, f"{missed} of {use.sum()}")
+            beyond, all_cases = beyond + missed, all_cases + int(use.sum())
+    print(f"\nbeyond 30 %: {beyond} of {all_cases} single cases with x >= {cases.FEWEST:g}")
+    heading("the same with the tail of the heights, mean, waves up to side/16", "H", *cases.LOADS[16])
+    for H in cases.HURST:
+        one = found[H, 16]
+        row(H, *two_digits(one["tail"].mean(axis=0) / one["k"].mean(axis=0)))
+    heading("exponent d ln k/d ln p", "H", "longest wave", "boundary elements", "law", "difference of means")
+    for (H, roll_off), one in found.items():
+        k, law = cases.exponents(one, roll_off)
+        row(H, wave_name(roll_off), spread(k), f"{law.mean():.2f}", f"{(law - k).mean():+.2f}")
+
+
+def print_plastic():
+    """Law over boundary elements with a hardness."""
+    names = ("longest wave", "H over E* h'", "p/H", "K_loading", "K_N", "A_r")
+    heading("law over boundary elements with a hardness, H = 0.3 and 0.8", *names)
+    for roll_off in track_progress((1, 4), "hardness"):
+        for hardness, load in ((0.5, 0.03), (0.5, 0.1), (0.15, 0.03), (0.15, 0.1), (0.05, 0.1), (0.05, 0.3)):
+            both = [cases.plastic(H, roll_off, hardness, load, seeds=cases.SEEDS[16]) for H in (0.3, 0.8)]
+            row(wave_name(roll_off), hardness, load, *(spread(one) for one in np.concatenate(both, axis=1)))
+
+
+def print_joints():
+    """Law over measured joints, and the other three laws over measured joints."""
+    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
+    heading("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
+    for joint in cases.rough():
+        law = joint_law(joint)
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        height = f"{law.h * 1e6:.2f}"
+        row(joint["id"], height, "p/(0.45 h)", *two_digits(cases.MEASURED / (law.gamma * law.h) / middle))
+        row(joint["id"], height, "roughness", *two_digits(level(law, cases.MEASURED) / middle))
+    zhao, hu, yu = (case.law for case in compare.cases().values())
+    others = {
+        f"zhao2018 {area} {spot}": replace(zhao, critical_area=area, spot_stiffness=spot)
+        for area, spot in CHOICES
+        if spot == "hertz" or area == "continuity"
+    }
+    heading("the same of the other laws, whatever the finish", "joint", "law", *pressures)
+    for joint in measured()["normal"]:
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        for text, law in {**others, "hu2023": hu, "yu2022": yu}.items():
+            k = stiffness_curve(law, cases.MEASURED)[0]
+            row(joint["id"], text, *(f"{one:.2g}" for one in k / middle))
+
+
+def print_second_scale():
+    """Law with longer waves, and with a second scale in series, over measured joints."""
+    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
+    heading("law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures)
+    for joint in cases.rough():
+        law = joint_law(joint)
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        for wave in WAVES:
+            k = level(replace(law, longest_wave=wave), cases.MEASURED)
+            row(joint["id"], f"longest wave {wave * 1e3:g} mm", *two_digits(k / middle))
+        row(
+            joint["id"], "with the tail of the heights", *two_digits(cases.tail(law, cases.MEASURED) / middle)
+        )
+        for h in HEIGHTS:
+            k = cases.wavy(law, cases.MEASURED, h, WAVES[-1])
+            row(joint["id"], f"in series {h * 1e6:g} µm over 40 mm", *two_digits(k / middle))
+    heading("best two scales in series, 0.1 to 2 MPa", "joint", "h [µm]", "h_w [µm]", *pressures, "exponent")
+    for joint in cases.rough():
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        h, k = fit_second_scale(joint, middle)
+        power = compare.exponent(cases.MEASURED[FITTED], k[FITTED])
+        row(joint["id"], *(f"{one * 1e6:.3g}" for one in h), *two_digits(k / middle), f"{power:.2f}")
+
+
+def fit_second_scale(joint, middle):
+    """Fit the rms heights (2) [m] of two scales to a measured joint; also returns the stiffness [N/m3]."""
+
+    def stiffness(logs):
+        h, second = np.exp(logs)
+        return cases.wavy(joint_law(joint, h=h), cases.MEASURED, second, WAVES[-1])
+
+    def miss(logs):
+        return np.log(stiffness(logs) / middle)[FITTED]
+
+    fit = least_squares(miss, np.log([1e-6, 1e-6]), bounds=np.log([1e-9, 1e-4]))
+    return np.exp(fit.x), stiffness(fit.x)
+
+
+def print_brake_reuss():
+    """Law over the published contact law of the Brake-Reuss beam, for two longest waves."""
+    published = measured("brake_reuss")
+    heading("law over published, Brake-Reuss beam", "longest wave [mm]", *cases.brake_reuss())
+    for wave in (LONGEST, cases.filtered_wave(published["filter_sigma"])):
+        row(f"{wave * 1e3:.3g}", *two_digits(cases.brake_reuss(longest_wave=wave).values()))

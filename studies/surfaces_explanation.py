@@ -1,0 +1,164 @@
+"""Figures of docs/surfaces_explanation.md: generated surfaces identified again, and scans of long waves.
+
+    python studies/surfaces_explanation.py [SECTION ...] [--draws N]
+
+identification : errors of D and G of Weierstrass-Mandelbrot and of Gaussian self-affine surfaces, coverage of
+                 the intervals, time
+scans          : h and slope of Gaussian scans up to a longest wave, over those of the spectrum
+
+All surfaces are read as `jointfmu surface` reads them.
+"""
+
+from time import perf_counter
+
+import numpy as np
+from common import run_study
+from jointfmu_tools import fractal
+from jointfmu_tools.inputs.surfaces import form, synthesis
+from jointfmu_tools.inputs.surfaces.form import remove_form
+from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
+from jointfmu_tools.inputs.surfaces.identify import identify
+from oracles import rough_surfaces
+
+DIMENSIONS = (1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8)
+ROUGHNESSES = (1e-12, 1e-9, 1e-7)
+SEEDS = range(9)
+FIRST_SEED = 770000
+"""First seed: the method and its constants were chosen without these surfaces."""
+SHAPES = {"isotropic": 1000, "textured": 2048, "profile": 4096}
+
+
+def weierstrass_mandelbrot(shape, points, D, G, seed):
+    """Weierstrass-Mandelbrot surface whose profile (textured: along x) has the dimension D."""
+    waves = synthesis.Waves(size=1e-3, points=points, gamma=1.5)
+    if shape == "isotropic":
+        return synthesis.synthesize_isotropic(waves, D + 1.0, G, 20, seed)
+    if shape == "textured":
+        square = synthesis.synthesize_textured(waves, (D, 3.0 - D), (G, G), seed)
+        return ArealMap(z=square.z[:64], dx=square.dx, dy=square.dy, name=square.name)
+    return synthesis.synthesize_profile(waves, D, G, seed)
+
+
+def gaussian(points, D, G, rng, areal):
+    """Gaussian self-affine surface, cut from a periodic one four times as long."""
+    dx, n, H = 1e-6, 4 * points, 2.0 - D
+    f = np.fft.rfftfreq(n, dx)
+    shape = (n, n) if areal else (n,)
+    if areal:
+        f = np.hypot(f, np.fft.fftfreq(n, dx)[:, None])
+    f.flat[0] = np.inf
+    share = 1.0 / (np.pi * f**2 * (n * dx) ** 2) if areal else 1.0 / (f * n * dx)
+    noise = np.fft.rfftn(rng.standard_normal(shape))
+    z = np.fft.irfftn(
+        noise * np.sqrt(0.5 * fractal.wave_power(f, H, G) * share * n**f.ndim), s=shape, axes=range(f.ndim)
+    )
+    if areal:
+        return ArealMap(z=z[:points, :points].copy(), dx=dx, dy=dx, name="Gaussian")
+    return Profile(z=z[:points].copy(), dx=dx, name="Gaussian")
+
+
+def errors(heights, direction, D, G):
+    """{method or "best": (error of D, D inside its interval, error of ln G, G inside)}; maps: G_s."""
+    found = identify([heights])
+    results = {m: found.select_best(direction, m) for m in ("structure", "psd")} | {
+        "best": found.select_best(direction)
+    }
+    row = {}
+    for name, one in results.items():
+        d, g = one.profile.D, one.areal.G_s if direction == "areal" else one.profile.G
+        row[name] = (d.value - D, d.low <= D <= d.high, np.log(g.value / G), g.low <= G <= g.high)
+    return row
+
+
+def print_errors(title, direction, cases):
+    """Print one line per D and method; `cases(D)` yields (heights, G)."""
+    print(f"\n{title}\n| D | method | bias of D | largest error of D | D inside | bias of ln G | G inside |")
+    print("|---|---|---|---|---|---|---|")
+    worst, inside = 0.0, []
+    for D in DIMENSIONS:
+        rows = [errors(heights, direction, D, G) for heights, G in cases(D)]
+        for method in rows[0]:
+            e = np.array([row[method] for row in rows], dtype=float)
+            print(
+                f"| {D} | {method} | {e[:, 0].mean():+.3f} | {np.abs(e[:, 0]).max():.3f} "
+                f"| {e[:, 1].mean():.2f} | {np.nanmean(e[:, 2]):+.2f} | {e[:, 3].mean():.2f} |",
+                flush=True,
+            )
+            if method == "best":
+                worst, inside = max(worst, np.abs(e[:, 0]).max()), inside + list(e[:, 3])
+    print(f"best: largest error of D {worst:.3f}, G inside its interval in {100 * np.mean(inside):.1f} %")
+    return worst, float(np.mean(inside))
+
+
+def print_identification(options):
+    """Errors of identified D and G, coverage of their intervals, and the time of a million points."""
+    for shape, points in SHAPES.items():
+        direction = {"isotropic": "areal", "textured": "x"}.get(shape, "profile")
+
+        def cases(D, shape=shape, points=points):
+            """Surfaces with different phases; G only scales the heights, so the seeds share the values."""
+            for seed in SEEDS:
+                G = ROUGHNESSES[seed % len(ROUGHNESSES)]
+                yield weierstrass_mandelbrot(shape, points, D, G, FIRST_SEED + 1000 * round(10 * D) + seed), G
+
+        print_errors(f"Weierstrass-Mandelbrot, {shape}, {points} points along x", direction, cases)
+    for areal, points in ((False, 2048), (True, 128)):
+        rng = np.random.default_rng(FIRST_SEED + points)
+
+        def random(D, areal=areal, points=points, rng=rng):
+            return ((gaussian(points, D, 1e-9, rng, areal), 1e-9) for _ in range(options.draws))
+
+        kind = "map" if areal else "profile"
+        print_errors(
+            f"Gaussian {kind}, {points} points, {options.draws} each", "areal" if areal else "profile", random
+        )
+    start = perf_counter()
+    heights = weierstrass_mandelbrot("isotropic", 1000, 1.5, 1e-9, 1)
+    middle = perf_counter()
+    identify([heights])
+    print(
+        f"\na million points: made in {middle - start:.2f} s, identified in {perf_counter() - middle:.2f} s"
+    )
+
+
+# scans
+
+SHARES = (1.0, 0.5, 0.25)
+"""Longest wave over the side of the scan."""
+
+
+def scan_ratios(heights, D, G):
+    """(2, 3) h and slope over those of the spectrum, for each longest wave."""
+    flat, H = remove_form(heights), 2.0 - D
+    rows = []
+    for share in SHARES:
+        longest = share * heights.lengths[0]
+        found = form.scan_roughness(flat, flat, longest)
+        h = rough_surfaces.rms_height(H, G, longest, 2.0 * heights.dx)
+        slope = rough_surfaces.rms_slope(H, G, longest, found.shortest_wave)
+        rows.append((found.h / h, found.slope / slope))
+    return np.transpose(rows)
+
+
+def print_scans(options, points=128):
+    """Height and slope of scans over those of the spectrum; h of the specimen of Zhao 2018."""
+    print(f"Gaussian map, {points} x {points} points, {options.draws} each: mean and standard deviation")
+    print("| D | h: " + " | ".join(f"{share:g} L" for share in SHARES) + " | slope: L |")
+    for D in (1.2, 1.5, 1.8):
+        rng = np.random.default_rng(FIRST_SEED)
+        found = np.array(
+            [scan_ratios(gaussian(points, D, 1e-9, rng, True), D, 1e-9) for _ in range(options.draws)]
+        )
+        mean, scatter = found.mean(axis=0), found.std(axis=0)
+        cells = [f"{m:.2f} ± {s:.2f}" for m, s in zip(mean[0], scatter[0], strict=True)]
+        print(f"| {D} | " + " | ".join([*cells, f"{mean[1, 0]:.2f} ± {scatter[1, 0]:.2f}"]) + " |")
+    h, own = (fractal.rms_height(1.42, 1.21e-8, 1e-3, gamma=gamma) for gamma in (None, 1.5))
+    print(f"specimen of Zhao 2018, waves up to 1 mm: h = {h:.3g} m, of a function with that wave {own:.3g} m")
+
+
+if __name__ == "__main__":
+    run_study(
+        __doc__,
+        {"identification": print_identification, "scans": print_scans},
+        options={"--draws": {"type": int, "default": 100, "help": "Gaussian surfaces of each kind (100)"}},
+    )

@@ -1,0 +1,1 @@
+"""Independent solutions, readers of reference data and synthetic measurements, for tests and studies."""

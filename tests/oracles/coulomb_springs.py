@@ -1,0 +1,74 @@
+"""Coulomb's friction by many springs of one touch and one limit each, for proofs that share no code with the
+package's sliders: of a convex curve p(delta), spring by spring, moved by the radial return of plasticity.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.mechanics.curve import Curve
+from jointfmu.mechanics.jenkins import SliderUpdate
+
+from .sphere_friction import load_levels
+
+Array = NDArray[np.float64]
+
+WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.04
+"""Pressures [Pa] between which the springs lie close; lowest level, distance of levels [1]."""
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Springs of a curve; each range between two edges (n + 1) [m] is one, at the mean height of its range.
+
+    curve : pressure [Pa] over approach [m]; `ratio` K_T/K_N [1], `friction` mu [1]
+    """
+
+    curve: Curve
+    ratio: float
+    friction: float
+    edges: Array
+
+    @classmethod
+    def of(cls, curve: Curve, ratio: float, friction: float) -> "Springs":
+        """Close where joints work."""
+        end = curve.end[1]
+        level = load_levels(LOWEST, (WORKING[0] / end, WORKING[1] / end), STEP)
+        return cls(curve, ratio, friction, curve.inverse(level * end))
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """(n) [Pa/m] normal to the surface."""
+        return np.diff(self.curve.derivatives(self.edges, 1)[1])
+
+    @cached_property
+    def heights(self) -> Array:
+        """(n) [m] where the springs touch: p is right wherever a range is full."""
+        load, slope = self.curve.derivatives(self.edges, 1)
+        middle = 0.5 * (self.edges[1:] + self.edges[:-1])
+        moment, carries = np.diff(self.edges * slope - load), self.stiffness > 1e-12 * slope[-1]
+        return np.divide(moment, self.stiffness, out=middle, where=carries)
+
+    def virgin_forces(self, count: int) -> Array:
+        """Forces (count, 2, n) [Pa] of springs that have not moved."""
+        return np.zeros((count, 2, self.edges.size - 1))
+
+    def advance(self, force: Array, before: Array, after: Array, shift: Array) -> SliderUpdate:
+        """After a short straight path from approaches (P) to others [m], by shifts (P, 2) [m].
+
+        A spring sticks, or its force returns along itself to friction times what presses it; heat is force
+        times slip. First order in the path where its direction or the approach changes.
+        """
+        limit = self.friction * self.stiffness * np.maximum(after[:, None] - self.heights, 0.0)
+        slope = self.ratio * np.where(limit > 0.0, self.stiffness, 0.0)
+        trial = force + slope[:, None] * shift[:, :, None]
+        size = np.hypot(trial[:, 0], trial[:, 1])
+        slips = size > limit
+        part = np.where(slips, limit / np.maximum(size, 1e-300), 1.0)
+        slip = np.divide(size - limit, slope, out=np.zeros_like(size), where=slips & (slope > 0.0))
+        x, y = np.moveaxis(trial / np.maximum(size, 1e-300)[:, None], 1, 0)
+        bent, kept = np.where(slips, slope * part, 0.0), np.where(slips, 0.0, slope)
+        tangent = [np.sum(t, axis=1) for t in (kept + bent * y * y, -bent * x * y, kept + bent * x * x)]
+        return SliderUpdate(trial * part[:, None], np.sum(limit * slip, axis=1), np.stack(tangent, axis=-1))

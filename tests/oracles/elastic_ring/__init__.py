@@ -1,0 +1,1 @@
+"""Contact of flexspline and bearing ring of a harmonic drive, from thin elastic rings."""

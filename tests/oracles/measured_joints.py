@@ -1,0 +1,48 @@
+"""Measured stiffness of joints (models/reference), and the law `roughness` with their surfaces."""
+
+import tomllib
+from dataclasses import replace
+from importlib.resources import files
+
+import numpy as np
+
+from jointfmu.contact.interface import evaluate_at_pressure
+from jointfmu.contact.laws.roughness import RoughnessLaw
+from jointfmu.contact.surface import ElasticConstants
+
+HARDNESS, SLOPE, FRICTION = 2e9, 0.15, 0.15
+"""[Pa, 1, 1] of the joints: no stiffness of small motions depends on them."""
+GAMMA = 0.45
+"""Of the law [1]."""
+LONGEST, MACHINED = 1e-3, 0.8
+"""Longest wave [m] that machining leaves and Hurst exponent [1] of the joints, both estimates."""
+
+
+def measured(name="measured_joints"):
+    """Measured joints, or another file of models/reference."""
+    text = (files("jointfmu_models") / "reference" / f"{name}.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def joint_law(joint, **changes):
+    """The law for an entry of models/reference with the roughness `Rq` of each of its two sides."""
+    body = ElasticConstants(E=joint["E"], nu=joint["nu"])
+    law = RoughnessLaw(
+        h=np.sqrt(2.0) * joint["Rq"],
+        gamma=GAMMA,
+        longest_wave=LONGEST,
+        hurst=MACHINED,
+        slope=SLOPE,
+        side1=body,
+        side2=body,
+        H=HARDNESS,
+        mu=FRICTION,
+        traction_ratio=0.1,
+        A_0=joint["A_0"],
+    )
+    return replace(law, **changes)
+
+
+def level(law, p):
+    """Stiffness per area [N/m3] of a law at pressures [Pa]."""
+    return evaluate_at_pressure(law, p)["K_N"] / law.A_0

@@ -1,0 +1,136 @@
+"""Reference cases for the law `roughness`: boundary elements on generated surfaces, measured joints.
+
+y = p longest_wave/(E* h), x = p A_0/(E* h longest_wave): pressure and load without units. The range where the
+law is meant to hold was set with the seeds of development: x >= 0.3 (below, one hill carries, and surfaces
+differ by half and more), 0.01 <= y <= 1.5 (below, many hills are stiffer than the law; above, the longest
+wave itself is pressed flat), a real area of at most 15 %.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from jointfmu.contact.interface import evaluate_at_pressure
+from jointfmu.contact.laws.roughness import RoughnessLaw
+from jointfmu.contact.surface import ElasticConstants, contact_modulus
+
+from . import interface_laws as compare
+from .boundary_element import press, slope
+from .measured_joints import FRICTION, GAMMA, joint_law, level, measured
+
+DEVELOPMENT = (*range(8), *range(100, 106), *range(200, 212))
+"""Seeds that the constants of the law were chosen with; the proof uses none of them."""
+SEEDS = {1: range(300, 316), 4: range(300, 306), 16: range(300, 302)}
+"""Of the surfaces with waves up to side/1, side/4 and side/16: one hill differs from another most."""
+POINTS = {1: 256, 4: 256, 16: 512}
+"""Along a side of them."""
+HURST = (0.3, 0.55, 0.8)
+LOADS = {1: (0.1, 0.3, 0.5, 0.9, 1.5), 4: (0.02, 0.06, 0.18, 0.5, 1.5), 16: (0.001, 0.003, 0.01, 0.03, 0.1)}
+"""Loads y [1] of the surfaces with waves up to side/1, side/4 and side/16."""
+FEWEST, LIGHTEST, FLATTENED, FULLEST = 0.3, 0.01, 1.5, 0.15
+"""Least x, least and largest y, largest real area where the law is meant to hold [1]."""
+NO_HARDNESS = 1e30
+"""[Pa]."""
+MEASURED = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
+
+
+def without_units(H, roll_off, h, gradient, hardness=NO_HARDNESS):
+    """The law on the unit square of boundary_element.py, whose contact modulus is 1."""
+    body = ElasticConstants(E=2.0, nu=0.0)
+    return RoughnessLaw(
+        h=h,
+        gamma=GAMMA,
+        longest_wave=1.0 / roll_off,
+        hurst=H,
+        slope=gradient,
+        side1=body,
+        side2=body,
+        H=hardness,
+        mu=FRICTION,
+        traction_ratio=0.1,
+        A_0=1.0,
+    )
+
+
+def pressed(H, roll_off, seeds=None, points=None):
+    """Boundary elements and the law, elastic: {quantity: (seeds, loads)}; k, law, tail [E* over side]."""
+    found = {name: [] for name in ("p", "k", "law", "tail", "area")}
+    y = np.array(LOADS[roll_off])
+    for seed in seeds or SEEDS[roll_off]:
+        z = compare.heights(
+            3.0 - H, 1e-6, 1.0, seed, points=points or POINTS[roll_off], finest=4, roll_off=roll_off
+        )
+        p = y * z.std() * roll_off
+        contacts = press(z, p)
+        found["p"].append(p)
+        found["k"].append([c.stiffness for c in contacts])
+        found["area"].append([c.area for c in contacts])
+        law = without_units(H, roll_off, z.std(), slope(z))
+        found["law"].append(level(law, p))
+        found["tail"].append(tail(law, p))
+    return {name: np.array(rows) for name, rows in found.items()}
+
+
+def held(roll_off, area):
+    """Where the law is meant to hold, of areas (..., loads)."""
+    y = np.array(LOADS[roll_off])
+    return (y * roll_off**2 >= FEWEST) & (y >= LIGHTEST) & (y <= FLATTENED) & (area <= FULLEST)
+
+
+def exponents(one, roll_off):
+    """Exponents of k over p where the law is meant to hold, (seeds,) of boundary elements and of the law."""
+    use = held(roll_off, one["area"].max(axis=0))
+    return tuple(
+        np.array([compare.exponent(p[use], k[use]) for p, k in zip(one["p"], one[name], strict=True)])
+        for name in ("k", "law")
+    )
+
+
+def plastic(H, roll_off, hardness, load, seeds, points=64):
+    """Law over boundary elements with a hardness (of E* h'_rms) at a load (of it).
+
+    Rows of K_loading, K_N and A_r, (seeds,) each.
+    """
+    rows = []
+    for seed in seeds:
+        z = compare.heights(3.0 - H, 1e-6, 1.0, seed, points=points, finest=4, roll_off=roll_off)
+        gradient = slope(z)
+        p = load * hardness * gradient * np.array([0.9, 1.0, 1.1])
+        low, one, high = press(z, p, hardness * gradient, iterations=100)
+        state = evaluate_at_pressure(without_units(H, roll_off, z.std(), gradient, hardness * gradient), p[1])
+        loading = (p[2] - p[0]) / (low.separation - high.separation)
+        rows.append((state["K_loading"] / loading, state["K_N"] / one.stiffness, state["A_r"] / one.area))
+    return np.array(rows).T
+
+
+def rough():
+    """The measured joints whose roughness is stated."""
+    return [joint for joint in measured()["normal"] if "Rq" in joint]
+
+
+def filtered_wave(sigma):
+    """Wavelength [m] of which a Gaussian filter of standard deviation sigma [m] leaves a half."""
+    return float(np.pi * np.sqrt(2.0 / np.log(2.0)) * sigma)
+
+
+def brake_reuss(**changes):
+    """{name: law over published} for the contact law of the Brake-Reuss beam; changes of the law."""
+    data = measured("brake_reuss")
+    law = joint_law(data | {"Rq": data["h"] / np.sqrt(2.0)}, H=data["H"], **changes)
+    state = evaluate_at_pressure(law, data["pressure"])
+    names = {"normal": "K_N", "loading": "K_loading", "tangential": "K_T"}
+    return {name: float(state[q] / law.A_0 / data[name]) for name, q in names.items()}
+
+
+def wavy(law, p, h, wave):
+    """Stiffness per area [N/m3] of the law in series with a second scale: rms height and longest wave [m]."""
+    return 1.0 / (1.0 / level(law, p) + 1.0 / level(replace(law, h=h, longest_wave=wave), p))
+
+
+def tail(law, p):
+    """Stiffness per area [N/m3] of the law if many hills grew as the tail of the heights makes them.
+
+    1/gamma (y/0.2)^-0.08 for 1/gamma: what boundary elements of up to 1024 hills have from y = 0.001 to 1.
+    """
+    y = p * law.longest_wave / (contact_modulus(law.side1, law.side2) * law.h)
+    return level(law, p) + p / (law.gamma * law.h) * ((y / 0.2) ** -0.08 - 1.0)
