@@ -27,7 +27,7 @@ from jointfmu_fmu_src.building import build
 from jointfmu_tools.api import drive
 from jointfmu_tools.exchange.mujoco import plugin
 from jointfmu_tools.exchange.robots import elastic, plugged
-from jointfmu_tools.exchange.robots.transmission import make_transmission
+from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from jointfmu_tools.run.host import Instance
 from mujoco import rollout
 

@@ -19,6 +19,7 @@ from common import heading, row, run_study
 from jointfmu_tools import cli
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
+from jointfmu_tools.inputs.drawing.tables import read_threads
 from jointfmu_tools.inputs.fields.joint_parameters import pressure_shape
 from jointfmu_tools.joints.bolted_joint.new import NEW
 from oracles.joint_elements import EXAMPLE

@@ -26,7 +26,7 @@ from typing import Any
 import box_specimen_search
 import numpy as np
 from common import run_study
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from jointfmu_tools.fem import convergence
 from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.bolted_contact import DEFAULT_MOMENT_RATIO, BoltedContact, JointSolution

@@ -30,7 +30,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
     friction_and_ratio,
     hysteresis_loss,
     lost_motion,
-    make_python_test_rig,
+    make_test_rig,
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
 from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_SPEED
@@ -118,7 +118,7 @@ def single_drives():
     """Drives with published friction: default parameters, and without the published efficiency."""
     rows, both = [], [(item, catalogue_drive(item.name)) for item in drives_with_friction()]
     for item, file in both:
-        n, drive = item.numbers, make_python_test_rig(MODEL, file)
+        n, drive = item.numbers, make_test_rig(MODEL, file)
         back, rated = n["back_driving_torque"].value, n["rated_torque"].value
         found = drive.back_driving_torque(10.0 * back)
         guess = abs(n["ratio"].value) * n["starting_torque"].value
@@ -133,9 +133,7 @@ def single_drives():
             freed = file.with_values(friction_and_ratio(other), "user", "without efficiency")
             free = file.with_values({"load_loss": 0.0}, "user", "guess")
             values = [n["efficiency"].value, drive.efficiency(CATALOGUE_SPEED, rated)]
-            values += [
-                make_python_test_rig(MODEL, f).efficiency(CATALOGUE_SPEED, rated) for f in (freed, free)
-            ]
+            values += [make_test_rig(MODEL, f).efficiency(CATALOGUE_SPEED, rated) for f in (freed, free)]
             cells += [f"{100.0 * value:.1f}" for value in values]
         else:
             cells += ["-"] * 4
@@ -167,7 +165,7 @@ def published_points(drive, column):
 def test_rig(**friction):
     """Test rig with a drive 1:50 of 172 N.m; its stiffness has no influence."""
     given = {"ratio": 50.0, "rated_torque": 172.0, **friction}
-    return make_python_test_rig(MODEL, load_default("harmonic_drive").with_values(given, "user", "read"))
+    return make_test_rig(MODEL, load_default("harmonic_drive").with_values(given, "user", "read"))
 
 
 def over_load():

@@ -13,7 +13,7 @@ from time import perf_counter
 
 import numpy as np
 from common import run_study
-from jointfmu_tools import fractal
+from jointfmu_tools.inputs import fractal
 from jointfmu_tools.inputs.surfaces import form, synthesis
 from jointfmu_tools.inputs.surfaces.form import remove_form
 from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools import fractal
+from jointfmu_tools.inputs import fractal
 from jointfmu_tools.inputs.surfaces import form, synthesis
 from jointfmu_tools.inputs.surfaces.form import remove_form
 from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
