@@ -6,7 +6,7 @@ from pathlib import Path
 
 try:
     from jointfmu_fmu_src.native.compiled.compile_ahead import compile_ahead
-    from jointfmu_fmu_src.native.compiled.compiled_models import SHIPPED_FOLDER
+    from jointfmu_fmu_src.native.compiled.compiled_models import SHIPPED_MODEL_FOLDER
 except ImportError as error:
     sys.exit(f"compile_parts.py: {error}; install what building needs with: pip install -e '.[build]'")
 
@@ -15,7 +15,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help="FMUs (default: all)")
     parser.add_argument(
-        "--out", type=Path, default=SHIPPED_FOLDER, metavar="DIR", help="default: in the package"
+        "--out", type=Path, default=SHIPPED_MODEL_FOLDER, metavar="DIR", help="default: in the package"
     )
     arguments = parser.parse_args()
     try:

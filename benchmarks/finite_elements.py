@@ -38,8 +38,10 @@ def main() -> None:
     basis = Basis(body.mesh, ElementVector(ElementHexS2()), intorder=4)
     reference = print_processor_time("the same by scikit-fem's loop", lambda: form.assemble(basis))
     print(f"largest difference {abs(stiffness - reference).max() / abs(reference).max():.1e}")
-    relative = displacement_matrix(body, joint.interface)
-    springs = relative.T @ sp.diags_array(joint.interface.quadrature_area * SPRING_STIFFNESS) @ relative
+    relative = displacement_matrix(body, joint.contact_interface)
+    springs = (
+        relative.T @ sp.diags_array(joint.contact_interface.quadrature_area * SPRING_STIFFNESS) @ relative
+    )
     matrix = (stiffness + springs + 1e5 * sp.eye_array(count)).tocsc()
     load = body.uniform_load(body.mesh.boundaries["head1"])
     factor = print_processor_time("CHOLMOD", lambda: Cholesky(matrix))

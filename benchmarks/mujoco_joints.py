@@ -23,10 +23,10 @@ import fmpy
 import mujoco
 import numpy as np
 from harness import ROOT, read_options, require, verdict
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools.api import drive
 from jointfmu_tools.exchange.mujoco import plugin
-from jointfmu_tools.exchange.robots import elastic, plugged
+from jointfmu_tools.exchange.robots import elastic, plugin_robot
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from jointfmu_tools.run.host import Instance
 from mujoco import rollout
@@ -142,7 +142,7 @@ def print_plugin(quick: bool) -> None:
     repeats, python_steps = QUICK if quick else (REPEATS, PYTHON_STEPS)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        build([PLUGIN], ["fmi3"], None, folder)
+        build_fmus([PLUGIN], ["fmi3"], None, folder)
         fmu = folder / "fmi3" / f"{PLUGIN}.fmu"
         mujoco.mj_loadPluginLibrary(str(plugin(fmu, folder)))
         print(f"{'per joint and step':26} {'plugin':>10} {'Python':>10}")
@@ -176,7 +176,7 @@ def arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjMod
     stated = {} if hysteresis is None else {"hysteresis": hysteresis}
     files = {f"joint{i}": drive(size, **stated).file for i, size in enumerate(SIZES, 1)}
     axes = elastic.make_axes(spec, {joint: make_transmission(file) for joint, file in files.items()})
-    for library in plugged.compile_plugins(files, folder).values():
+    for library in plugin_robot.compile_plugins(files, folder).values():
         mujoco.mj_loadPluginLibrary(str(library))
     rough, smooth = spec.copy(), elastic.add_drives(spec, axes)
     for axis in axes:
@@ -192,7 +192,7 @@ def arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjMod
         "plain": plain,
         "plain, implicit": implicit,
         "plain, no friction": smooth.compile(),
-        "plugin": mujoco.MjModel.from_xml_string(plugged.format_plugin_robot(spec, axes, files)),
+        "plugin": mujoco.MjModel.from_xml_string(plugin_robot.format_robot_with_plugins(spec, axes, files)),
     }
 
 

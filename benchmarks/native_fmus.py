@@ -36,7 +36,7 @@ import fmpy
 import numpy as np
 from harness import ROOT, read_options, require, verdict
 from joint_cases import CASES
-from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
 from jointfmu_fmu_src.native import data
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
@@ -173,7 +173,7 @@ def as_built(name: str) -> Linked:
 def as_compiled(name: str) -> Linked:
     """Libraries of an FMU that passes its inputs on."""
     files = pass_through(name)
-    units = {flavour: compiler.select_units(list(files), flavour[-1]) for flavour in NATIVE}
+    units = {flavour: compiler.select_source_files(list(files), flavour[-1]) for flavour in NATIVE}
     made = {f: compiler.compile_libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
     return Linked(made, generate.read_token(files))
 
@@ -195,7 +195,7 @@ def build_host(folder: Path) -> Path:
     """Compile native_fmus.c."""
     file = folder / "host"
     include = Path(fmpy.__file__).parent / "c-code"
-    target = ("-target", compiler.TARGETS[PLATFORM], "-s")  # for which zig has compiled its runtime
+    target = ("-target", compiler.ZIG_TARGETS[PLATFORM], "-s")  # for which zig has compiled its runtime
     options = ("-std=gnu11", "-O2", *target, f"-I{HOSTS}", f"-I{include}", "-ldl", "-o", str(file))
     subprocess.run(
         [sys.executable, "-m", "ziglang", "cc", str(ROOT / "benchmarks" / "native_fmus.c"), *options],
@@ -287,7 +287,7 @@ def print_times(times: dict[tuple[str, str], Times]) -> None:
     print(f"{'FMU':28} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
     print(" " * 36 + "".join(f" {unit:>13}" for *_, unit in COLUMNS.values()))
     for name in (*MODELS, *OTHERS, *PASS_THROUGH):
-        for flavour in FLAVOURS:
+        for flavour in FLAVOUR_BUILDERS:
             if found := times.get((name, flavour)):
                 print(f"{name:28} {flavour:7}" + "".join(f" {cell(found, key):>13}" for key in COLUMNS))
     print()
@@ -338,7 +338,7 @@ def print_elastic_sides(folder: Path, quick: bool) -> None:
     made = {}
     for name, file in {"elastic": joint.file, "rigid": joint.rigid}.items():
         files = generate.generate_sources("BoltedJoint", file)
-        units = compiler.select_units(list(files), "3")
+        units = compiler.select_source_files(list(files), "3")
         library = folder / f"{name}.so"
         library.write_bytes(compiler.compile_libraries("BoltedJoint", files, units, [PLATFORM])[PLATFORM])
         model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
@@ -369,7 +369,7 @@ def main() -> None:
         elif options.elastic_sides:
             print_elastic_sides(folder, options.quick)
         else:
-            build([], ["python"], None, folder)
+            build_fmus([], ["python"], None, folder)
             print_times(measure(folder, options.quick))
 
 

@@ -89,7 +89,7 @@ def resonance(path: Path) -> None:
     """Draw the plot in which the tutorial ends."""
     row = CatalogueRow(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
     drive = catalogue.make_line_drive_from_row(
-        row, numbers=catalogue.source_numbers(row, ratio=100.0)
+        row, sourced_numbers=catalogue.source_numbers(row, ratio=100.0)
     ).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)

@@ -11,30 +11,30 @@ from jointfmu.files.writing import ensure_folder
 
 
 @contextmanager
-def staging_folder(target: Path) -> Iterator[Path]:
+def staging_folder(target_path: Path) -> Iterator[Path]:
     """Temporary folder next to a target file; on success the file made in it replaces the target atomically.
 
     The file must have the name of the target. If the target is a symbolic link, its destination is replaced.
 
     Raises ValueError if the folder cannot be written. A parent folder created here is removed on failure.
     """
-    destination = Path(os.path.realpath(target))
+    destination = Path(os.path.realpath(target_path))
     try:
         with (
             ensure_folder(destination.parent),
             tempfile.TemporaryDirectory(dir=destination.parent, prefix=".build-") as folder,
         ):
             yield Path(folder)
-            (Path(folder) / target.name).replace(destination)
+            (Path(folder) / target_path.name).replace(destination)
     except OSError as error:
         raise ValueError(
-            f"{target}: cannot be written ({error.strerror}); expected a writable folder"
+            f"{target_path}: cannot be written ({error.strerror}); expected a writable folder"
         ) from None
 
 
-def write_archive(contents: Mapping[str, bytes], file: Path) -> None:
+def write_archive(contents: Mapping[str, bytes], archive_path: Path) -> None:
     """Write a zip archive of {path: content}, with sorted members, a fixed date and a fixed system."""
-    with zipfile.ZipFile(file, "w") as archive:
+    with zipfile.ZipFile(archive_path, "w") as archive:
         for name, content in sorted(contents.items()):
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
             info.create_system = 3

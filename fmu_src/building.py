@@ -5,25 +5,25 @@ from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
 
-from jointfmu.files.outputs import ARCHIVE, check_outputs
+from jointfmu.files.outputs import ARCHIVE_FILE, check_outputs
 from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.progress import map_jobs
 
-from .naming import check_name
-from .native.build import build as build_native
-from .python.build import build as build_python
+from .naming import check_fmu_name
+from .native.build import build_native_fmu as build_native
+from .python.build import build_python_fmu as build_python
 from .xml_parts import VARIABILITIES
 
-FLAVOURS: dict[str, Callable[..., Path]] = {
+FLAVOUR_BUILDERS: dict[str, Callable[..., Path]] = {
     "fmi2": partial(build_native, fmi_version="2"),
     "fmi3": partial(build_native, fmi_version="3"),
     "python": build_python,
 }
 
 
-def build(
-    names: Sequence[str],
+def build_fmus(
+    fmu_names: Sequence[str],
     flavours: Sequence[str],
     parameters: ParameterFile | None,
     output_folder: Path,
@@ -45,24 +45,29 @@ def build(
     no identifier or is given for several FMUs, and files that may not or cannot be replaced. These checks
     come before the first build where possible.
     """
-    for noun, values, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
+    for noun, values, allowed in (
+        ("FMU", fmu_names, list(MODELS)),
+        ("flavour", flavours, list(FLAVOUR_BUILDERS)),
+    ):
         if unknown := [value for value in values if value not in allowed]:
             raise ValueError(f"unknown {noun} {unknown[0]!r}, allowed are {', '.join(allowed)}")
-    if not names:
+    if not fmu_names:
         joint = parameters.joint if parameters else None
-        names = [name for name, model in MODELS.items() if joint in (None, model.joint)]
-    if alias is not None and len(set(names)) != 1:
-        raise ValueError(f"name {alias!r} is for one FMU, expected one of {', '.join(names)}")
+        fmu_names = [name for name, model in MODELS.items() if joint in (None, model.joint)]
+    if alias is not None and len(set(fmu_names)) != 1:
+        raise ValueError(f"name {alias!r} is for one FMU, expected one of {', '.join(fmu_names)}")
     if alias is not None:
-        check_name(alias)
-    for name in names:
+        check_fmu_name(alias)
+    for name in fmu_names:
         if parameters:
             MODELS[name].with_parameters(parameters.joint, parameters.values)
-    titles = [alias or name for name in names]
-    check_outputs((output_folder / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE, force)
+    titles = [alias or name for name in fmu_names]
+    check_outputs(
+        (output_folder / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE_FILE, force
+    )
     options = {"variability": variability, "alias": alias or ""}
     build_one = partial(_build_flavours, flavours, parameters, output_folder, options)
-    paths_by_name = map_jobs(pool, build_one, "build", names)
+    paths_by_name = map_jobs(pool, build_one, "build", fmu_names)
     return [path for paths in zip(*paths_by_name, strict=True) for path in paths]
 
 
@@ -70,9 +75,12 @@ def _build_flavours(
     flavours: Sequence[str],
     parameters: ParameterFile | None,
     output_folder: Path,
-    options: Mapping[str, str],
-    name: str,
+    build_options: Mapping[str, str],
+    fmu_name: str,
 ) -> list[Path]:
     """Build one FMU in several flavours, which share the compiled model; return the paths of the files."""
-    file = parameters or load_default(MODELS[name].joint)
-    return [FLAVOURS[flavour](name, file, output_folder / flavour, **options) for flavour in flavours]
+    file = parameters or load_default(MODELS[fmu_name].joint)
+    return [
+        FLAVOUR_BUILDERS[flavour](fmu_name, file, output_folder / flavour, **build_options)
+        for flavour in flavours
+    ]

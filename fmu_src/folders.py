@@ -27,14 +27,14 @@ def find_source_folder(model: Model) -> Path:
     return find_fmu_parts(model).folder
 
 
-def find_asset(model: Model, name: str) -> Path:
+def find_asset(model: Model, file_name: str) -> Path:
     """Path of a required file (page or icon) in the folder of a model.
 
     Raises ValueError if the file is missing.
     """
     folder = find_source_folder(model)
-    if not (folder / name).is_file():
+    if not (folder / file_name).is_file():
         raise ValueError(
-            f"{model.name}: {folder / name} is missing; it must be in the folder of the other parts"
+            f"{model.name}: {folder / file_name} is missing; it must be in the folder of the other parts"
         )
-    return folder / name
+    return folder / file_name

@@ -5,7 +5,7 @@ from keyword import iskeyword
 
 MAX_NAME_LENGTH = 63
 """Largest length of a name [1]: C compilers need not distinguish more characters."""
-NAME_RULE = (
+FMU_NAME_RULE = (
     f"at most {MAX_NAME_LENGTH} letters, digits and _, no digit first, no word of C, Python or "
     "Modelica, no device "
     "of Windows (con, nul, com1)"
@@ -13,15 +13,15 @@ NAME_RULE = (
 """Rule for valid names, as error messages print it."""
 
 
-def check_name(name: str) -> str:
+def check_fmu_name(fmu_name: str) -> str:
     """Return the name if it is a valid identifier.
 
     Raises ValueError if it is not, see `is_identifier`.
     """
-    if not is_identifier(name):
-        shown = name if len(name) <= 80 else f"{name[:77]}..."
-        raise ValueError(f"name {shown!r} is not a model identifier, allowed are {NAME_RULE}")
-    return name
+    if not is_identifier(fmu_name):
+        shown = fmu_name if len(fmu_name) <= 80 else f"{fmu_name[:77]}..."
+        raise ValueError(f"name {shown!r} is not a model identifier, allowed are {FMU_NAME_RULE}")
+    return fmu_name
 
 
 def is_identifier(name: str) -> bool:

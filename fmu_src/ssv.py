@@ -23,14 +23,16 @@ class ParameterValue(NamedTuple):
 
 
 def format_parameter_set(
-    name: str,
+    set_name: str,
     entries: Mapping[str, ParameterValue],
-    version: str = "1.0",
+    ssp_version: str = "1.0",
     metadata: Mapping[str, str] | None = None,
 ) -> bytes:
     """Content of an SSV file of one SSP version; `metadata` gives further attributes of the root element."""
     spaces = {"xmlns:ssv": f"{SSP_NAMESPACE}ParameterValues", "xmlns:ssc": f"{SSP_NAMESPACE}Common"}
-    root = Element("ssv:ParameterSet", {**spaces, "version": version, "name": name, **(metadata or {})})
+    root = Element(
+        "ssv:ParameterSet", {**spaces, "version": ssp_version, "name": set_name, **(metadata or {})}
+    )
     parameters = SubElement(root, "ssv:Parameters")
     for variable, (value, unit, source) in entries.items():
         node = SubElement(parameters, "ssv:Parameter", name=variable)
@@ -39,15 +41,15 @@ def format_parameter_set(
         if isinstance(value, bool):
             SubElement(node, "ssv:Boolean", value=str(value).lower())
         else:
-            SubElement(node, f"ssv:{REAL_ELEMENT[version]}", value=repr(float(value)), unit=unit)
+            SubElement(node, f"ssv:{REAL_ELEMENT[ssp_version]}", value=repr(float(value)), unit=unit)
     add_units(root, "ssv", {entry.unit for entry in entries.values() if entry.unit})
     return serialize_xml(root)
 
 
-def add_units(root: Element, prefix: str, unit_names: set[str]) -> None:
+def add_units(root_element: Element, element_prefix: str, unit_names: set[str]) -> None:
     """Define units in an SSP file by their exponents of the SI base units."""
     if unit_names:
-        units = SubElement(root, f"{prefix}:Units")
+        units = SubElement(root_element, f"{element_prefix}:Units")
         for name in sorted(unit_names):
             unit = SubElement(units, "ssc:Unit", name=name)
             SubElement(unit, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[name].base_exponents.items()})

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
-from jointfmu.quantity.units import CELSIUS, KELVIN_AT_ZERO, UNITS, display_unit
+from jointfmu.quantity.units import CELSIUS_UNIT, CELSIUS_ZERO_IN_KELVIN, UNITS, display_unit
 
 VARIABILITIES = ("tunable", "fixed")
 """Variability of all parameters of an FMU: tunable also during a run, or fixed after initialization."""
@@ -28,7 +28,7 @@ class ListedVariable(NamedTuple):
     doc: str
     start: float | bool | None
     attributes: dict[str, str]
-    rate_of: int | None = None
+    derivative_of: int | None = None
 
     @property
     def is_boolean(self) -> bool:
@@ -87,11 +87,13 @@ def make_unit_definitions(variables: Sequence[ListedVariable]) -> Element:
         for shown, factor in UNITS[name].display_factors.items():
             SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
         if name == "K":
-            SubElement(unit, "DisplayUnit", name=CELSIUS, factor="1.0", offset=repr(-KELVIN_AT_ZERO))
+            SubElement(
+                unit, "DisplayUnit", name=CELSIUS_UNIT, factor="1.0", offset=repr(-CELSIUS_ZERO_IN_KELVIN)
+            )
     return definitions
 
 
-def make_model_structure(model: Model, variability: str, version: str = "2") -> Element:
+def make_model_structure(model: Model, variability: str, fmi_version: str = "2") -> Element:
     """XML element ModelStructure: outputs, derivatives and initial unknowns with their dependencies.
 
     In FMI 2.0 the index of a variable equals its value reference.
@@ -111,8 +113,8 @@ def make_model_structure(model: Model, variability: str, version: str = "2") -> 
         ("Derivatives", "ContinuousStateDerivative", rates, dependency_kinds, []),
         ("InitialUnknowns", "InitialUnknown", outputs[model.state_count :], initial_kinds, parameters),
     ):
-        group = SubElement(root, fmi2) if unknowns and version == "2" else root
-        tag, key = ("Unknown", "index") if version == "2" else (fmi3, "valueReference")
+        group = SubElement(root, fmi2) if unknowns and fmi_version == "2" else root
+        tag, key = ("Unknown", "index") if fmi_version == "2" else (fmi3, "valueReference")
         for name in unknowns:
             linear = model.linear_factors.get(name, {})
             knowns = [*sorted(model.list_dependencies(name), key=index.__getitem__), *further_knowns]
@@ -137,7 +139,7 @@ def format_xml_comment(lines: Sequence[str]) -> str:
 
 def _unit_attributes(unit: str, typical_value: float) -> dict[str, str]:
     """Attributes unit and displayUnit; the display unit suits a typical value [SI]."""
-    return {"unit": unit, "displayUnit": CELSIUS if unit == "K" else display_unit(unit, typical_value)}
+    return {"unit": unit, "displayUnit": CELSIUS_UNIT if unit == "K" else display_unit(unit, typical_value)}
 
 
 def _bound_attributes(interval: Interval) -> dict[str, str]:

@@ -20,8 +20,8 @@ from jointfmu_tools import cli
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from jointfmu_tools.inputs.drawing.tables import read_threads
-from jointfmu_tools.inputs.fields.joint_parameters import pressure_shape
-from jointfmu_tools.joints.bolted_joint.new import NEW
+from jointfmu_tools.inputs.fields.joint_parameters import normalise_pressure_field
+from jointfmu_tools.joints.bolted_joint.new import NEW_JOINT_COMMAND
 from oracles.joint_elements import EXAMPLE
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
@@ -73,25 +73,25 @@ def compute_pressure(file: ParameterFile, options: str) -> PressureDistribution:
         first, second = (1e-3 * float(word) for word in words[words.index("--thickness") + 1 :][:2])
         sides = [
             replace(side, thickness=first),
-            TappedPlate(**flatten_parameters(side) | {"thickness": second, "depth": thread.d}),
+            TappedPlate(**flatten_parameters(side) | {"thickness": second, "depth": thread.nominal_diameter}),
         ]
     bolts = BoltList(
         x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=thread.hexagon
     )
     contact = BoltedContact.from_assembly(Assembly(file.name, *sides, bolts))
     preload = file.start_value("preload")
-    field = contact.solve(tabulate_approach(file.values), preload).field
-    return pressure_shape(replace(file.values, A_0=float(field.area.sum())), field, preload)
+    field = contact.solve(tabulate_approach(file.values), preload).contact_field
+    return normalise_pressure_field(replace(file.values, A_0=float(field.area.sum())), field, preload)
 
 
 def format_pressure(file: ParameterFile, shape: PressureDistribution, fine: PressureDistribution) -> str:
     """Format two lines: force inside the circles, and stiffness of the joint."""
     bolts = file.values.pattern.bolts
     apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
-    force, rest = fine.area_share * fine.preload_shape, (0.0, 0.0, 0.0)
+    force, rest = fine.area_share * fine.preload_pressure_ratio, (0.0, 0.0, 0.0)
     shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
     shares += f"  radius of gyration {1e3 * np.sqrt(force @ apart**2):.4g} mm"
-    spring = BoltedJointSpring.of_nodes(file.values, shape)
+    spring = BoltedJointSpring.for_interface_nodes(file.values, shape)
     state = spring.evaluate(file.start_value("preload"), 0.0, rest, rest)
     return f"{shares}\n  {'':9} " + "  ".join(f"{name} {float(state[name]):.4g}" for name in OUTPUTS)
 
@@ -119,8 +119,10 @@ STIFFNESSES = ("xx", "yy", "zz", "rx", "ry", "rz")
 
 def joint_facts(attached: str, example: dict[str, object]) -> dict[str, float]:
     """Values that `jointfmu new bolted-joint` prints."""
-    options = dict.fromkeys(option.name for option in NEW.options) | example | {"attached": attached}
-    return {name: value for name, (value, _, _) in dict(NEW.make_joint(options).facts).items()}
+    options = (
+        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | example | {"attached": attached}
+    )
+    return {name: value for name, (value, _, _) in dict(NEW_JOINT_COMMAND.make_joint(options).facts).items()}
 
 
 def print_attachments() -> None:

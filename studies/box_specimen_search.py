@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jointfmu_tools.fem.contact import Interface, displacement_matrix
+from jointfmu_tools.fem.contact import ContactInterface, displacement_matrix
 from jointfmu_tools.fem.elasticity import ElasticBody
 from jointfmu_tools.fem.modes import NaturalModes, compute_modes
 from numpy.typing import NDArray
@@ -50,7 +50,7 @@ class Box:
     """Half of the specimen with its contact; `bolts` (8, 2) [m]."""
 
     body: ElasticBody
-    interface: Interface
+    interface: ContactInterface
     bolts: Array
 
     @classmethod
@@ -74,7 +74,7 @@ class Box:
         bolts = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]) * ends
         return cls(
             ElasticBody(mesh.restrict(np.nonzero(solid)[0]), E, NU, DENSITY),
-            Interface.from_mesh(plan.restrict(np.nonzero(ring)[0])),
+            ContactInterface.from_mesh(plan.restrict(np.nonzero(ring)[0])),
             bolts,
         )
 

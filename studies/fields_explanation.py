@@ -26,7 +26,7 @@ import numpy as np
 from common import heading, row, run_study
 from jointfmu_tools import cli
 from jointfmu_tools.inputs.fields import nodal_result
-from jointfmu_tools.inputs.fields.joint_parameters import pressure_shape
+from jointfmu_tools.inputs.fields.joint_parameters import normalise_pressure_field
 from jointfmu_tools.inputs.fields.nodal_result import ContactField
 from jointfmu_tools.inputs.fields.reduction import reduce_field
 from numpy.typing import NDArray
@@ -36,7 +36,7 @@ from scipy.optimize import brentq
 
 from jointfmu.joints.bolted_joint import joint as joint_module
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
-from jointfmu.joints.bolted_joint.law import Bolted, bolt_pattern, preload_pressure
+from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, get_bolted_frame, preload_pressure
 from jointfmu.mechanics import sliders as slider_module
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
@@ -50,7 +50,7 @@ Array = NDArray[np.float64]
 
 def default_spring() -> BoltedJointSpring:
     """Python spring of the default bolted joint."""
-    return BoltedJointSpring.of(load_default("bolted_joint").values)
+    return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
 
 
 # reduction
@@ -69,9 +69,9 @@ def nodal_field(cells: int, open_pressure: float) -> ContactField:
     """Nodal pressure field of the default frame; nodes below `open_pressure` [1] are open."""
     joint = load_default("bolted_joint").values
     bolts.CELLS_ACROSS_FLANGE = cells
-    shape = bolt_pattern(joint).pressure_distribution()
+    shape = get_bolted_frame(joint).pressure_distribution()
     x = shape.position[:, 0]
-    p = np.maximum(shape.preload_shape * (1.0 + UNEVENNESS * x / np.ptp(x)) - open_pressure, 0.0)
+    p = np.maximum(shape.preload_pressure_ratio * (1.0 + UNEVENNESS * x / np.ptp(x)) - open_pressure, 0.0)
     p *= PRELOAD * joint.n_bolts / joint.A_0 / (shape.area_share @ p)
     return ContactField(shape.area_share * joint.A_0, shape.position, p)
 
@@ -84,7 +84,7 @@ def print_reduction() -> None:
         for open_pressure in (0.0, OPEN_PRESSURE):
             field = nodal_field(cells, open_pressure)
             start = time.process_time()
-            shape = pressure_shape(joint, field, PRELOAD)
+            shape = normalise_pressure_field(joint, field, PRELOAD)
             joint_of_field = replace(joint, A_0=float(field.area.sum()))
             found = reduce_field(joint_of_field, shape, PRELOAD, preload_pressure)
             seconds = time.process_time() - start
@@ -301,13 +301,13 @@ class AllNodes:
 
     def force(self, displacement: float) -> float:
         """Force per area [Pa] at a displacement [m] from rest."""
-        law = self.spring.friction.foundation()
+        law = self.spring.friction_law.foundation()
         return float(self.share @ law.virgin_traction(self.approach, displacement))
 
     @property
     def gross_slip(self) -> float:
         """Displacement [m] of gross slip."""
-        law = self.spring.friction.foundation()
+        law = self.spring.friction_law.foundation()
         reach = np.max(self.approach) - self.spring.curve.displacement[0]
         return float(law.friction_coefficient * reach / law.stiffness_ratio)
 
@@ -318,7 +318,7 @@ class AllNodes:
 
     def loop_area(self, amplitude: float) -> float:
         """Loss per area [J/m2] of a loop of an amplitude [m]."""
-        law = self.spring.friction.foundation()
+        law = self.spring.friction_law.foundation()
         return float(self.share @ law.cycle_energies(self.approach, amplitude)[0])
 
 
@@ -332,7 +332,7 @@ def foundation_deviations(
     exact, patches = AllNodes.preloaded(spring, preload, moment), spring.patches
     approach = spring.curve.inverse(preload_pressure(spring.joint, patches, preload, moment))
     before = spring.curve.inverse(preload_pressure(spring.joint, patches, first * preload, first * moment))
-    law = spring.friction.foundation(before)
+    law = spring.friction_law.foundation(before)
 
     def follow(*increments: float) -> tuple[float, float]:
         force, loss = law.virgin_forces(approach.size), 0.0
@@ -358,16 +358,16 @@ def print_foundation() -> None:
     """Tables of the joint's patches and sliders."""
     loops = [f"loop {x:g}" for x in JOINT_AMPLITUDES]
     heading("", "law", "first", "force", *loops)
-    joints: dict[str, Bolted] = {
+    joints: dict[str, AnyBoltedJoint] = {
         "zhao2018": load_default("bolted_joint").values,
         "roughness": load_default("bolted_joint", "roughness").values,
     }
     for name, joint in joints.items():
-        spring = BoltedJointSpring.of(joint)
+        spring = BoltedJointSpring.for_joint(joint)
         for first in FIRST_PRELOADS:
             force, areas = largest_deviations(spring, first)
             row(name, f"{first:g}", f"{force:.2%}", *(f"{a:.1%}" for a in areas))
-    per_patch = spring.friction.foundation().slider_count
+    per_patch = spring.friction_law.foundation().slider_count
     print(f"{spring.patches.area_share.size} patches, {per_patch} sliders each")
 
     shape = pressure_distribution(load_default("bolted_joint").values.pattern)
@@ -377,7 +377,7 @@ def print_foundation() -> None:
         spring = default_spring()
         force, areas = largest_deviations(spring)
         poles = "{:.1%}, {:.1%}".format(*contacts.pole_deviations(shape, spring.patches))
-        per_patch = spring.friction.foundation().slider_count
+        per_patch = spring.friction_law.foundation().slider_count
         row(counts[0], per_patch, f"{force:.2%}", *(f"{x:.1%}" for x in areas), poles)
     set_slider_counts(*SLIDER_COUNTS[0])
     print_swings()
@@ -386,21 +386,21 @@ def print_foundation() -> None:
 def set_slider_counts(patches: int, below: int, above: int) -> None:
     """Set the number of patches and slider heights of the joints that are made from now on."""
     joint_module.MAX_PATCHES = patches
-    slider_module.HEIGHTS_BELOW, slider_module.HEIGHTS_ABOVE = below, above
-    joint_module.friction_patches_of.cache_clear()
+    slider_module.HEIGHTS_BELOW_REFERENCE, slider_module.HEIGHTS_ABOVE_REFERENCE = below, above
+    joint_module.find_friction_patches.cache_clear()
 
 
 def print_swings() -> None:
     """Shear force at constant displacement under an oscillating normal force, over the first shear force."""
     spring = default_spring()
-    share, reference = spring.patches.area_share, spring.friction.foundation()
+    share, reference = spring.patches.area_share, spring.friction_law.foundation()
     start = spring.curve.inverse(preload_pressure(spring.joint, spring.patches, SWING_PRELOAD, 0.0))
 
     def load(opening: float) -> float:
         return float(share @ spring.curve.derivatives(start - opening, 0)[0])
 
     opening = brentq(lambda x: load(x) - (1.0 - SWING) * load(0.0), 0.0, float(np.ptp(start)) + 1e-6)
-    low, sliders = start - opening, spring.friction.foundation(start)
+    low, sliders = start - opening, spring.friction_law.foundation(start)
     heading("", "shear over friction", "by the theorem", *(f"{n} cycles" for n in CYCLES))
     for part in (0.5, 0.7, 0.9):
         target = part * spring.joint.mu * load(0.0)
@@ -412,7 +412,7 @@ def print_swings() -> None:
         for cycle in range(1, CYCLES[-1] + 1):
             for before, after in ((start, low), (low, start)):
                 lowest = np.minimum(lowest, before)
-                law = spring.friction.foundation(start, lowest)
+                law = spring.friction_law.foundation(start, lowest)
                 moved = law.advance(moved.force, before, after, 0.0 * increment)
             if cycle in CYCLES:
                 found.append(share @ moved.traction[:, 0] / first)

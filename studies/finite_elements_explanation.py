@@ -72,7 +72,7 @@ def print_meshes(assembly: Assembly) -> None:
         start, cpu = time.perf_counter(), time.process_time()
         joint = BoltedContact.from_assembly(one)
         solution = joint.solve(interface_law(one), PRELOAD)
-        steps = solution.contact.newton_steps
+        steps = solution.contact_solution.newton_steps
         seconds, cpu = time.perf_counter() - start, time.process_time() - cpu
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
         unknowns = sum(body.unknown_count for body in joint.bodies)
@@ -81,7 +81,7 @@ def print_meshes(assembly: Assembly) -> None:
         start = time.process_time()
         steps = solution.solve_load_case(
             PRELOAD, DEFAULT_MOMENT_RATIO * one.max_moment(PRELOAD)
-        ).contact.newton_steps
+        ).contact_solution.newton_steps
         print(f"with a moment, from there: {time.process_time() - start:.1f} s, {steps} steps", flush=True)
     rows, _ = convergence.run_mesh_study(
         assembly, interface_law(assembly), PRELOAD, 0.0, convergence.refinement_series(MESH_COUNT)
@@ -142,7 +142,7 @@ def print_preloads(assembly: Assembly) -> None:
     first: Any = None
     for force in (9e3, 15e3, 24e3):
         solution = joint.solve(curve, force)
-        field = solution.field
+        field = solution.contact_field
         shape = field.pressure / (field.force / field.area.sum())
         first = shape if first is None else first
         change = np.sqrt(field.area @ (shape - first) ** 2 / (field.area @ first**2))

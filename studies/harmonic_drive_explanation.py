@@ -34,7 +34,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
 from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_SPEED
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from oracles.drive_friction import (
     JOINTS,
     SPEEDS,
@@ -60,7 +60,9 @@ LINES = ("K1", "K2", "K3", "T1", "T2")
 
 def catalogue_drive(name):
     """Parameter file of a catalogue drive."""
-    return NEW.make_joint(dict.fromkeys(option.name for option in NEW.options) | {"catalogue": name}).file
+    return NEW_JOINT_COMMAND.make_joint(
+        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": name}
+    ).file
 
 
 def compare_drives():
@@ -244,8 +246,10 @@ def scaling():
     for name, quantity, printed, found in leave_one_out():
         unit, digits = ("[mN m]", 0) if "torque" in quantity else ("[1]", 3)
         size = 1e3 if digits == 0 else 1.0
-        numbers = [f"{size * x:.{digits}f}" for x in (printed, found.value, found.low, found.high)]
-        mark = "" if found.low <= printed <= found.high else ", outside"
+        numbers = [
+            f"{size * x:.{digits}f}" for x in (printed, found.value, found.interval_low, found.interval_high)
+        ]
+        mark = "" if found.interval_low <= printed <= found.interval_high else ", outside"
         rows.append((name, f"{quantity} {unit}", *numbers[:2], f"{numbers[2]} to {numbers[3]}{mark}"))
     print_table(("drive", "of it", "printed", "from the others", "95 % interval"), rows)
 

@@ -23,7 +23,7 @@ from scipy.interpolate import BPoly
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.drive import kinematic_error
-from jointfmu.joints.harmonic_drive.friction import LIMIT_SHARES, friction_limits, viscous_torque
+from jointfmu.joints.harmonic_drive.friction import SLIDER_LIMIT_SHARES, friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted_torque, wind_up
 from jointfmu.joints.harmonic_drive.spring import SpringState as Spring
 from jointfmu.mechanics.sliders import UNIFORM_DEVIATION
@@ -49,9 +49,11 @@ class Drive:
     def __init__(self, friction, turns):
         given = OTHERS | (FRICTION if friction else {})
         self.law = HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **given))
-        self.brakes, self.turns = LIMIT_SHARES.size if friction else 0, turns
+        self.brakes, self.turns = SLIDER_LIMIT_SHARES.size if friction else 0, turns
         joint = self.law.joint
-        self.most = LAYER * max(friction_limits(joint, 0.0, joint.rated_torque)) * LIMIT_SHARES[: self.brakes]
+        self.most = (
+            LAYER * max(friction_limits(joint, 0.0, joint.rated_torque)) * SLIDER_LIMIT_SHARES[: self.brakes]
+        )
         self.held, self.place = np.zeros(self.law.hysteresis.friction_limit.size), 0.0
 
     def seen(self, x):
@@ -79,7 +81,7 @@ class Drive:
         tau = transmitted_torque(joint, x[:4], Spring(phi, load, 0.0, held.sum(), 0.0, slope))
         positive, negative = friction_limits(joint, x[1], tau)
         q = x[4 : 4 + self.brakes]
-        share = LIMIT_SHARES[: self.brakes]
+        share = SLIDER_LIMIT_SHARES[: self.brakes]
         braked = np.clip(q, -negative * share, positive * share)
         stuck = self.law.friction.stiffness[: self.brakes]
         rate = stuck * (x[1] - abs(x[1]) * (q - braked) / self.most) - (q - braked) / FORGETS
@@ -125,7 +127,7 @@ class Bolted:
     """The equations: states s, v, perhaps forces (2, n) of the sliders."""
 
     def __init__(self, kept):
-        spring = BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
+        spring = BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
         found = combine_nodes(spring, 9e3, 0.0)
         rows, self.kept, self.tight = found.force_table.rows, kept, found.preload_contact_force
         self.load = BPoly.from_derivatives(rows[:, 0], rows[:, 1:4])

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from common import heading, row, run_study
 from fmpy.fmi1 import FMICallException
-from jointfmu_fmu_src.native.build import build
+from jointfmu_fmu_src.native.build import build_native_fmu
 from jointfmu_tools.run.host import Instance, open_instance, unpack_fmu
 from numpy.typing import NDArray
 from oracles.joint_elements import (
@@ -88,7 +88,7 @@ def print_closed_paths(options: argparse.Namespace) -> None:
     joint = plate_joint("faces")
     unit = joint.load() / stiffnesses(joint)[0]
     with tempfile.TemporaryDirectory() as folder:
-        path = build("BoltedJoint", joint.file, Path(folder), "3")
+        path = build_native_fmu("BoltedJoint", joint.file, Path(folder), "3")
         print(f"FMU {path.stat().st_size / 1e3:.0f} kB; {options.paths} closed paths")
         heading("", "of the load", "steps", "refused", "least work over heat")
         with unpack_fmu(path) as (unpacked, description):

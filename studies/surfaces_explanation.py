@@ -60,8 +60,8 @@ def gaussian(points, D, G, rng, areal):
 def errors(heights, direction, D, G):
     """{method or "best": (error of D, D inside its interval, error of ln G, G inside)}; maps: G_s."""
     found = identify([heights])
-    results = {m: found.select_best(direction, m) for m in ("structure", "psd")} | {
-        "best": found.select_best(direction)
+    results = {m: found.select_best_result(direction, m) for m in ("structure", "psd")} | {
+        "best": found.select_best_result(direction)
     }
     row = {}
     for name, one in results.items():

@@ -108,7 +108,7 @@ class TensileJoint:
     def of(cls, joint: PlateJoint) -> "TensileJoint":
         """Load the joint step by step until it is open."""
         spring, preload, bolt = joint.spring, joint.preload, joint.file.values.bolt_stiffness
-        interface_alone = BoltedJointSpring.of(joint.rigid.values)
+        interface_alone = BoltedJointSpring.for_joint(joint.rigid.values)
         stiff = [
             float(each.evaluate(preload, 0.0, (0.0,) * 3, (0.0,) * 3)["K_zz"])
             for each in (spring, interface_alone)
@@ -180,12 +180,12 @@ def reduction_size(modes: int, count: int) -> Iterator[None]:
     try:
         for module, name, _ in kept:
             setattr(module, name, count if name == "MAX_PATCHES" else modes)
-        joint_module.friction_patches_of.cache_clear()
+        joint_module.find_friction_patches.cache_clear()
         yield
     finally:
         for module, name, value in kept:
             setattr(module, name, value)
-        joint_module.friction_patches_of.cache_clear()
+        joint_module.find_friction_patches.cache_clear()
 
 
 def friction_deviations(
@@ -226,9 +226,9 @@ def compare_friction(name: str, variants: bool, refinement: float) -> None:
             if label == "as it is":
                 spring = joint.spring
             else:
-                rigid = BoltedJointSpring.of(joint.rigid.values)
+                rigid = BoltedJointSpring.for_joint(joint.rigid.values)
                 made = reduction.reduce_bodies(joint.linear, rigid, joint.normal, joint.preload)
-                spring = BoltedJointSpring.of(set_elastic_bodies(joint.rigid, made, attached).values)
+                spring = BoltedJointSpring.for_joint(set_elastic_bodies(joint.rigid, made, attached).values)
             found = {
                 key: follow_loads(spring, joint.preload, elements.motion, list(loads))
                 for key, loads in sequences.items()
@@ -274,7 +274,7 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
     yield "*SURFACE INTERACTION, NAME=LAW\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
     yield (
         f"{normal * 1e-9:.12g}\n*FRICTION\n{mu:.12g}, "
-        f"{normal * spring.friction.foundation().stiffness_ratio * 1e-9:.12g}"
+        f"{normal * spring.friction_law.foundation().stiffness_ratio * 1e-9:.12g}"
     )
     yield "*CONTACT PAIR, INTERACTION=LAW, TYPE=SURFACE TO SURFACE\nFACE2, FACE1\n*NSET, NSET=MOVED"
     yield from (f"{starts[1] + i // 3 + 1}," for i in joint.attachment_unknowns[1] if i % 3 == 0)
@@ -308,9 +308,9 @@ def compare_with_calculix(refinement: float, top: float) -> tuple[Array, dict[st
     """Motions [m], and forces [N] of CalculiX, of friction at every element and of the reduced joint."""
     lap = Lap.of(refinement)
     shear, spring, linear = lap.linear(LAP_LENGTH)
-    normal, friction = shear / spring.friction.foundation().stiffness_ratio, lap.values.mu * LAP_LOAD
-    bodies = replace(lap.bodies, interface=patches(lap.bodies.interface))
-    at = bodies.interface.quadrature_area
+    normal, friction = shear / spring.friction_law.foundation().stiffness_ratio, lap.values.mu * LAP_LOAD
+    bodies = replace(lap.bodies, interface=patches(lap.bodies.contact_interface))
+    at = bodies.contact_interface.quadrature_area
     elements = FrictionElements.of(
         bodies, np.full(at.size, LAP_LOAD / at.sum()), spring, friction, np.eye(6)[0]
     )

@@ -22,11 +22,11 @@ from filelock import FileLock
 from fmpy import platform_tuple
 from hypothesis import settings
 from jointfmu_fmu_src.native.compiled.cache import (
-    COMPILER_CACHE_VARIABLE,
+    COMPILER_CACHE_ENVIRONMENT_VARIABLE,
     compiled_model_folder,
-    compiler_cache,
+    compiler_cache_folder,
 )
-from jointfmu_fmu_src.native.compiled.compiler import TARGETS, compile_libraries
+from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries
 from jointfmu_tools.run.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=60, derandomize=True)
@@ -41,10 +41,10 @@ sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
 # tests without kept parts compile with a warm cache
-os.environ.setdefault(COMPILER_CACHE_VARIABLE, str(compiler_cache()))
+os.environ.setdefault(COMPILER_CACHE_ENVIRONMENT_VARIABLE, str(compiler_cache_folder()))
 
 HERE = Path(__file__).parent
-RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
+RELEASED = ("-target", ZIG_TARGETS[platform_tuple], "-O2", "-s")
 """Options of zig as FMUs are linked here. Others let it compile its part of the C runtime first, 4 s with
 optimization, 20 s without."""
 SLOW_FIXTURES = frozenset({"fmus", "native", "system_files", "elastic_joint", "tutorial", "site"})
@@ -271,11 +271,11 @@ def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
-    from jointfmu_tools.pages.report import course
+    from jointfmu_tools.pages.report import load_history
     from jointfmu_tools.run.ramps.loops import CyclicPath
 
-    monkeypatch.setattr(course, "_RAMP_POINTS", 11)
-    monkeypatch.setattr(course, "_LOAD_CYCLE", CyclicPath(points=8))
+    monkeypatch.setattr(load_history, "_RAMP_POINTS", 11)
+    monkeypatch.setattr(load_history, "_LOAD_CYCLE", CyclicPath(points=8))
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -346,27 +346,27 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with all FMUs of the default parameters."""
-    from jointfmu_fmu_src.building import build
+    from jointfmu_fmu_src.building import build_fmus
 
-    return made_once(tmp_path_factory, "fmus", lambda out: build([], ["python"], None, out)) / "python"
+    return made_once(tmp_path_factory, "fmus", lambda out: build_fmus([], ["python"], None, out)) / "python"
 
 
 @pytest.fixture(scope="session")
 def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with fmi2/NAME.fmu and fmi3/NAME.fmu of the default parameters."""
-    from jointfmu_fmu_src.building import build
+    from jointfmu_fmu_src.building import build_fmus
 
-    return made_once(tmp_path_factory, "native", lambda out: build([], ["fmi2", "fmi3"], None, out))
+    return made_once(tmp_path_factory, "native", lambda out: build_fmus([], ["fmi2", "fmi3"], None, out))
 
 
 @pytest.fixture(scope="session")
 def system_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with what `jointfmu build --systems` makes, and the drive with torque in."""
-    from jointfmu_fmu_src.building import build
+    from jointfmu_fmu_src.building import build_fmus
     from jointfmu_tools import cli
 
     def make(out: Path) -> None:
-        build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+        build_fmus(["HarmonicDriveCompliance"], ["fmi2"], None, out)
         assert cli.main(["build", "--systems", "--out", str(out)]) == 0
 
     return made_once(tmp_path_factory, "systems", make)
@@ -378,7 +378,7 @@ def elastic_joint(tmp_path_factory: pytest.TempPathFactory, solved_once: None) -
 
     The FMUs are for this machine alone. Finite elements compute the sides: mark the test with needs("gmsh").
     """
-    from jointfmu_fmu_src.building import build
+    from jointfmu_fmu_src.building import build_fmus
     from jointfmu_tools import cli
 
     from jointfmu.parameters import load_parameter_file
@@ -391,7 +391,7 @@ def elastic_joint(tmp_path_factory: pytest.TempPathFactory, solved_once: None) -
         file = out / "joint.toml"
         assert cli.main(["new", "bolted-joint", *words, "--out", str(file), "--json"]) == 0
         with here_alone():
-            build(["BoltedJoint"], ["fmi2", "fmi3"], load_parameter_file(file), out)
+            build_fmus(["BoltedJoint"], ["fmi2", "fmi3"], load_parameter_file(file), out)
 
     return made_once(tmp_path_factory, "elastic-joint", make)
 
@@ -415,12 +415,12 @@ def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
 @pytest.fixture
 def fixed(tmp_path: Path, fmu: Callable[..., Fmu]) -> Callable[..., Fmu]:
     """The same with parameters that are fixed."""
-    from jointfmu_fmu_src.building import build
+    from jointfmu_fmu_src.building import build_fmus
 
     def instance(name: str) -> Fmu:
         path = tmp_path / "python" / f"{name}.fmu"
         if not path.exists():
-            build([name], ["python"], None, tmp_path, "fixed")
+            build_fmus([name], ["python"], None, tmp_path, "fixed")
         return fmu(name, folder=path.parent)
 
     return instance

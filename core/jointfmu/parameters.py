@@ -33,7 +33,7 @@ from .quantity import (
     replace_values,
 )
 
-T = TypeVar("T")
+EntryValue = TypeVar("T")
 
 SCHEMA_VERSION = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
@@ -104,7 +104,7 @@ class ParameterFile:
 
         A new height h of the law removes the heights of the surfaces from which h was computed.
         """
-        removed = {*self.roughness} if any(map(is_height, new_values)) else set[str]()
+        removed = {*self.roughness} if any(map(is_combined_height, new_values)) else set[str]()
         removed_names = {self.heights_prefix + name for name in removed}
         return replace(
             self,
@@ -129,7 +129,9 @@ class ParameterFile:
         origins = _drop_names(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
         sources = _drop_names(replaced_names, self.sources) | dict.fromkeys(new_names, source)
         law_height = {
-            name: roughness.combined_height(all_heights) for name in self.values_by_name if is_height(name)
+            name: roughness.combined_height(all_heights)
+            for name in self.values_by_name
+            if is_combined_height(name)
         }
         return replace(
             self,
@@ -142,7 +144,7 @@ class ParameterFile:
         )
 
 
-def load_parameter_file(path: str | Path, joint: str | None = None) -> ParameterFile:
+def load_parameter_file(path: str | Path, joint_name: str | None = None) -> ParameterFile:
     """Read and check a parameter file.
 
     joint_name : kind of joint that the file must have; None: any
@@ -156,8 +158,8 @@ def load_parameter_file(path: str | Path, joint: str | None = None) -> Parameter
     stated = document.get("joint")
     if not isinstance(stated, str) or stated not in KINDS:
         raise ValueError(f"{path}: joint = {stated!r}, allowed are {', '.join(KINDS)}")
-    if joint is not None and stated != joint:
-        raise ValueError(f"{path}: joint = {stated!r}, expected a parameter file of a {joint!r}")
+    if joint_name is not None and stated != joint_name:
+        raise ValueError(f"{path}: joint = {stated!r}, expected a parameter file of a {joint_name!r}")
     laws = KINDS[stated].laws
     law = document.get("law", next(iter(laws)))
     if not isinstance(law, str) or law not in laws:
@@ -177,7 +179,7 @@ def load_parameter_file(path: str | Path, joint: str | None = None) -> Parameter
     try:
         inputs = _check_start_values(stated, input_values)
         heights = roughness.check_heights(surface_heights, prefix)
-        of_law = _law_height(declared, values, heights)
+        of_law = _compute_law_height(declared, values, heights)
         parameters = build_parameter_set(cls, values | of_law)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
@@ -191,12 +193,14 @@ def load_parameter_file(path: str | Path, joint: str | None = None) -> Parameter
     )
 
 
-def declared_entries(joint: str, cls: type) -> dict[str, Field[Any]]:
+def declared_entries(joint_name: str, cls: type) -> dict[str, Field[Any]]:
     """{structured name: field} of all entries that a parameter file with the parameter set `cls` may have."""
-    return dict(flat_fields(cls)) | _input_fields(joint) | _roughness_fields(_heights_prefix(cls))
+    return dict(flat_fields(cls)) | _input_fields(joint_name) | _roughness_fields(_heights_prefix(cls))
 
 
-def _drop_names(removed_names: Collection[str], values_by_name: Mapping[str, T]) -> dict[str, T]:
+def _drop_names(
+    removed_names: Collection[str], values_by_name: Mapping[str, EntryValue]
+) -> dict[str, EntryValue]:
     return {name: value for name, value in values_by_name.items() if name not in removed_names}
 
 
@@ -206,7 +210,7 @@ def _height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, st
     return f"from {', '.join(names)}: {'; '.join(dict.fromkeys(sources[name] for name in names))}"
 
 
-def _law_height(
+def _compute_law_height(
     declared_fields: Mapping[str, object], entry_values: Mapping[str, Any], heights: Mapping[str, float]
 ) -> dict[str, float]:
     """Height h [m] of the law, {name: h}, from the heights of the surfaces; empty if the file states h.
@@ -215,7 +219,7 @@ def _law_height(
     by more than RELATIVE_HEIGHT_TOLERANCE.
     """
     stated = roughness.combined_height(heights)
-    name = next((name for name in declared_fields if is_height(name)), None)
+    name = next((name for name in declared_fields if is_combined_height(name)), None)
     if stated is None or name is None:
         return {}
     if name not in entry_values:
@@ -329,18 +333,22 @@ def list_entries(sections: Mapping[str, object], prefix: str = "") -> list[tuple
     return items
 
 
-def _input_fields(joint: str) -> dict[str, Field[Any]]:
+def _input_fields(joint_name: str) -> dict[str, Field[Any]]:
     """{`inputs.NAME`: field} of the inputs of all models of a joint."""
-    inputs = (v for model in KINDS[joint].models for v in model.inputs)
+    inputs = (v for model in KINDS[joint_name].models for v in model.inputs)
     return {_INPUTS_PREFIX + v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in inputs}
 
 
 def _heights_prefix(cls: type) -> str:
     """Prefix of the names of the surface heights for a parameter set class, see `_ROUGHNESS_PREFIX`."""
-    return _ROUGHNESS_PREFIX if any(is_height(name) for name, _ in flat_fields(cls)) else _COMPARISON_PREFIX
+    return (
+        _ROUGHNESS_PREFIX
+        if any(is_combined_height(name) for name, _ in flat_fields(cls))
+        else _COMPARISON_PREFIX
+    )
 
 
-def is_height(parameter_name: str) -> bool:
+def is_combined_height(parameter_name: str) -> bool:
     """Whether a parameter of a law is the combined rms height h of both surfaces."""
     return parameter_name.split(".")[-1] == "h" and not parameter_name.startswith(
         (_ROUGHNESS_PREFIX, _COMPARISON_PREFIX)
@@ -361,13 +369,13 @@ def _pop_section(values_by_name: dict[str, Any], section_prefix: str) -> dict[st
     }
 
 
-def _check_start_values(joint: str, start_values: Mapping[str, Any]) -> dict[str, float]:
+def _check_start_values(joint_name: str, start_values: Mapping[str, Any]) -> dict[str, float]:
     """Check start values, {input: value}; return them as floats.
 
     Raises ValueError, one line, naming every unknown name and every value outside its interval.
     """
     named = {_INPUTS_PREFIX + name: value for name, value in start_values.items()}
-    if texts := find_problems(named, _input_fields(joint)):
+    if texts := find_problems(named, _input_fields(joint_name)):
         raise ValueError("; ".join(texts))
     return {name: float(value) for name, value in start_values.items()}
 
@@ -414,6 +422,6 @@ def _format_toml(value: Any) -> str:
     return format_toml_string(value) if isinstance(value, str) else repr(float(value))
 
 
-def load_default(joint: str, law: str | None = None) -> ParameterFile:
+def load_default(joint_name: str, law_name: str | None = None) -> ParameterFile:
     """Read the default parameter file of a joint; `law_name` None: with the joint's first law."""
-    return load_parameter_file(KINDS[joint].default_file(law), joint)
+    return load_parameter_file(KINDS[joint_name].default_file(law_name), joint_name)

@@ -13,19 +13,21 @@ from itertools import islice
 from threading import Event, Lock, RLock, Thread
 from typing import Any, TypeVar
 
-J = TypeVar("J")
-T = TypeVar("T")
-MAX_ATTEMPTS = 4
+Job = TypeVar("J")
+Result = TypeVar("T")
+MAX_JOB_ATTEMPTS = 4
 """Largest number of attempts [1] for a job whose process dies."""
 STATUS_DELAY = 2.0
 """Time [s] after which a command prints a status line."""
-_status: dict[str, Any] = {"step": "", "bars": 0}
+_status_line: dict[str, Any] = {"step": "", "bars": 0}
 """Text of the current step of the work, and number of progress bars on the screen."""
-_START_LOCK = Lock()
+_PROCESS_START_LOCK = Lock()
 """Lock held while a process starts: its start redirects standard error, which all threads share."""
 
 
-def track_progress(items: Iterable[T], bar_label: str, total: int | None = None) -> Iterator[T]:
+def track_progress(
+    items: Iterable[Result], bar_label: str, item_count: int | None = None
+) -> Iterator[Result]:
     """Yield the items; show a progress bar if tqdm (extra `build`) is installed and stderr is a terminal."""
     try:
         from tqdm import tqdm
@@ -33,16 +35,16 @@ def track_progress(items: Iterable[T], bar_label: str, total: int | None = None)
         yield from items
         return
     tqdm.set_lock(RLock())  # tqdm's default lock is shared by processes, and left behind by killed ones
-    _status["bars"] += 1
+    _status_line["bars"] += 1
     try:
-        yield from tqdm(items, desc=bar_label, total=total, file=sys.stderr, disable=None, leave=False)
+        yield from tqdm(items, desc=bar_label, total=item_count, file=sys.stderr, disable=None, leave=False)
     finally:
-        _status["bars"] -= 1
+        _status_line["bars"] -= 1
 
 
-def set_step(step_text: str) -> None:
+def set_status_text(status_text: str) -> None:
     """Set the status text that `show_status` prints: the current step of the work."""
-    _status["step"] = step_text
+    _status_line["step"] = status_text
 
 
 @contextmanager
@@ -52,7 +54,7 @@ def show_status(command_name: str) -> Iterator[None]:
         yield
         return
     out, finished, began = sys.stdout, Event(), time.monotonic()
-    set_step("")
+    set_status_text("")
 
     def clear_status() -> None:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
@@ -60,8 +62,8 @@ def show_status(command_name: str) -> Iterator[None]:
     def print_status() -> None:
         while not finished.wait(0.5):
             elapsed = time.monotonic() - began
-            if elapsed > STATUS_DELAY and not _status["bars"]:
-                status = ", ".join(filter(None, (_status["step"], f"{elapsed:.0f} s")))
+            if elapsed > STATUS_DELAY and not _status_line["bars"]:
+                status = ", ".join(filter(None, (_status_line["step"], f"{elapsed:.0f} s")))
                 print(f"\r{command_name}: {status}\x1b[K", end="", file=sys.stderr, flush=True)
 
     shower = Thread(target=print_status, daemon=True)
@@ -80,8 +82,8 @@ def show_status(command_name: str) -> Iterator[None]:
 class _StatusClearingStream:
     """Output stream that clears the status line before it writes."""
 
-    def __init__(self, stream: Any, clear: Callable[[], None]) -> None:
-        self._stream, self._clear = stream, clear
+    def __init__(self, stream: Any, clear_status: Callable[[], None]) -> None:
+        self._stream, self._clear = stream, clear_status
 
     def write(self, text: str) -> int:
         """Clear the status line and write; the line is printed again below the text while work continues."""
@@ -93,8 +95,8 @@ class _StatusClearingStream:
 
 
 def map_jobs(
-    pool: Executor | None, function: Callable[..., T], bar_label: str, *jobs: Sequence[object]
-) -> list[T]:
+    pool: Executor | None, job_function: Callable[..., Result], bar_label: str, *jobs: Sequence[object]
+) -> list[Result]:
     """Apply a function to all jobs; return the results in the order of the jobs. Shows a progress bar.
 
     pool : processes that share the jobs; None: this process does them
@@ -102,10 +104,10 @@ def map_jobs(
     """
     count = len(jobs[0])
     run = pool.map if pool and count > 1 else map
-    return list(track_progress(run(function, *jobs), bar_label, count))
+    return list(track_progress(run(job_function, *jobs), bar_label, count))
 
 
-class _Pool(ProcessPoolExecutor):
+class _WorkerPool(ProcessPoolExecutor):
     """Process pool with the start method spawn; it communicates by pipes, without network ports."""
 
     def __init__(self, process_count: int) -> None:
@@ -126,7 +128,7 @@ def worker_processes(process_count: int | None = None) -> Iterator[Executor]:
     a guard, `if __name__ == "__main__"`.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # per process: more threads would only wait
-    pool = _Pool(process_count or os.cpu_count() or 1)
+    pool = _WorkerPool(process_count or os.cpu_count() or 1)
     try:
         yield pool
     except BaseException:
@@ -138,8 +140,8 @@ def worker_processes(process_count: int | None = None) -> Iterator[Executor]:
 
 
 def run_jobs(
-    function: Callable[[J], T], jobs: Iterable[J], process_count: int | None = None
-) -> Generator[tuple[J, T | None]]:
+    job_function: Callable[[Job], Result], jobs: Iterable[Job], process_count: int | None = None
+) -> Generator[tuple[Job, Result | None]]:
     """Run a function for all jobs in several processes; yield (job, result) in the order of completion.
 
     Each process does one job at a time, so the job of a process that died is known. This job is repeated; its
@@ -148,12 +150,12 @@ def run_jobs(
     """
     waiting = iter(jobs)
     with ExitStack() as entered:
-        running: dict[Future[T], tuple[J, int, Executor]] = {}
+        running: dict[Future[Result], tuple[Job, int, Executor]] = {}
 
-        def submit_job(job: J, attempt: int, pool: Executor | None) -> None:
+        def submit_job(job: Job, attempt: int, pool: Executor | None) -> None:
             try:
                 pool = pool or entered.enter_context(worker_processes(1))
-                running[pool.submit(function, job)] = job, attempt, pool
+                running[pool.submit(job_function, job)] = job, attempt, pool
             except BrokenProcessPool:  # its process died after its last job
                 submit_job(job, attempt, None)
 
@@ -163,7 +165,7 @@ def run_jobs(
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 job, attempt, pool = running.pop(future)
                 died = isinstance(future.exception(), BrokenProcessPool)
-                if died and attempt < MAX_ATTEMPTS:
+                if died and attempt < MAX_JOB_ATTEMPTS:
                     submit_job(job, attempt + 1, None)
                     continue
                 for next_job in islice(waiting, 1):
@@ -177,7 +179,7 @@ def _quiet_start_context() -> Iterator[None]:
 
     A terminal sends Ctrl-C to all processes of a program, also to those that have just started.
     """
-    with _START_LOCK, ExitStack() as cleanup:
+    with _PROCESS_START_LOCK, ExitStack() as cleanup:
         if sys.platform != "win32":  # on Windows Ctrl-C acts until `_set_up_worker` ignores it
             old_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             cleanup.callback(signal.pthread_sigmask, signal.SIG_SETMASK, old_mask)

@@ -16,7 +16,7 @@ from .terminals import Terminal
 if TYPE_CHECKING:
     from .native import NativeDefinition
 
-Drawing = Callable[..., Sequence[chart.Panel]]
+ChartDrawing = Callable[..., Sequence[chart.Panel]]
 """Function (tabulated joint, end of the load ramp) -> panels of a chart, side by side."""
 
 
@@ -45,17 +45,17 @@ class FmuParts:
     data: DataConversion = DataConversion()
     terminals: Mapping[str, tuple[Terminal, ...]] = field(default_factory=dict)
     panels: Mapping[str, tuple[RampPanel, ...]] = field(default_factory=dict)
-    drawings: Mapping[str, Mapping[str, Drawing]] = field(default_factory=dict)
+    drawings: Mapping[str, Mapping[str, ChartDrawing]] = field(default_factory=dict)
 
 
-def native_loader(package: str) -> "Callable[[], NativeDefinition]":
+def native_loader(package_name: str) -> "Callable[[], NativeDefinition]":
     """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
 
-    def load() -> "NativeDefinition":
-        part: NativeDefinition = import_module(f"{package}.native").NATIVE_PART
+    def load_definition() -> "NativeDefinition":
+        part: NativeDefinition = import_module(f"{package_name}.native").NATIVE_PART
         return part
 
-    return load
+    return load_definition
 
 
 def load_equations() -> "NativeDefinition":

@@ -5,9 +5,9 @@ import re
 from collections.abc import Iterable
 
 
-def format_array(declaration: str, rows: Iterable[str]) -> str:
+def format_array(declaration: str, row_texts: Iterable[str]) -> str:
     """Define a C array with one row per line."""
-    return f"{declaration} = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
+    return f"{declaration} = {{\n" + "".join(f"    {row},\n" for row in row_texts) + "};\n"
 
 
 def format_number(value: float) -> str:
@@ -19,7 +19,7 @@ def format_number(value: float) -> str:
 
 def format_string(text: str) -> str:
     """C string literal in ASCII without trigraphs; other characters as octal escapes of UTF-8 bytes."""
-    return '"' + re.sub(rb'[^ -~]|["\\]|(?<=\?)\?', _escape, text.encode()).decode("ascii") + '"'
+    return '"' + re.sub(rb'[^ -~]|["\\]|(?<=\?)\?', _escape_bytes, text.encode()).decode("ascii") + '"'
 
 
 def escape_comment(text: str) -> str:
@@ -28,6 +28,6 @@ def escape_comment(text: str) -> str:
     return re.sub(r"\*(?=/)|/(?=\*)|\?(?=\?)", r"\g<0> ", plain)
 
 
-def _escape(match: re.Match[bytes]) -> bytes:
-    character = match[0]
+def _escape_bytes(bytes_match: re.Match[bytes]) -> bytes:
+    character = bytes_match[0]
     return b"\\" + character if character in b'"\\?' else b"\\%03o" % ord(character)

@@ -21,7 +21,7 @@ Symbols = Sequence[Number]
 
 
 @dataclass(frozen=True, slots=True)
-class Function:
+class CFunction:
     """C function name(x, c) -> y: arguments x, constants c, results y; `doc` names x and y.
 
     argument_symbols, result_expressions : x, and y as expressions of x and c
@@ -36,7 +36,7 @@ class Function:
 
 
 @dataclass(slots=True)
-class Graph:
+class FunctionGraph:
     """C functions of an FMU as expression graphs, and the parameters on which they depend.
 
     parameter_symbols : {name: symbol} of the parameters: FMU variables in their order, then data values
@@ -48,8 +48,8 @@ class Graph:
 
     parameter_symbols: dict[str, ca.SX]
     joint: Any
-    limits: list[ParameterLimit]
-    functions: list[Function] = field(default_factory=list)
+    parameter_limits: list[ParameterLimit]
+    functions: list[CFunction] = field(default_factory=list)
     constants: list[ca.SX] = field(default_factory=list)
     constant_symbols: list[ca.SX] = field(default_factory=list)
 
@@ -63,7 +63,7 @@ class Graph:
     ) -> None:
         """Add a C function to the graph."""
         self.functions.append(
-            Function(
+            CFunction(
                 name, doc, argument_symbols, [ca.SX(value) for value in result_expressions], called_in_loops
             )
         )
@@ -126,8 +126,11 @@ class Graph:
 
 
 def build_graph(
-    model: Model, split: ParameterSplit, add_functions: Callable[["Graph", Model], None], is_tabulated: bool
-) -> Graph:
+    model: Model,
+    parameter_split: ParameterSplit,
+    add_functions: Callable[["FunctionGraph", Model], None],
+    is_tabulated: bool,
+) -> FunctionGraph:
     """Build the C functions of an FMU. FMU variables and data are symbols; other parameters are numbers.
 
     add_functions : adds the functions of the joint
@@ -136,9 +139,11 @@ def build_graph(
     previous_mode = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
-        theta = {name: ca.SX.sym(name) for name in (*split.variable_names, *split.data_values)}
-        joint = build_parameter_set(split.parameter_class, {**split.code_values, **theta})
-        g = Graph(theta, joint, find_limits(joint))
+        theta = {
+            name: ca.SX.sym(name) for name in (*parameter_split.variable_names, *parameter_split.data_values)
+        }
+        joint = build_parameter_set(parameter_split.parameter_class, {**parameter_split.code_values, **theta})
+        g = FunctionGraph(theta, joint, find_limits(joint))
         add_functions(g, model)
         if is_tabulated:
             _add_limit_functions(g, model)
@@ -148,9 +153,9 @@ def build_graph(
     return g
 
 
-def make_symbols(name: str, count: int) -> list[ca.SX]:
+def make_symbols(symbol_prefix: str, symbol_count: int) -> list[ca.SX]:
     """Make numbered symbols: `PREFIX0`, `PREFIX1`, ..."""
-    return [ca.SX.sym(f"{name}{i}") for i in range(count)]
+    return [ca.SX.sym(f"{symbol_prefix}{i}") for i in range(symbol_count)]
 
 
 def find_limits(joint: object) -> list[ParameterLimit]:
@@ -159,9 +164,11 @@ def find_limits(joint: object) -> list[ParameterLimit]:
     return [*own, *(joint.find_table_limits() if hasattr(joint, "find_table_limits") else [])]
 
 
-def _add_limit_functions(function_graph: Graph, model: Model) -> None:
+def _add_limit_functions(function_graph: FunctionGraph, model: Model) -> None:
     """Add the functions of the parameter limits and of the limits beyond which warnings are logged."""
-    ends = [end for limit in function_graph.limits for end in (limit.interval.low, limit.interval.high)]
+    ends = [
+        end for limit in function_graph.parameter_limits for end in (limit.interval.low, limit.interval.high)
+    ]
     function_graph.add_function(
         "parameter_limit_bounds",
         "-> lower, upper bound of each parameter that other parameters limit",
@@ -184,49 +191,49 @@ class _CompletedTerm:
     term: SmoothTerm
 
     @property
-    def lower(self) -> Number:
-        return self.term.lower
+    def lower_log_area(self) -> Number:
+        return self.term.lower_log_area
 
     @property
-    def upper(self) -> Number:
-        return self.term.upper
+    def upper_log_area(self) -> Number:
+        return self.term.upper_log_area
 
     def spot_value(self, log_area: Number) -> float:
         return 0.0
 
     def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
-        return self.term.integral(size_exponent, self.term.upper)
+        return self.term.integral(size_exponent, self.term.upper_log_area)
 
 
-def _split_regimes(spots: SpotDistribution) -> tuple[list[Number], list[SpotDistribution]]:
+def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], list[SpotDistribution]]:
     """Log-areas at which a term with Gauss-Legendre quadrature begins or ends, and the law between them.
 
     Between two of these log-areas only the active terms need their quadrature.
     """
-    terms = [t for row in spots.regime_terms.values() for t in row if isinstance(t, SmoothTerm)]
+    terms = [t for row in spot_distribution.regime_terms.values() for t in row if isinstance(t, SmoothTerm)]
     ends: list[Number] = []
     for t in terms:
-        for end in (t.lower, t.upper):
+        for end in (t.lower_log_area, t.upper_log_area):
             if not any(end is known for known in ends):
                 ends.append(end)
 
-    def find_end_index(end: Number) -> int:
-        return next(i for i, known in enumerate(ends) if known is end)
+    def find_bound_index(bound_log_area: Number) -> int:
+        return next(i for i, known in enumerate(ends) if known is bound_log_area)
 
-    def active_terms(term: RegimeTerm, regime_index: int) -> list[RegimeTerm]:
+    def split_term(term: RegimeTerm, regime_index: int) -> list[RegimeTerm]:
         if not isinstance(term, SmoothTerm):
             return [term]
-        if find_end_index(term.upper) < regime_index:
+        if find_bound_index(term.upper_log_area) < regime_index:
             return [_CompletedTerm(term)]
-        return [term] if find_end_index(term.lower) < regime_index else []
+        return [term] if find_bound_index(term.lower_log_area) < regime_index else []
 
     zero = PowerTerm(0.0, 1.0)
     return ends, [
         replace(
-            spots,
+            spot_distribution,
             regime_terms={
-                name: tuple(active for term in row for active in active_terms(term, k)) or (zero,)
-                for name, row in spots.regime_terms.items()
+                name: tuple(active for term in row for active in split_term(term, k)) or (zero,)
+                for name, row in spot_distribution.regime_terms.items()
             },
         )
         for k in range(len(ends) + 1)
@@ -234,7 +241,7 @@ def _split_regimes(spots: SpotDistribution) -> tuple[list[Number], list[SpotDist
 
 
 def add_law_functions(
-    function_graph: Graph, law: Any, table_names: Sequence[str], state_functions: Any
+    function_graph: FunctionGraph, law: Any, table_names: Sequence[str], state_functions: Any
 ) -> None:
     """Add the functions of an interface law that its inversion, its tables and the outputs need.
 
@@ -261,10 +268,12 @@ def add_law_functions(
     )
     for k, regime in enumerate(regimes):
         function_graph.add_function(
-            f"law_load_{k}", "log-area u -> ln F, d(ln F)/du", [u], regime.log_total("load", u)
+            f"law_load_{k}", "log-area u -> ln F, d(ln F)/du", [u], regime.log_sum_over_spots("load", u)
         )
         rows = [
-            f(name, u) for name in ("load", *table_names) for f in (regime.total, regime.total_derivative)
+            f(name, u)
+            for name in ("load", *table_names)
+            for f in (regime.sum_over_spots, regime.sum_derivative)
         ]
         doc = f"log-area u -> sums over spots, each with its derivative by u: load, {', '.join(table_names)}"
         function_graph.add_function(f"law_totals_{k}", doc, [u], rows)
@@ -275,16 +284,20 @@ def add_law_functions(
         function_graph.add_function(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
 
 
-def _load_curvature(spots: SpotDistribution, largest_log_area: Number) -> Number:
+def _load_curvature(spot_distribution: SpotDistribution, largest_log_area: Number) -> Number:
     """Second derivative of the load less m times the first, F'' - m F', with respect to the log-area u.
 
     It follows from the largest spot alone, without a sum over spots.
     """
-    largest = sum(term.spot_value(largest_log_area) for term in spots.regime_terms["load"])
-    return spots.size_exponent * spots.size_prefactor * ca.jacobian(largest, largest_log_area)
+    largest = sum(term.spot_value(largest_log_area) for term in spot_distribution.regime_terms["load"])
+    return (
+        spot_distribution.size_exponent
+        * spot_distribution.size_prefactor
+        * ca.jacobian(largest, largest_log_area)
+    )
 
 
-def add_closing_function(function_graph: Graph) -> None:
+def add_closing_function(function_graph: FunctionGraph) -> None:
     """Add the function of contact closing, for joints with a curve of pressure against approach."""
     p, k, bend, z = make_symbols("x", 4)
     doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, p, k, dk/dx at z"

@@ -13,7 +13,7 @@ from jointfmu.mechanics import curve
 from jointfmu.mechanics.history_layout import HistoryLayout
 
 from .c_text import format_number
-from .graph import Graph
+from .graph import FunctionGraph
 
 CURVE_FILES = ("tabulated_joint", "curve")
 """Shared C files of a joint with a tabulated curve."""
@@ -24,7 +24,7 @@ APPROACH_FILES = (*INVERSION_FILES, "approach")
 
 
 @dataclass(frozen=True, slots=True)
-class Definitions:
+class CDefinitions:
     """Constants of the C code.
 
     integer_constants : {name: integer}, written as an enum
@@ -32,30 +32,33 @@ class Definitions:
     real_arrays       : {declaration: rows} of arrays of double
     """
 
-    counts: Mapping[str, int] = field(default_factory=dict)
-    macros: Mapping[str, float] = field(default_factory=dict)
-    arrays: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    integer_constants: Mapping[str, int] = field(default_factory=dict)
+    real_constants: Mapping[str, float] = field(default_factory=dict)
+    real_arrays: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
-    def __or__(self, addition: "Definitions") -> "Definitions":
+    def __or__(self, other_definitions: "CDefinitions") -> "CDefinitions":
         """Constants of both; ValueError if they give one name two values."""
-        first, second = ({**each.counts, **each.macros, **each.arrays} for each in (self, addition))
+        first, second = (
+            {**each.integer_constants, **each.real_constants, **each.real_arrays}
+            for each in (self, other_definitions)
+        )
         if clashes := [name for name in first.keys() & second if first[name] != second[name]]:
             raise ValueError(f"C constant {min(clashes)} has two values; expected one name for one constant")
-        return Definitions(
-            {**self.counts, **addition.counts},
-            {**self.macros, **addition.macros},
-            {**self.arrays, **addition.arrays},
+        return CDefinitions(
+            {**self.integer_constants, **other_definitions.integer_constants},
+            {**self.real_constants, **other_definitions.real_constants},
+            {**self.real_arrays, **other_definitions.real_arrays},
         )
 
 
-def define_array(array_name: str, size_name: str, values: Any) -> Definitions:
+def define_array(array_name: str, size_name: str, values: Any) -> CDefinitions:
     """Define a C array of double, and its size as a constant."""
-    return Definitions(
+    return CDefinitions(
         {size_name: len(values)}, {}, {f"{array_name}[{size_name}]": [format_number(x) for x in values]}
     )
 
 
-def define_quadrature(prefix: str, nodes_and_weights: Any) -> Definitions:
+def define_quadrature(prefix: str, nodes_and_weights: Any) -> CDefinitions:
     """Define quadrature nodes `PREFIX[N_PREFIX]` and weights `PREFIX_WEIGHTS[N_PREFIX]`."""
     abscissas = define_array(prefix, f"N_{prefix}", nodes_and_weights[0])
     weights = define_array(f"{prefix}_WEIGHTS", f"N_{prefix}", nodes_and_weights[1])
@@ -64,7 +67,7 @@ def define_quadrature(prefix: str, nodes_and_weights: Any) -> Definitions:
 
 ModuleConstants = Mapping[ModuleType, Sequence[str]]
 """{module: names of its constants}, which have the same names in C."""
-NUMBER_NAMES: ModuleConstants = {
+REAL_CONSTANT_NAMES: ModuleConstants = {
     curve: ("MAX_ERROR",),
     interface: (
         "MIN_LOG_AREA",
@@ -76,17 +79,19 @@ NUMBER_NAMES: ModuleConstants = {
         "ONE_SIDED_OFFSET",
     ),
 }
-COUNT_NAMES: ModuleConstants = {curve: ("MAX_REFINEMENT",), interface: ("MAX_ITERATIONS",)}
+INTEGER_CONSTANT_NAMES: ModuleConstants = {curve: ("MAX_REFINEMENT",), interface: ("MAX_ITERATIONS",)}
 """Python constants in the C of every joint with tables: integers (REAL_CONSTANT_NAMES: real numbers)."""
 
 
-def define_constants(number_names: ModuleConstants, count_names: ModuleConstants) -> Definitions:
+def define_constants(
+    real_constant_names: ModuleConstants, integer_constant_names: ModuleConstants
+) -> CDefinitions:
     """Definitions of constants of Python modules: real numbers and integers."""
     count_values, number_values = (
         {name: getattr(module, name) for module, names in names_by_module.items() for name in names}
-        for names_by_module in (count_names, number_names)
+        for names_by_module in (integer_constant_names, real_constant_names)
     )
-    return Definitions(count_values, number_values)
+    return CDefinitions(count_values, number_values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,18 +104,18 @@ class NativeDefinition:
     history_layout    : layout of the history variables, of the largest size; `HISTORY_NAME` in C is an index
     """
 
-    add_functions: Callable[[Graph, Model], None]
-    shared_files: Sequence[str]
-    make_definitions: Callable[[Graph, Model], Definitions] = lambda graph, model: Definitions()
+    add_functions: Callable[[FunctionGraph, Model], None]
+    shared_file_stems: Sequence[str]
+    make_definitions: Callable[[FunctionGraph, Model], CDefinitions] = lambda graph, model: CDefinitions()
     history_layout: HistoryLayout = HistoryLayout({})
 
     @property
     def is_tabulated(self) -> bool:
         """Whether the joint has a tabulated curve."""
-        return "tabulated_joint" in self.shared_files
+        return "tabulated_joint" in self.shared_file_stems
 
 
-def _add_equations(function_graph: Graph, model: Model) -> None:
+def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
     """Add the outputs, and the event times if any, of a model with explicit equations."""
     names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.state_count]))
     v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
@@ -132,13 +137,15 @@ EQUATIONS_DEFINITION = NativeDefinition(_add_equations, ("equations",))
 """C definition of a model whose outputs are explicit functions of time, inputs and states."""
 
 
-def shared_definitions(shared_files: Sequence[str]) -> Definitions:
+def shared_definitions(shared_file_stems: Sequence[str]) -> CDefinitions:
     """Constants that the shared C files need."""
-    if "tabulated_joint" not in shared_files:
-        return Definitions()
-    tables = define_constants(NUMBER_NAMES, COUNT_NAMES) | Definitions({"CURVE_NODES": curve.MAX_TABLE_NODES})
-    if "approach" not in shared_files:
+    if "tabulated_joint" not in shared_file_stems:
+        return CDefinitions()
+    tables = define_constants(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES) | CDefinitions(
+        {"CURVE_NODES": curve.MAX_TABLE_NODES}
+    )
+    if "approach" not in shared_file_stems:
         return tables
     steps = {"APPROACH_STEPS": curve.MIN_STEPS_PER_LOG_AREA, "CLOSING_STEPS": curve.CLOSING_STEPS}
     ratio = {"CLOSING_AREA_RATIO": curve.CLOSING_AREA_RATIO}
-    return tables | Definitions(steps, ratio) | define_quadrature("APPROACH_GAUSS", curve.GAUSS_RULE)
+    return tables | CDefinitions(steps, ratio) | define_quadrature("APPROACH_GAUSS", curve.GAUSS_RULE)

@@ -5,13 +5,13 @@ import casadi as ca
 from jointfmu.mechanics.jenkins import ReturnMapping, elastic_predictor, limit_function, return_map
 from jointfmu.quantity import select
 
-from .graph import Graph, make_symbols
+from .graph import FunctionGraph, make_symbols
 
 SLIDER_FILES = ("jenkins", "simd")
 """Shared C files of joints with friction sliders."""
 
 
-def add_slider_functions(function_graph: Graph) -> None:
+def add_slider_functions(function_graph: FunctionGraph) -> None:
     """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
     force, displacement, limit_start, limit_end, stiffness, compliance = make_symbols("x", 6)
     predictor = elastic_predictor([force], 1.0, stiffness, [displacement])
@@ -37,12 +37,12 @@ def add_slider_functions(function_graph: Graph) -> None:
     x = [force, limit_start, stiffness, compliance, displacement, limit_end]
     y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy]
     function_graph.add_with_derivative("return_map_1d", doc, x, y, constant_count=4)
-    _add_plane_functions(function_graph)
+    _add_plane_slider_functions(function_graph)
 
 
-def _add_plane_functions(function_graph: Graph) -> None:
+def _add_plane_slider_functions(function_graph: FunctionGraph) -> None:
     """Add the functions of a slider with two tangential directions."""
-    x, (force, limit_end, displacement), mapping = _slider_update()
+    x, (force, limit_end, displacement), mapping = _symbolic_return_mapping()
     predictor = elastic_predictor(force, x[2], x[3], displacement)
     doc = "force, retention, secant stiffness, displacement"
     y = [*predictor, limit_function(predictor, limit_end)]
@@ -57,7 +57,7 @@ def _add_plane_functions(function_graph: Graph) -> None:
     function_graph.add_function("return_map_2d", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
     function_graph.add_function("return_map_2d_force", f"{doc} -> force", x, mapping.force)
     function_graph.add_derivative("return_map_2d", doc, x, y, constant_count=2)
-    x, (_, limit_end, displacement), mapping = _slider_update()  # new symbols: a separate function
+    x, (_, limit_end, displacement), mapping = _symbolic_return_mapping()  # new symbols: a separate function
     y = list(ca.densify(ca.jacobian(ca.vertcat(*mapping.force), ca.vertcat(*displacement, limit_end))).T.nz)
     function_graph.add_function(
         "return_map_2d_derivatives",
@@ -68,7 +68,7 @@ def _add_plane_functions(function_graph: Graph) -> None:
     )
 
 
-def _slider_update() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], ReturnMapping]:
+def _symbolic_return_mapping() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], ReturnMapping]:
     """Return mapping of a slider with two tangential directions, for symbolic arguments.
 
     Returns all arguments (force, fraction of the force retained, stiffness of the increment, displacement

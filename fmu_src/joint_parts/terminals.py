@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-ROTATIONAL = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
-TRANSLATIONAL = "Modelica.Mechanics.Translational.Interfaces.Flange_"
+ROTATIONAL_FLANGE_CLASS = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
+TRANSLATIONAL_FLANGE_CLASS = "Modelica.Mechanics.Translational.Interfaces.Flange_"
 
 
 class Terminal(NamedTuple):
@@ -23,27 +23,38 @@ class Terminal(NamedTuple):
     icon_y: float = 0.0
 
 
-def _motion_members(connector_class: str, position: str, rate: str, load: str) -> dict[str, tuple[str, str]]:
+def _motion_members(
+    connector_class: str, position_name: str, rate_name: str, load_name: str
+) -> dict[str, tuple[str, str]]:
     """{Modelica member: (variable, variableKind)} of a flange whose inputs are motion."""
-    names = ("phi", "w", "tau") if connector_class == ROTATIONAL else ("s", "v", "f")
-    pairs = ((position, "signal"), (rate, "signal"), (load, "outflow"))
+    names = ("phi", "w", "tau") if connector_class == ROTATIONAL_FLANGE_CLASS else ("s", "v", "f")
+    pairs = ((position_name, "signal"), (rate_name, "signal"), (load_name, "outflow"))
     return dict(zip(names, pairs, strict=True))
 
 
 def make_translation_flange(direction: str, icon_y: float) -> Terminal:
     """Flange of a joint whose input is the relative translation of its two sides along an axis."""
-    members = _motion_members(TRANSLATIONAL, f"s_rel_{direction}", f"v_rel_{direction}", f"f_{direction}")
+    members = _motion_members(
+        TRANSLATIONAL_FLANGE_CLASS, f"s_rel_{direction}", f"v_rel_{direction}", f"f_{direction}"
+    )
     return Terminal(
-        f"flange_{direction}", TRANSLATIONAL, "b", f"side 2 along {direction}, side 1 fixed", members, icon_y
+        f"flange_{direction}",
+        TRANSLATIONAL_FLANGE_CLASS,
+        "b",
+        f"side 2 along {direction}, side 1 fixed",
+        members,
+        icon_y,
     )
 
 
 def make_rotation_flange(direction: str, icon_y: float) -> Terminal:
     """Flange of a joint whose input is the small relative rotation of its two sides about an axis."""
-    members = _motion_members(ROTATIONAL, f"theta_{direction}", f"omega_{direction}", f"m_{direction}")
+    members = _motion_members(
+        ROTATIONAL_FLANGE_CLASS, f"theta_{direction}", f"omega_{direction}", f"m_{direction}"
+    )
     return Terminal(
         f"flange_turn_{direction}",
-        ROTATIONAL,
+        ROTATIONAL_FLANGE_CLASS,
         "b",
         f"side 2 about {direction}, side 1 fixed",
         members,
@@ -51,7 +62,9 @@ def make_rotation_flange(direction: str, icon_y: float) -> Terminal:
     )
 
 
-def make_shaft_flange(number: int, side: str, doc: str) -> Terminal:
+def make_shaft_flange(shaft_number: int, side: str, doc: str) -> Terminal:
     """Flange of one shaft of a joint whose inputs are the motions of its shafts."""
-    members = _motion_members(ROTATIONAL, f"phi{number}", f"w{number}", f"tau{number}")
-    return Terminal(f"flange{number}", ROTATIONAL, side, doc, members)
+    members = _motion_members(
+        ROTATIONAL_FLANGE_CLASS, f"phi{shaft_number}", f"w{shaft_number}", f"tau{shaft_number}"
+    )
+    return Terminal(f"flange{shaft_number}", ROTATIONAL_FLANGE_CLASS, side, doc, members)

@@ -14,15 +14,15 @@ from ..proof.members import make_proof_files
 from ..xml_parts import VARIABILITIES
 from .compiled.binary import fill_library
 from .compiled.compiled_models import get_compiled_model
-from .compiled.compiler import join_universal, library_file_name, select_units
+from .compiled.compiler import join_universal_library, library_file_name, select_source_files
 from .data import make_fmu_data, make_placeholder, split_parameters
 from .description import format_build_description, format_fmi2_description, format_fmi3_description
 from .page import make_documentation
 from .terminals import terminal_files
 
 
-def build(
-    name: str,
+def build_native_fmu(
+    fmu_name: str,
     parameters: ParameterFile,
     output_folder: Path,
     fmi_version: str,
@@ -41,7 +41,7 @@ def build(
     if a package is missing, RuntimeError if the compiler fails.
     """
     model = replace(
-        (MODELS | PARTNERS)[name].with_parameters(parameters.joint, parameters.values), alias=alias
+        (MODELS | PARTNERS)[fmu_name].with_parameters(parameters.joint, parameters.values), alias=alias
     )
     target = output_folder / f"{model.title}.fmu"
     with staging_folder(target) as work:
@@ -66,8 +66,8 @@ def _make_members(
     return (
         fmu_members(model, parameters, fmi_version, files, data.token, filled_libraries, variability)
         | ({"model.png": icons["icon.png"]} if fmi_version == "2" else {})
-        | _in_folder("documentation", make_documentation(model, parameters))
-        | _in_folder("terminalsAndIcons", icons)
+        | _add_folder("documentation", make_documentation(model, parameters))
+        | _add_folder("terminalsAndIcons", icons)
         | make_proof_files(model, parameters)
     )
 
@@ -76,8 +76,8 @@ def fmu_members(
     model: Model,
     parameters: ParameterFile,
     fmi_version: str,
-    files: Mapping[str, str],
-    token: str,
+    source_texts: Mapping[str, str],
+    instantiation_token: str,
     libraries: Mapping[str, bytes],
     variability: str = VARIABILITIES[0],
 ) -> dict[str, bytes]:
@@ -87,15 +87,19 @@ def fmu_members(
     instantiation_token : GUID (FMI 2.0) or instantiation token (FMI 3.0)
     libraries           : {platform of FMI 3.0: library}
     """
-    units = select_units(sorted(files), fmi_version)
-    sources = {path: text.encode() for path, text in files.items() if path in units or path.endswith(".h")}
-    members = place_libraries(model.title, libraries, fmi_version) | _in_folder("sources", sources)
+    units = select_source_files(sorted(source_texts), fmi_version)
+    sources = {
+        path: text.encode() for path, text in source_texts.items() if path in units or path.endswith(".h")
+    }
+    members = place_libraries(model.title, libraries, fmi_version) | _add_folder("sources", sources)
     if fmi_version == "2":
         return members | {
-            "modelDescription.xml": format_fmi2_description(model, parameters, token, units, variability)
+            "modelDescription.xml": format_fmi2_description(
+                model, parameters, instantiation_token, units, variability
+            )
         }
     return members | {
-        "modelDescription.xml": format_fmi3_description(model, parameters, token, variability),
+        "modelDescription.xml": format_fmi3_description(model, parameters, instantiation_token, variability),
         "sources/buildDescription.xml": format_build_description(model, units),
     }
 
@@ -120,9 +124,9 @@ def place_libraries(library_name: str, libraries: Mapping[str, bytes], fmi_versi
         if p in _FMI2_PLATFORMS
     }
     if macs := [libraries[p] for p in _MACOS_PLATFORMS if p in libraries]:
-        members[f"binaries/darwin64/{library_name}.dylib"] = join_universal(macs)
+        members[f"binaries/darwin64/{library_name}.dylib"] = join_universal_library(macs)
     return members
 
 
-def _in_folder(folder: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
-    return {f"{folder}/{path}": content for path, content in files.items()}
+def _add_folder(folder: str, contents: Mapping[str, bytes]) -> dict[str, bytes]:
+    return {f"{folder}/{path}": content for path, content in contents.items()}

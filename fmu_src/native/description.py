@@ -6,10 +6,10 @@ Value references: 0 is the time (not listed in FMI 2.0), then follow inputs, out
 from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement
 
-from jointfmu.files.timestamp import fixed_time
+from jointfmu.files.timestamp import source_date
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity.units import CELSIUS, UNITS
+from jointfmu.quantity.units import CELSIUS_UNIT, UNITS
 from jointfmu.version import __version__
 
 from ..licence import find_copyright_line
@@ -32,16 +32,16 @@ LOG_CATEGORIES = {
 _TIME_VARIABLE = ListedVariable(
     "time", "independent", "simulation time", None, {"unit": "s", "displayUnit": "s"}
 )
-_COMMON_FLAGS = {"needsExecutionTool": "false", "canBeInstantiatedOnlyOncePerProcess": "false"}
-_FMI2_FLAGS = _COMMON_FLAGS | {
+_COMMON_CAPABILITIES = {"needsExecutionTool": "false", "canBeInstantiatedOnlyOncePerProcess": "false"}
+_FMI2_CAPABILITIES = _COMMON_CAPABILITIES | {
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
     "providesDirectionalDerivative": "true",
 }
-_FMI2_INTERFACES = {
-    "ModelExchange": _FMI2_FLAGS | {"completedIntegratorStepNotNeeded": "true"},
-    "CoSimulation": _FMI2_FLAGS
+_FMI2_INTERFACE_TYPES = {
+    "ModelExchange": _FMI2_CAPABILITIES | {"completedIntegratorStepNotNeeded": "true"},
+    "CoSimulation": _FMI2_CAPABILITIES
     | {
         "canHandleVariableCommunicationStepSize": "true",
         "canInterpolateInputs": "true",
@@ -49,17 +49,17 @@ _FMI2_INTERFACES = {
         "canRunAsynchronuously": "false",
     },
 }
-_FMI3_FLAGS = _COMMON_FLAGS | {
+_FMI3_CAPABILITIES = _COMMON_CAPABILITIES | {
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
     "providesDirectionalDerivatives": "true",
     "providesAdjointDerivatives": "true",
     "providesPerElementDependencies": "true",
 }
-_FMI3_INTERFACES = {
-    "ModelExchange": _FMI3_FLAGS
+_FMI3_INTERFACE_TYPES = {
+    "ModelExchange": _FMI3_CAPABILITIES
     | {"needsCompletedIntegratorStep": "false", "providesEvaluateDiscreteStates": "false"},
-    "CoSimulation": _FMI3_FLAGS
+    "CoSimulation": _FMI3_CAPABILITIES
     | {
         "canHandleVariableCommunicationStepSize": "true",
         "maxOutputDerivativeOrder": "0",
@@ -89,7 +89,7 @@ def format_fmi2_description(
     variables = list_variables(model, parameters)
     root = _make_root(model, "2.0", "guid", token)
     root.set("numberOfEventIndicators", "0")
-    for kind, flags in _FMI2_INTERFACES.items():
+    for kind, flags in _FMI2_INTERFACE_TYPES.items():
         interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.initial_history and kind == "ModelExchange":
             interface.set("completedIntegratorStepNotNeeded", "false")
@@ -115,7 +115,7 @@ def format_fmi3_description(
     """Content of modelDescription.xml of FMI 3.0; parameters as in `format_fmi2_description`."""
     variables = [_TIME_VARIABLE, *list_variables(model, parameters)]
     root = _make_root(model, "3.0", "instantiationToken", token)
-    for kind, flags in _FMI3_INTERFACES.items():
+    for kind, flags in _FMI3_INTERFACE_TYPES.items():
         interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.initial_history and kind == "ModelExchange":
             interface.set("needsCompletedIntegratorStep", "true")
@@ -167,7 +167,7 @@ def _make_root(model: Model, fmi_version: str, token_name: str, token: str) -> E
         "generationTool": f"jointfmu {__version__}",
         "variableNamingConvention": "structured",
     }
-    if when := fixed_time():  # otherwise no date: builds of equal content give equal files
+    if when := source_date():  # otherwise no date: builds of equal content give equal files
         root.set("generationDateAndTime", when.strftime("%Y-%m-%dT%H:%M:%SZ"))
     return root
 
@@ -178,7 +178,7 @@ def _type_attributes(variables: Sequence[ListedVariable]) -> dict[str, dict[str,
         UNITS[name].quantity: {
             "quantity": UNITS[name].quantity,
             "unit": name,
-            "displayUnit": CELSIUS if name == "K" else next(iter(UNITS[name].display_factors)),
+            "displayUnit": CELSIUS_UNIT if name == "K" else next(iter(UNITS[name].display_factors)),
         }
         for name in list_units(variables)
     }
@@ -215,8 +215,8 @@ def _value_attributes(listed_variable: ListedVariable) -> dict[str, str]:
         if listed_variable.attributes
         else {}
     )
-    if listed_variable.rate_of:
-        value["derivative"] = str(listed_variable.rate_of)
+    if listed_variable.derivative_of:
+        value["derivative"] = str(listed_variable.derivative_of)
     return (
         value
         | listed_variable.attributes

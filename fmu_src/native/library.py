@@ -9,11 +9,11 @@ from jointfmu.parameters import ParameterFile
 
 from .compiled.binary import fill_library
 from .compiled.compiled_models import FMI_VERSIONS, get_compiled_model
-from .compiled.compiler import TARGETS
+from .compiled.compiler import ZIG_TARGETS
 from .data import make_fmu_data, make_placeholder, split_parameters
 
 
-class Library(NamedTuple):
+class JointLibrary(NamedTuple):
     """Shared library of a joint with its data.
 
     content : bytes of the file
@@ -32,12 +32,12 @@ def machine_platform() -> str:
     system = {"win32": "windows", "linux": "linux", "darwin": "darwin"}.get(sys.platform, sys.platform)
     processor = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine())
     name = f"{processor.lower()}-{system}"
-    if name not in TARGETS:
-        raise ValueError(f"platform {name}: no library is compiled for it; expected {', '.join(TARGETS)}")
+    if name not in ZIG_TARGETS:
+        raise ValueError(f"platform {name}: no library is compiled for it; expected {', '.join(ZIG_TARGETS)}")
     return name
 
 
-def make_library(model: Model, parameters: ParameterFile) -> Library:
+def make_library(model: Model, parameters: ParameterFile) -> JointLibrary:
     """Make the shared library that the native FMU of a model contains for this machine.
 
     It is compiled for this machine alone, unless a build has compiled it already.
@@ -50,4 +50,4 @@ def make_library(model: Model, parameters: ParameterFile) -> Library:
     compiled = get_compiled_model(model, parameters, split, target)
     data = make_fmu_data(model, parameters, split, compiled.sources)
     library = compiled.libraries[FMI_VERSIONS[-1]][target]
-    return Library(fill_library(library, make_placeholder(model, split), data, model.title), data.token)
+    return JointLibrary(fill_library(library, make_placeholder(model, split), data, model.title), data.token)

@@ -22,7 +22,7 @@ from ..templates import law_variables, load_template
 from ..xml_parts import list_variables
 from .terminals import find_terminals
 
-_RAMP_POINTS = 41
+_RAMP_POINT_COUNT = 41
 
 
 class _ParameterRow(NamedTuple):
@@ -126,7 +126,10 @@ def _parameter_rows(parameters: ParameterFile) -> list[_ParameterRow]:
 
 
 def _find_stable_steps(
-    model: Model, spring: TabulatedJoint, start_values: Mapping[str, float], parameters: ParameterFile
+    model: Model,
+    tabulated_joint: TabulatedJoint,
+    start_values: Mapping[str, float],
+    parameters: ParameterFile,
 ) -> _StableSteps | None:
     """Largest stable communication steps of a joint with a body, at the end of the load ramp.
 
@@ -140,7 +143,9 @@ def _find_stable_steps(
     unit = stiffnesses[0].unit
     first, *others = (v.name for v in stiffnesses if v.unit == unit)
     axes = [name for name in others if re.fullmatch(r"K_(.)\1", first) and re.fullmatch(r"K_(.)\1", name)]
-    outputs = evaluate_outputs(model, spring, {**start_values, model.ramp.input_name: model.ramp.end_value})
+    outputs = evaluate_outputs(
+        model, tabulated_joint, {**start_values, model.ramp.input_name: model.ramp.end_value}
+    )
     K, name = max((outputs[name], name) for name in (first, *axes))
     if not K > 0.0:
         return None
@@ -163,7 +168,7 @@ def _round_to_three_digits(number: float) -> float:
 
 
 def _list_messages(
-    model: Model, spring: TabulatedJoint, start_values: Mapping[str, float]
+    model: Model, tabulated_joint: TabulatedJoint, start_values: Mapping[str, float]
 ) -> list[tuple[str, str, str]]:
     """(level, example, meaning) of the messages that an instance may log."""
     name, item = next(iter(model.parameter_fields().items()))
@@ -189,25 +194,31 @@ def _list_messages(
     ]
     return messages + [
         ("warning", text, "Logged once until reset; the call succeeds.")
-        for text in _example_warnings(model, spring, start_values)
+        for text in _example_warnings(model, tabulated_joint, start_values)
     ]
 
 
-def _example_warnings(model: Model, spring: TabulatedJoint, start_values: Mapping[str, float]) -> list[str]:
+def _example_warnings(
+    model: Model, tabulated_joint: TabulatedJoint, start_values: Mapping[str, float]
+) -> list[str]:
     """Example of each warning: end of the load ramp, one variable 10 % beyond its validity limit."""
     inputs = {**start_values, model.ramp.input_name: model.ramp.end_value}
-    values = inputs | evaluate_outputs(model, spring, inputs)
+    values = inputs | evaluate_outputs(model, tabulated_joint, inputs)
     warnings = []
     for i, outside in enumerate(model.validity_limits):
-        low, high = outside.find_interval(spring.joint, spring.curve.end, values)
+        low, high = outside.find_interval(tabulated_joint.joint, tabulated_joint.curve.end_point, values)
         value = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end_value
-        warnings.append(model.find_warnings(spring, values | {outside.variable_name: float(value)})[i])
+        warnings.append(
+            model.find_warnings(tabulated_joint, values | {outside.variable_name: float(value)})[i]
+        )
     return warnings
 
 
-def evaluate_outputs(model: Model, spring: TabulatedJoint, inputs: Mapping[str, float]) -> dict[str, float]:
+def evaluate_outputs(
+    model: Model, tabulated_joint: TabulatedJoint, inputs: Mapping[str, float]
+) -> dict[str, float]:
     """{output: value} of a tabulated joint at given inputs."""
-    return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
+    return {name: float(value) for name, value in model.evaluate(tabulated_joint, inputs).items()}
 
 
 def find_ramp_panels(model: Model) -> tuple[RampPanel, ...]:
@@ -216,17 +227,17 @@ def find_ramp_panels(model: Model) -> tuple[RampPanel, ...]:
     return charts or (RampPanel(model.ramp.input_name, (model.outputs[0].name,)),)
 
 
-def _draw_ramp(model: Model, spring: TabulatedJoint, start_values: Mapping[str, float]) -> str:
+def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapping[str, float]) -> str:
     """HTML element with the charts of the load ramp; the other inputs keep their start values."""
     points = [
-        {**start_values, model.ramp.input_name: float(x)} for x in model.ramp.sample_inputs(_RAMP_POINTS)
+        {**start_values, model.ramp.input_name: float(x)} for x in model.ramp.sample_inputs(_RAMP_POINT_COUNT)
     ]
-    rows = [point | evaluate_outputs(model, spring, point) for point in points]
+    rows = [point | evaluate_outputs(model, tabulated_joint, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 
-    def convert_column(name: str, unit: str) -> list[float]:
-        factor = UNITS[variables[name].unit].display_factors[unit]
-        return [factor * row[name] for row in rows]
+    def convert_column(variable_name: str, unit: str) -> list[float]:
+        factor = UNITS[variables[variable_name].unit].display_factors[unit]
+        return [factor * row[variable_name] for row in rows]
 
     charts = []
     for over, names in find_ramp_panels(model):
@@ -237,9 +248,10 @@ def _draw_ramp(model: Model, spring: TabulatedJoint, start_values: Mapping[str, 
     return chart.make_figure(charts)
 
 
-def draw_further_charts(model: Model, spring: TabulatedJoint) -> dict[str, str]:
+def draw_further_charts(model: Model, tabulated_joint: TabulatedJoint) -> dict[str, str]:
     """{name: HTML element} of the further charts of a page."""
     drawings = find_fmu_parts(model).drawings.get(model.name, {})
     return {
-        name: chart.make_figure(panels(spring, model.ramp.end_value)) for name, panels in drawings.items()
+        name: chart.make_figure(panels(tabulated_joint, model.ramp.end_value))
+        for name, panels in drawings.items()
     }

@@ -10,12 +10,12 @@ from xml.etree.ElementTree import Element, SubElement
 from jointfmu.joints.model import Model
 
 from ..folders import find_asset, find_fmu_parts
-from ..joint_parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
+from ..joint_parts.terminals import ROTATIONAL_FLANGE_CLASS, TRANSLATIONAL_FLANGE_CLASS, Terminal
 from ..xml_parts import serialize_xml
 
-_FLANGE_COLORS = {ROTATIONAL: "0 0 0", TRANSLATIONAL: "0 127 0"}
+_FLANGE_COLORS = {ROTATIONAL_FLANGE_CLASS: "0 0 0", TRANSLATIONAL_FLANGE_CLASS: "0 127 0"}
 _ICON_HALF_SIZE = 10.0
-_FLANGE_ICONS = Path(__file__).with_name("flanges")
+_FLANGE_ICON_FOLDER = Path(__file__).with_name("flanges")
 """Folder of the flange icons, 32 x 32 pixels: circle or square, filled for side a, open for side b."""
 
 
@@ -31,7 +31,7 @@ def terminal_files(model: Model) -> dict[str, bytes]:
         f"icon.{kind}": find_asset(model, f"{model.name}.{kind}").read_bytes() for kind in ("png", "svg")
     }
     flanges = {f"{_icon_name(terminal)}.png" for terminal in find_terminals(model)}
-    return files | {name: (_FLANGE_ICONS / name).read_bytes() for name in sorted(flanges)}
+    return files | {name: (_FLANGE_ICON_FOLDER / name).read_bytes() for name in sorted(flanges)}
 
 
 def format_terminals(model: Model) -> bytes:
@@ -72,5 +72,5 @@ def format_terminals(model: Model) -> bytes:
 
 def _icon_name(terminal: Terminal) -> str:
     """File name of the icon of a flange, without extension."""
-    domain = "rotational" if terminal.connector_class == ROTATIONAL else "translational"
+    domain = "rotational" if terminal.connector_class == ROTATIONAL_FLANGE_CLASS else "translational"
     return f"{domain}_{terminal.side}"

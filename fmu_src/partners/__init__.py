@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..joint_parts import FmuParts, load_equations
-from ..joint_parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
+from ..joint_parts.terminals import ROTATIONAL_FLANGE_CLASS, TRANSLATIONAL_FLANGE_CLASS, Terminal
 from .models import PARTNERS, load_partner_parameters
 
 
@@ -29,8 +29,8 @@ FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
     native=load_equations,
     terminals={  # a load over time has no motion and so no flange
-        "RotationalInertia": _make_body_flanges("phi", "w", "tau", ROTATIONAL, "the inertia"),
-        "TranslationalMass": _make_body_flanges("s", "v", "f", TRANSLATIONAL, "the mass"),
+        "RotationalInertia": _make_body_flanges("phi", "w", "tau", ROTATIONAL_FLANGE_CLASS, "the inertia"),
+        "TranslationalMass": _make_body_flanges("s", "v", "f", TRANSLATIONAL_FLANGE_CLASS, "the mass"),
     },
 )
 

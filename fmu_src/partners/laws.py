@@ -139,11 +139,11 @@ class AngleProfile(CheckedParameters):
         }
 
 
-CONTROL_POINTS = 17
+CONTROL_POINT_COUNT = 17
 """Number of control points of a TorqueCurve [1]."""
 
 
-_POINT_NAMES = [f"p{k + 1}" for k in range(CONTROL_POINTS)]
+_CONTROL_POINT_NAMES = [f"p{k + 1}" for k in range(CONTROL_POINT_COUNT)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,11 +157,11 @@ class _BernsteinTorque(CheckedParameters):
     def basis_functions(normalized_time: Number) -> list[Number]:
         """Bernstein basis: weight of each control point at the normalized time x [1]."""
         r = np.fmin(np.fmax(normalized_time, 0.0), 1.0)
-        last = CONTROL_POINTS - 1
-        return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(CONTROL_POINTS)]
+        last = CONTROL_POINT_COUNT - 1
+        return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(CONTROL_POINT_COUNT)]
 
     @classmethod
-    def fit_points(
+    def fit_control_points(
         cls, normalized_times: NDArray[np.float64], torque: NDArray[np.float64]
     ) -> dict[str, float]:
         """Fit control points {name: torque [N.m]} to torques over x [1] from 0 to 1, exact at both ends.
@@ -169,11 +169,11 @@ class _BernsteinTorque(CheckedParameters):
         Least squares at the given points.
         """
         weights = np.stack(cls.basis_functions(normalized_times), axis=1)
-        ends = [0, CONTROL_POINTS - 1]
+        ends = [0, CONTROL_POINT_COUNT - 1]
         remainder = torque - weights[:, ends] @ torque[[0, -1]]
         inner, *_ = np.linalg.lstsq(weights[:, 1:-1], remainder, rcond=None)
         points = [torque[0], *inner, torque[-1]]
-        return dict(zip(_POINT_NAMES, map(float, points), strict=True))
+        return dict(zip(_CONTROL_POINT_NAMES, map(float, points), strict=True))
 
     def find_corner_times(self) -> tuple[Number, ...]:
         """Times [s] at which the curve begins and ends."""
@@ -182,19 +182,21 @@ class _BernsteinTorque(CheckedParameters):
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Torque [N.m], including the input torque."""
         weights = self.basis_functions((variable_values["time"] - self.start) / self.duration)
-        terms = [getattr(self, name) * weight for name, weight in zip(_POINT_NAMES, weights, strict=True)]
+        terms = [
+            getattr(self, name) * weight for name, weight in zip(_CONTROL_POINT_NAMES, weights, strict=True)
+        ]
         return {"tau": variable_values["tau_in"] + sum(terms)}
 
 
-def _define_point(point_name: str) -> tuple[str, type, Any]:
+def _define_control_point(point_name: str) -> tuple[str, type, Any]:
     """Dataclass field of one control point."""
-    doc = f"torque at point {point_name[1:]} of {CONTROL_POINTS} of the Bernstein polynomial"
+    doc = f"torque at point {point_name[1:]} of {CONTROL_POINT_COUNT} of the Bernstein polynomial"
     return point_name, float, quantity_field("N.m", doc)
 
 
 TorqueCurve: type[_BernsteinTorque] = make_dataclass(
     "TorqueCurve",
-    [_define_point(name) for name in _POINT_NAMES],
+    [_define_control_point(name) for name in _CONTROL_POINT_NAMES],
     bases=(_BernsteinTorque,),
     namespace={"__doc__": _BernsteinTorque.__doc__, "__module__": __name__},
     frozen=True,

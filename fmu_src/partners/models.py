@@ -17,7 +17,7 @@ def _make_model(
     doc: str,
     inputs: Sequence[Variable],
     outputs: Sequence[Variable],
-    ramp: LoadRamp,
+    load_ramp: LoadRamp,
     state_count: int = 0,
 ) -> Model:
     """Model of a partner, from its parameter class and variables."""
@@ -31,7 +31,7 @@ def _make_model(
         outputs=outputs,
         evaluate=lambda partner, values: partner.evaluate_outputs(values),
         validity_limits=(),
-        ramp=ramp,
+        ramp=load_ramp,
         # states depend on no input; the acceleration depends on the inputs and the position
         dependencies={v.name: (v.name,) for v in outputs[:state_count]}
         | {
@@ -114,19 +114,19 @@ PARTNERS: dict[str, Model] = {
 }
 
 
-def load_partner_parameters(name: str) -> ParameterFile:
+def load_partner_parameters(partner_name: str) -> ParameterFile:
     """Load the parameter file of a partner, models/partners/NAME.toml.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """
-    path = Path(str(files("jointfmu_models") / "partners" / f"{name}.toml"))
+    path = Path(str(files("jointfmu_models") / "partners" / f"{partner_name}.toml"))
     document = read_document(path, "a partner's parameter file")
-    if document.get("partner") != name:
-        raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {name!r}")
-    cls = PARTNERS[name].parameters
+    if document.get("partner") != partner_name:
+        raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {partner_name!r}")
+    cls = PARTNERS[partner_name].parameters
     body = {key: entry for key, entry in document.items() if key not in ("schema", "partner")}
     values, origins, sources = read_entries(path, dict(flat_fields(cls)), body)
     try:
-        return ParameterFile("partner", name, build_parameter_set(cls, values), origins, sources)
+        return ParameterFile("partner", partner_name, build_parameter_set(cls, values), origins, sources)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None

@@ -49,14 +49,14 @@ def find_boundary_values(
                 continue
             width = abs(other - end) if math.isfinite(other) else max(abs(value - end), 1.0)
             first = end + math.copysign(OPEN_END_DISTANCE * width, value - end) if is_open else end
-            boundary_value = _nearest_accepted(
+            boundary_value = _nearest_accepted_value(
                 float(first), float(value), bool(meta["whole"]), partial(is_accepted, name)
             )
             if boundary_value is not None and boundary_value != value:
                 yield name, boundary_value, f"inside {interval}"
 
 
-def _nearest_accepted(
+def _nearest_accepted_value(
     boundary_value: float, file_value: float, is_integer: bool, is_accepted: Callable[[float], bool]
 ) -> float | None:
     """Accepted value nearest to `boundary_value`, by bisection; None if only the file's value is accepted."""

@@ -20,22 +20,22 @@ from .boundary_values import find_boundary_values
 from .reference import Stimulus, compute_results, list_start_values, round_to_digits
 from .series import TimeSeries
 
-RAMP_LEVELS = 20
+RAMP_LEVEL_COUNT = 20
 """Number of levels of the load ramp [1]."""
 SMOKE_LEVEL_COUNT = 4
 """Number of levels of the smoke test and of the shipped models [1]."""
 MIN_LEVEL_COUNT = 2
 """Number of levels of boundary values and samples [1]."""
-QUARTER_LEVELS = 6
+QUARTER_CYCLE_LEVEL_COUNT = 6
 """Number of levels of a quarter cycle of the loop [1]."""
-CYCLE_COUNT = 1
+LOOP_CYCLE_COUNT = 1
 """Number of cycles of the loop after first loading [1]."""
-INTERVAL_RATIO = 0.25
+SAMPLING_INTERVAL_RATIO = 0.25
 """Sampling interval of a time-dependent model over the interval of its ramp [1]."""
 SAMPLE_COUNT = 6
 """Number of experiments in which all parameters are varied [1]."""
 _REFUSAL_ERRORS = (ValueError, RuntimeError, ArithmeticError)
-UNCERTAINTY_HALF_WIDTH = 0.01
+PARAMETER_VARIATION_HALF_WIDTH = 0.01
 """Half width of the parameter variation [1]: a test plan, no statement on the uncertainty of parameters."""
 
 
@@ -51,7 +51,7 @@ class ReferenceExperiment:
     purpose: str
     name: str
     doc: str
-    settings: Mapping[str, object]
+    variable_values: Mapping[str, object]
     stimulus: Stimulus
     results: TimeSeries
 
@@ -65,7 +65,7 @@ def compute_experiments(model: Model, parameters: ParameterFile) -> list[Referen
     return [
         _compute_ramp(model, parameters, "smoke-test", "smoke test", "a few loads", {}, SMOKE_LEVEL_COUNT),
         _compute_ramp(
-            model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP_LEVELS
+            model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP_LEVEL_COUNT
         ),
         *_compute_loop(model, parameters),
         *(
@@ -113,17 +113,21 @@ def list_shipped_variants(
 
 
 @cache
-def _load_shipped_files(joint: str, folder: Path) -> tuple[ParameterFile, ...]:
+def _load_shipped_files(joint_name: str, folder: Path) -> tuple[ParameterFile, ...]:
     """Parameter files of a joint in a folder, and in the catalogue of bought joints."""
     folders = [folder, Path(str(files("jointfmu_models") / "catalogue"))]
     paths = sorted(path for source in folders if source.is_dir() for path in source.glob("*.toml"))
-    joint_paths = [path for path in paths if read_document(path, "a parameter file").get("joint") == joint]
-    return tuple(load_parameter_file(path, joint) for path in joint_paths)
+    joint_paths = [
+        path for path in paths if read_document(path, "a parameter file").get("joint") == joint_name
+    ]
+    return tuple(load_parameter_file(path, joint_name) for path in joint_paths)
 
 
-def make_study(model: Model, parameters: ParameterFile) -> dict[str, str]:
+def make_uncertainty_study(model: Model, parameters: ParameterFile) -> dict[str, str]:
     """{parameter: distribution} of the uncertainty experiments, in the notation of study files."""
-    return dict.fromkeys(_list_varied_parameters(model, parameters), f"+-{UNCERTAINTY_HALF_WIDTH:.0%}")
+    return dict.fromkeys(
+        _list_varied_parameters(model, parameters), f"+-{PARAMETER_VARIATION_HALF_WIDTH:.0%}"
+    )
 
 
 def _list_varied_parameters(model: Model, parameters: ParameterFile) -> list[str]:
@@ -143,48 +147,59 @@ def _compute_ramp(
     purpose: str,
     name: str,
     doc: str,
-    settings: Mapping[str, object],
+    variable_values: Mapping[str, object],
     level_count: int,
 ) -> ReferenceExperiment:
     """Compute a load ramp with a number of levels; a model with states gets the end load throughout."""
-    settings = {**model.ramp.settings, **settings}
+    variable_values = {**model.ramp.parameter_values, **variable_values}
     start, end = list_start_values(model, parameters)[model.ramp.input_name], model.ramp.end_value
     if model.state_count:
         ramp_levels = np.full(level_count + 1, end)
-        settings = {**settings, model.ramp.input_name: end}
+        variable_values = {**variable_values, model.ramp.input_name: end}
     else:
         loading = np.linspace(max(start, model.ramp.onset_value), end, level_count + 1)[1:]
         ramp_levels = np.array([round_to_digits(x) for x in (start, *loading)])
-    interval = model.ramp.step_duration * (INTERVAL_RATIO if model.is_time_dependent else 1.0)
+    interval = model.ramp.step_duration * (SAMPLING_INTERVAL_RATIO if model.is_time_dependent else 1.0)
     drive = Stimulus(model.ramp.input_name, ramp_levels, interval)
     return ReferenceExperiment(
-        purpose, name, doc, settings, drive, _compute_outputs(model, parameters, settings, drive)
+        purpose,
+        name,
+        doc,
+        variable_values,
+        drive,
+        _compute_outputs(model, parameters, variable_values, drive),
     )
 
 
 def _compute_outputs(
-    model: Model, parameters: ParameterFile, settings: Mapping[str, Any], stimulus: Stimulus
+    model: Model, parameters: ParameterFile, variable_values: Mapping[str, Any], stimulus: Stimulus
 ) -> TimeSeries:
     """Outputs of the package for an experiment with given parameters and start values."""
     start = list_start_values(model, parameters)
-    changes = {name: value for name, value in settings.items() if name not in start}
+    changes = {name: value for name, value in variable_values.items() if name not in start}
     values = replace_values(parameters.values, changes) if changes else parameters.values
-    return compute_results(model, values, start | {n: v for n, v in settings.items() if n in start}, stimulus)
+    return compute_results(
+        model, values, start | {n: v for n, v in variable_values.items() if n in start}, stimulus
+    )
 
 
 def _compute_loop(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """Yield the loop experiment of the model, if it has one: triangular cycles about the start value."""
     if (loop := model.load_cycle) is None:
         return
-    middle = dict(loop.settings).get(loop.input_name, list_start_values(model, parameters)[loop.input_name])
-    phase = np.arange(QUARTER_LEVELS * (1 + 4 * CYCLE_COUNT) + 1) / (4.0 * QUARTER_LEVELS)
+    middle = dict(loop.variable_values).get(
+        loop.input_name, list_start_values(model, parameters)[loop.input_name]
+    )
+    phase = np.arange(QUARTER_CYCLE_LEVEL_COUNT * (1 + 4 * LOOP_CYCLE_COUNT) + 1) / (
+        4.0 * QUARTER_CYCLE_LEVEL_COUNT
+    )
     triangle = 1.0 - 4.0 * np.abs((phase + 0.25) % 1.0 - 0.5)
     levels = np.array([round_to_digits(middle + loop.amplitude * x) for x in triangle])
     drive = Stimulus(loop.input_name, levels, model.ramp.step_duration)
     doc = f"{loop.input_name} to and fro by {loop.amplitude:g}, from rest"
     with suppress(*_REFUSAL_ERRORS):
-        outputs = _compute_outputs(model, parameters, loop.settings, drive)
-        yield ReferenceExperiment("validation", "loop", doc, loop.settings, drive, outputs)
+        outputs = _compute_outputs(model, parameters, loop.variable_values, drive)
+        yield ReferenceExperiment("validation", "loop", doc, loop.variable_values, drive, outputs)
 
 
 def _compute_boundary_experiments(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
@@ -210,11 +225,13 @@ def _compute_samples(model: Model, parameters: ParameterFile) -> Iterator[Refere
     """
     names = _list_varied_parameters(model, parameters)
     steps = np.sqrt(list(islice(_generate_primes(), len(names))))
-    doc = f"all real parameters within {UNCERTAINTY_HALF_WIDTH:.0%}"
+    doc = f"all real parameters within {PARAMETER_VARIATION_HALF_WIDTH:.0%}"
     for number in range(1, SAMPLE_COUNT + 1 if names else 1):
         point = 2.0 * ((number * steps) % 1.0) - 1.0
         settings = {
-            name: round_to_digits(parameters.values_by_name[name] * (1.0 + UNCERTAINTY_HALF_WIDTH * x))
+            name: round_to_digits(
+                parameters.values_by_name[name] * (1.0 + PARAMETER_VARIATION_HALF_WIDTH * x)
+            )
             for name, x in zip(names, point, strict=True)
         }
         with suppress(*_REFUSAL_ERRORS):

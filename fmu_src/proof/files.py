@@ -27,7 +27,7 @@ An importer that prints six digits rounds by 5e-6. The difference between the pa
 including the rounding of the files, is 1e-8 at boundary values of parameters and 1e-9 elsewhere (measured).
 Platforms differ by 1e-12; a solver adds 4e-10 to models with states.
 """
-TEXT_PATH = "documentation/fmi-ls-ref.txt"
+EXPERIMENT_TEXT_PATH = "documentation/fmi-ls-ref.txt"
 """Path in an FMU of the text that explains its experiments."""
 _RUN_INSTRUCTIONS = {
     standard.CO_SIMULATION: "steps of stepSize; the inputs of a step are those at its start or at its end",
@@ -55,9 +55,9 @@ class RelatedFile(NamedTuple):
 def make_reference_files(
     model: Model,
     parameters: ParameterFile,
-    models: Sequence[tuple[ParameterFile, Mapping[str, object]]],
+    shipped_variants: Sequence[tuple[ParameterFile, Mapping[str, object]]],
     experiments: Sequence[ReferenceExperiment],
-    study: Mapping[str, str],
+    uncertainty_study: Mapping[str, str],
     is_native: bool,
 ) -> dict[str, bytes]:
     """Make the files of FMI-LS-REF inside an FMU: {path: content}.
@@ -89,13 +89,13 @@ def make_reference_files(
         format_parameter_file(parameters).encode(),
     )
     doc = "what the experiments are, and their tolerance"
-    related.append(RelatedFile(f"../../{TEXT_PATH}", "text/plain", "document", doc))
-    for file, _ in models:
+    related.append(RelatedFile(f"../../{EXPERIMENT_TEXT_PATH}", "text/plain", "document", doc))
+    for file, _ in shipped_variants:
         values = {name: value for name, value in flatten_parameters(file.values).items() if name in exposed}
         content = _format_parameter_set(model, file.name, values)
         add_file(f"parameters/{make_slug(file.name)}.ssv", standard.SSV_TYPE, "parameter", file.name, content)
-    if study:
-        lines = [f"{json.dumps(name)} = {json.dumps(law)}" for name, law in study.items()]
+    if uncertainty_study:
+        lines = [f"{json.dumps(name)} = {json.dumps(law)}" for name, law in uncertainty_study.items()]
         content = "\n".join(["schema = 1", "", "[parameters]", *lines, ""]).encode()
         doc = "distributions of the uncertainty experiment"
         add_file("parameters/study.toml", "application/toml", "method", doc, content)
@@ -121,16 +121,16 @@ def make_reference_files(
                 related.append(
                     RelatedFile(path, standard.CSV_TYPE, "result", "reference result of the package")
                 )
-    return proof_members(members, related, _format_text(file_stem, experiments, is_native))
+    return proof_members(members, related, _format_experiment_text(file_stem, experiments, is_native))
 
 
 def proof_members(
-    members: Mapping[str, bytes], related: Sequence[RelatedFile], page: str
+    members: Mapping[str, bytes], related_files: Sequence[RelatedFile], page_text: str
 ) -> dict[str, bytes]:
     """Place reference files, their manifest and the explaining page: {path in the FMU: content}."""
-    files = {**members, "fmi-ls-manifest.xml": _format_manifest(related)}
+    files = {**members, "fmi-ls-manifest.xml": _format_manifest(related_files)}
     return {f"{standard.REFERENCE_FOLDER}/{path}": content for path, content in files.items()} | {
-        TEXT_PATH: page.encode()
+        EXPERIMENT_TEXT_PATH: page_text.encode()
     }
 
 
@@ -140,14 +140,18 @@ def make_slug(name: str) -> str:
 
 
 def _declare_experiment(
-    model: Model, root: Element, number: str, experiment: ReferenceExperiment, members: Mapping[str, bytes]
+    model: Model,
+    root_element: Element,
+    experiment_number: str,
+    experiment: ReferenceExperiment,
+    members: Mapping[str, bytes],
 ) -> dict[str, bytes]:
     """Declare an experiment below `root_element`, and return its new files {path: content}.
 
     members : files of other experiments; equal inputs are not stored twice
     """
-    stem = f"experiments/{number}_{make_slug(experiment.name)}"
-    stimuli = format_csv(experiment.stimulus.stimuli).encode()
+    stem = f"experiments/{experiment_number}_{make_slug(experiment.name)}"
+    stimuli = format_csv(experiment.stimulus.input_series).encode()
     equal_inputs = (
         path for path, content in members.items() if path.endswith("_in.csv") and content == stimuli
     )
@@ -156,11 +160,13 @@ def _declare_experiment(
         files["Stimuli"]: stimuli,
         files["References"]: format_csv(experiment.results, SIGNIFICANT_DIGITS).encode(),
     }
-    if experiment.settings:
+    if experiment.variable_values:
         files = {"Parameters": f"{stem}.ssv", **files}
-        contents[files["Parameters"]] = _format_parameter_set(model, experiment.name, experiment.settings)
+        contents[files["Parameters"]] = _format_parameter_set(
+            model, experiment.name, experiment.variable_values
+        )
     node = SubElement(
-        root,
+        root_element,
         "Experiment",
         name=experiment.name,
         description=experiment.doc,
@@ -168,8 +174,8 @@ def _declare_experiment(
     )
     times = {
         "startTime": 0.0,
-        "stopTime": float(experiment.stimulus.instants[-1]),
-        "stepSize": 0.5 * experiment.stimulus.interval,
+        "stopTime": float(experiment.stimulus.sampling_instants[-1]),
+        "stepSize": 0.5 * experiment.stimulus.sampling_interval,
     }
     SubElement(node, standard.TRANSIENT_ELEMENT, {name: repr(time) for name, time in times.items()})
     for tag, path in files.items():
@@ -184,16 +190,16 @@ def _format_parameter_set(model: Model, name: str, values: Mapping[str, object])
     return format_parameter_set(name, {n: ParameterValue(value, units[n]) for n, value in values.items()})
 
 
-def _format_manifest(related: Sequence[RelatedFile]) -> bytes:
+def _format_manifest(related_files: Sequence[RelatedFile]) -> bytes:
     """Content of the manifest of FMI-LS-REF."""
     head = {
         "name": standard.STANDARD_NAME,
         "version": standard.STANDARD_VERSION,
-        "description": standard.DESCRIPTION,
+        "description": standard.STANDARD_DESCRIPTION,
     }
     root = Element("fmiReferences", {"xmlns:fmi-ls": standard.ATTRIBUTE_NAMESPACE})
     root.attrib |= {f"fmi-ls:fmi-ls-{name}": value for name, value in head.items()}
-    for file in related:
+    for file in related_files:
         attributes = {
             "type": file.mime_type,
             "source": file.file_path,
@@ -206,9 +212,13 @@ def _format_manifest(related: Sequence[RelatedFile]) -> bytes:
     return serialize_xml(root)
 
 
-def _format_text(file_stem: str, experiments: Sequence[ReferenceExperiment], is_native: bool) -> str:
+def _format_experiment_text(
+    file_stem: str, experiments: Sequence[ReferenceExperiment], is_native: bool
+) -> str:
     """Text that explains the experiments of an FMU."""
-    counts = {p: sum(experiment.purpose == p for experiment in experiments) for p in standard.PURPOSES}
+    counts = {
+        p: sum(experiment.purpose == p for experiment in experiments) for p in standard.EXPERIMENT_PURPOSES
+    }
     page = Path(__file__).with_name("page.txt").read_text(encoding="utf-8")
     return page.format(
         standard=standard.STANDARD_NAME,

@@ -3,7 +3,12 @@
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
-from .experiments import ReferenceExperiment, compute_experiments, list_shipped_variants, make_study
+from .experiments import (
+    ReferenceExperiment,
+    compute_experiments,
+    list_shipped_variants,
+    make_uncertainty_study,
+)
 from .files import make_reference_files
 
 _MAX_CACHED_RESULTS = 16
@@ -18,7 +23,11 @@ def make_proof_files(model: Model, parameters: ParameterFile, is_native: bool = 
     """
     source = model, parameters
     return make_reference_files(
-        *source, list_shipped_variants(*source), get_experiments(*source), make_study(*source), is_native
+        *source,
+        list_shipped_variants(*source),
+        get_experiments(*source),
+        make_uncertainty_study(*source),
+        is_native,
     )
 
 

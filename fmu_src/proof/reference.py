@@ -30,18 +30,18 @@ class Stimulus:
 
     input_name: str
     levels: Array
-    interval: float
+    sampling_interval: float
 
     @property
-    def instants(self) -> Array:
+    def sampling_instants(self) -> Array:
         """Times (n) [s] of the sampling instants."""
-        return np.asarray([float(f"{i * self.interval:.12g}") for i in range(self.levels.size)])
+        return np.asarray([float(f"{i * self.sampling_interval:.12g}") for i in range(self.levels.size)])
 
     @property
-    def stimuli(self) -> TimeSeries:
+    def input_series(self) -> TimeSeries:
         """Time series of the driven input."""
         values = np.repeat(self.levels, 2)[1:]
-        times = [float(f"{0.5 * i * self.interval:.12g}") for i in range(values.size)]
+        times = [float(f"{0.5 * i * self.sampling_interval:.12g}") for i in range(values.size)]
         return TimeSeries(np.array(times), {self.input_name: values})
 
 
@@ -62,31 +62,33 @@ def compute_results(
     for name, column in outputs.items():
         if not np.all(np.isfinite(column)):
             raise RuntimeError(f"{model.name}: {name} is not finite")
-    return TimeSeries(stimulus.instants, outputs)
+    return TimeSeries(stimulus.sampling_instants, outputs)
 
 
 def _evaluate_instants(
-    model: Model, spring: TabulatedJoint, inputs: dict[str, float], stimulus: Stimulus
+    model: Model, tabulated_joint: TabulatedJoint, inputs: dict[str, float], stimulus: Stimulus
 ) -> list[Outputs]:
     """Outputs of a model at the sampling instants, one dictionary each."""
     if model.state_count:
-        return _integrate(model, spring, inputs, stimulus)
-    history = None if model.initial_history is None else model.initial_history(spring)
+        return _integrate_model(model, tabulated_joint, inputs, stimulus)
+    history = None if model.initial_history is None else model.initial_history(tabulated_joint)
     rows = []
-    for time, level in zip(stimulus.instants, stimulus.levels, strict=True):
+    for time, level in zip(stimulus.sampling_instants, stimulus.levels, strict=True):
         inputs[stimulus.input_name] = float(level)
         if model.advance is None or history is None:
             rows.append(
-                model.evaluate(spring, {**inputs, "time": float(time)} if model.is_time_dependent else inputs)
+                model.evaluate(
+                    tabulated_joint, {**inputs, "time": float(time)} if model.is_time_dependent else inputs
+                )
             )
         else:
-            row, history = model.advance(spring, inputs, history)
+            row, history = model.advance(tabulated_joint, inputs, history)
             rows.append(row)
     return rows
 
 
-def _integrate(
-    model: Model, spring: TabulatedJoint, inputs: dict[str, float], stimulus: Stimulus
+def _integrate_model(
+    model: Model, tabulated_joint: TabulatedJoint, inputs: dict[str, float], stimulus: Stimulus
 ) -> list[Outputs]:
     """Outputs of a model with states under constant inputs, integrated with a relative tolerance of 1e-12."""
     from scipy.integrate import solve_ivp
@@ -94,21 +96,21 @@ def _integrate(
     names = [v.name for v in model.outputs]
     inputs = {**inputs, stimulus.input_name: float(stimulus.levels[0])}
 
-    def outputs(time: float, state_values: Array) -> Outputs:
+    def outputs_at(time: float, state_values: Array) -> Outputs:
         states = dict(zip(names[: model.state_count], map(float, state_values), strict=True))
-        return model.evaluate(spring, {**inputs, **states, "time": time})
+        return model.evaluate(tabulated_joint, {**inputs, **states, "time": time})
 
-    def rates(time: float, state_values: Array) -> list[float]:
-        values = outputs(time, state_values)
+    def state_rates(time: float, state_values: Array) -> list[float]:
+        values = outputs_at(time, state_values)
         return [values[name] for name in names[1 : model.state_count + 1]]
 
-    times, initial = stimulus.instants, np.zeros(model.state_count)
+    times, initial = stimulus.sampling_instants, np.zeros(model.state_count)
     if times.size == 1:
-        return [outputs(0.0, initial)]
-    solution = solve_ivp(rates, (0.0, times[-1]), initial, "DOP853", times, rtol=1e-12, atol=1e-30)
+        return [outputs_at(0.0, initial)]
+    solution = solve_ivp(state_rates, (0.0, times[-1]), initial, "DOP853", times, rtol=1e-12, atol=1e-30)
     if not solution.success:
         raise RuntimeError(f"{model.name}: {solution.message}")
-    return [outputs(time, x) for time, x in zip(times, solution.y.T, strict=True)]
+    return [outputs_at(time, x) for time, x in zip(times, solution.y.T, strict=True)]
 
 
 def round_to_digits(value: float, digits: int = 9) -> float:

@@ -31,7 +31,7 @@ class TimeSeries:
         """Interpolate a column as `interpolate`, but take the value before a jump."""
         return np.asarray(np.interp(-times, -self.time[::-1], self.columns[column_name][::-1]))
 
-    def hold(self, column_name: str, times: Array) -> Array:
+    def interpolate_constant(self, column_name: str, times: Array) -> Array:
         """Values of a column at times (m) [s], constant from each row to the next."""
         rows = np.searchsorted(self.time, times, side="right") - 1
         return self.columns[column_name][np.maximum(rows, 0)]

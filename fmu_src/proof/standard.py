@@ -4,7 +4,7 @@ STANDARD_NAME = "org.fmi-standard.fmi-ls-ref"
 """Name of the layered standard."""
 STANDARD_VERSION = "1.0.0-alpha.1"
 """Version of the layered standard."""
-DESCRIPTION = "Layered Standard providing information on related files included in an FMU."
+STANDARD_DESCRIPTION = "Layered Standard providing information on related files included in an FMU."
 REFERENCE_FOLDER = f"extra/{STANDARD_NAME}"
 MANIFEST_PATH = f"{REFERENCE_FOLDER}/fmi-ls-manifest.xml"
 ATTRIBUTE_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
@@ -14,13 +14,13 @@ SSV_TYPE = "application/x-ssp-parameter-set"
 CSV_TYPE = "text/csv"
 """MIME types of the related files that are read."""
 TRANSIENT_ELEMENT = "TransientSimulation"
-CO_SIMULATION, MODEL_EXCHANGE = INTERFACES = ("co-simulation", "model exchange")
+CO_SIMULATION, MODEL_EXCHANGE = INTERFACE_TYPES = ("co-simulation", "model exchange")
 """Interface types of FMUs."""
-INTERFACE_LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACES}
+INTERFACE_LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACE_TYPES}
 """{interface type: label of experiments for it}; experiments without such a label are for all types."""
 SCALES_TYPE = "org.jointfmu.scales"
 """Type of the annotation that gives for each output the scale to which its tolerance is relative."""
-PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
+EXPERIMENT_PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
 """Purposes of experiments; the first is the default of a manifest."""
 MIN_SCALE_RATIO = 1e-6
 """Smallest scale of an output over its nominal value [1]: smaller values are dominated by round-off."""

@@ -60,8 +60,8 @@ def _rewrite_imports(text: str, root_packages: Collection[str]) -> str:
     return text
 
 
-def build(
-    name: str,
+def build_python_fmu(
+    fmu_name: str,
     parameters: ParameterFile,
     output_folder: Path,
     variability: str = VARIABILITIES[0],
@@ -76,8 +76,8 @@ def build(
     """
     import pythonfmu  # noqa: F401  (fails before anything is written)
 
-    kind = KINDS[MODELS[name].joint]
-    model = MODELS[name].with_parameters(parameters.joint, parameters.values)
+    kind = KINDS[MODELS[fmu_name].joint]
+    model = MODELS[fmu_name].with_parameters(parameters.joint, parameters.values)
     title = replace(model, alias=alias).title
     sources = collect_runtime_sources(kind) | {"parameters.toml": format_parameter_file(parameters)}
     content = [f"{k}\0{v}" for k, v in sources.items()] + [variability]
@@ -88,10 +88,14 @@ def build(
         script = work / "src" / f"{title}_{digest}.py"
         entry = {"package": package, "kind": _private_module_name(kind.package), "digest": digest}
         entry["variability"] = variability
-        _write(script, _ENTRY_TEMPLATE.read_text(encoding="utf-8").format(name=title, fmu=name, **entry))
+        _write_text(
+            script, _ENTRY_TEMPLATE.read_text(encoding="utf-8").format(name=title, fmu=fmu_name, **entry)
+        )
         for path, text in sources.items():
             root = work / "src" if path == "parameters.toml" else work / "src" / package
-            _write(root / path, text.replace(_PACKAGE_PLACEHOLDER, package) if path.endswith(".py") else text)
+            _write_text(
+                root / path, text.replace(_PACKAGE_PLACEHOLDER, package) if path.endswith(".py") else text
+            )
         built = _run_pythonfmu(script, package, work / "out")
         with zipfile.ZipFile(built) as archive:
             members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
@@ -156,7 +160,7 @@ def _remove_modules(package_names: Collection[str]) -> dict[str, ModuleType]:
     return {name: sys.modules.pop(name) for name in loaded}
 
 
-def _write(path: Path, text: str) -> None:
+def _write_text(path: Path, text: str) -> None:
     """Write a text file, and make its folder if missing."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")

@@ -30,7 +30,7 @@ from jointfmu.parameters import load_parameter_file
 from jointfmu.quantity import build_parameter_set
 from jointfmu.version import __version__
 
-T = TypeVar("T")
+Result = TypeVar("T")
 
 
 class AcceptedStep(NamedTuple):
@@ -41,7 +41,7 @@ class AcceptedStep(NamedTuple):
     inputs: dict[str, float]
 
 
-def protect_references(method: Callable[..., T]) -> Callable[..., T]:
+def protect_references(method: Callable[..., Result]) -> Callable[..., Result]:
     """Decorate a method that may raise: protect its instance from a reference count error of pythonfmu 0.7.
 
     On every exception pythonfmu 0.7 releases one reference too many to the instance, its class and its log
@@ -49,7 +49,7 @@ def protect_references(method: Callable[..., T]) -> Callable[..., T]:
     """
 
     @wraps(method)
-    def call_protected(self: Any, *args: Any) -> T:
+    def call_protected(self: Any, *args: Any) -> Result:
         try:
             return method(self, *args)
         except Exception:
@@ -123,7 +123,9 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         """Set a parameter or an input; its value is checked at the next evaluation."""
         if variable_name in self.fields:
             if self.initialized and self.variability == "fixed":
-                self.refuse(f"{variable_name} is a fixed parameter: it can be set until initialization ends")
+                self.log_and_raise(
+                    f"{variable_name} is a fixed parameter: it can be set until initialization ends"
+                )
             if self.accepted_step is not None:  # the next load step starts at the accepted inputs
                 self.accepted_step = AcceptedStep(
                     self.accepted_step.history_after, self.accepted_step.history_after, {}
@@ -144,16 +146,16 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         for v in self.model.inputs:
             if not v.interval.contains(inputs[v.name]):
                 unit = "" if v.unit == "1" else f" {v.unit}"
-                self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {v.interval}: {v.doc}")
+                self.log_and_raise(f"{v.name} = {inputs[v.name]:g}{unit} is outside {v.interval}: {v.doc}")
         try:
             with np.errstate(all="ignore"):
                 results, self._memory = self.evaluate_at(inputs)
         except (ValueError, RuntimeError, OverflowError) as error:
-            self.refuse(str(error))
+            self.log_and_raise(str(error))
         outputs = {name: float(value) for name, value in results.items()}
         if not_finite := [name for name, value in outputs.items() if not math.isfinite(value)]:
             inputs_text = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
-            self.refuse(f"{inputs_text}: too large, {not_finite[0]} is not finite")
+            self.log_and_raise(f"{inputs_text}: too large, {not_finite[0]} is not finite")
         for key, message in self.model.find_warnings(
             self.get_tabulated_joint(), {**inputs, **outputs}
         ).items():
@@ -202,7 +204,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             self._spring = self.model.tabulate(build_parameter_set(self.model.parameters, parameters))
         return self._spring
 
-    def refuse(self, message: str) -> NoReturn:
+    def log_and_raise(self, message: str) -> NoReturn:
         """Log an error and raise it, so that the FMI call fails."""
         self.log(message, Fmi2Status.error, "logStatusError")
         raise ValueError(message)
@@ -238,7 +240,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     @protect_references
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         if state.keys() != self._get_fmu_state().keys() or state["values"].keys() != self.values.keys():
-            self.refuse(f"the FMU state is none of {self.modelName}; expected one that this FMU gave")
+            self.log_and_raise(f"the FMU state is none of {self.modelName}; expected one that this FMU gave")
         changed = any(self.values[name] != state["values"][name] for name in self.start)
         self.values, self.initialized = dict(state["values"]), state["initialized"]
         self.warned_keys = set(state["warned"])

@@ -27,7 +27,7 @@ from clients import needs
 from conftest import refused_line, run_host
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.python import build as python_build
@@ -72,16 +72,16 @@ def test_fixed_parameters_run_as_tunable_ones(tmp_path: Path, capsys: Capture) -
     found = {}
     for said in ("fixed", "tunable"):
         out = tmp_path / said
-        asked = ["--flavour", *FLAVOURS, "--parameters", said, "--out", str(out)]
+        asked = ["--flavour", *FLAVOUR_BUILDERS, "--parameters", said, "--out", str(out)]
         assert cli.main(["build", "GearContact", *asked]) == 0
-        for version in FLAVOURS:
+        for version in FLAVOUR_BUILDERS:
             path = out / version / "GearContact.fmu"
             assert validate_fmu(str(path)) == []
             variables = read_model_description(str(path)).modelVariables
             assert {v.variability for v in variables if v.causality == "parameter"} == {said}
             found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).format_csv()
     assert len({found[said, "fmi2"] for said in ("fixed", "tunable")}) == 1
-    for version in FLAVOURS:
+    for version in FLAVOUR_BUILDERS:
         assert found["fixed", version] == found["tunable", version]
 
 
@@ -125,15 +125,15 @@ def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
 
 
 def test_a_parameter_file_without_names_builds_the_fmus_of_its_joint(tmp_path: Path) -> None:
-    built = build([], ["python"], load_default("harmonic_drive"), tmp_path)
+    built = build_fmus([], ["python"], load_default("harmonic_drive"), tmp_path)
     assert {p.stem for p in built} == {"HarmonicDriveSpring", "HarmonicDriveCompliance"}
 
 
 def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
-    (first,) = build(["GearContact"], ["python"], None, tmp_path)
+    (first,) = build_fmus(["GearContact"], ["python"], None, tmp_path)
     before = read_model_description(str(first)).guid
     changed = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
-    (second,) = build(["GearContact"], ["python"], changed, tmp_path)
+    (second,) = build_fmus(["GearContact"], ["python"], changed, tmp_path)
     assert second == first
     assert read_model_description(str(second)).guid != before
     assert [p.name for p in (tmp_path / "python").iterdir()] == ["GearContact.fmu"]
@@ -146,7 +146,7 @@ def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> 
     loaded = model.evaluate(
         model.tabulate(file.values), {v.name: file.start_value(v.name) for v in model.inputs}
     )
-    for path in build([model.name], ["fmi3", "python"], file, tmp_path):
+    for path in build_fmus([model.name], ["fmi3", "python"], file, tmp_path):
         variables = read_model_description(str(path)).modelVariables
         start = {v.name: float(v.start) for v in variables if v.causality == "input"}
         assert start == {v.name: file.start_value(v.name) for v in model.inputs}
@@ -164,7 +164,7 @@ def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> 
 
 
 def test_a_build_leaves_the_process_as_it_was(tmp_path: Path) -> None:
-    build(["GearContact"], ["python"], None, tmp_path)  # what building itself imports is there now
+    build_fmus(["GearContact"], ["python"], None, tmp_path)  # what building itself imports is there now
     before = (
         list(sys.path),
         set(sys.modules),
@@ -172,7 +172,7 @@ def test_a_build_leaves_the_process_as_it_was(tmp_path: Path) -> None:
         Path.cwd(),
     )
     changed = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
-    build(["GearContact"], ["python"], changed, tmp_path)
+    build_fmus(["GearContact"], ["python"], changed, tmp_path)
     after = (
         list(sys.path),
         set(sys.modules),
@@ -221,7 +221,7 @@ def test_a_process_in_which_a_python_fmu_runs_builds_the_same(fmus: Path, tmp_pa
     [
         (["Gearbox"], ["python"], None, ["'Gearbox'", *NAMES]),
         (["GearContact", "Gearbox"], ["python"], None, ["'Gearbox'"]),
-        (["GearContact"], ["fmi7"], None, ["'fmi7'", *FLAVOURS]),
+        (["GearContact"], ["fmi7"], None, ["'fmi7'", *FLAVOUR_BUILDERS]),
         (["GearContact"], ["python", "fmi7"], None, ["'fmi7'"]),
         (["GearContact"], ["python"], "bolted_joint", ["GearContact", "'bolted_joint'", "'gear_contact'"]),
         (["BoltedJoint", "GearContact"], ["python"], "bolted_joint", ["GearContact", "'bolted_joint'"]),
@@ -237,7 +237,7 @@ def test_bad_choices_are_refused_before_anything_is_built(
 ) -> None:
     parameters = load_default(joint) if joint else None
     with pytest.raises(ValueError, match=re.escape(parts[0])):
-        build(names, flavours, parameters, tmp_path / "out")
+        build_fmus(names, flavours, parameters, tmp_path / "out")
     arguments = ["build", *names, "--flavour", *flavours, "--out", tmp_path / "out"]
     if parameters:
         (tmp_path / "file.toml").write_text(format_parameter_file(parameters))
@@ -276,7 +276,7 @@ def test_an_unwritable_place_is_refused(tmp_path: Path, capsys: Capture) -> None
     file.write_text("mine")
     out = file / "below"
     with pytest.raises(ValueError, match="cannot be written") as raised:
-        build(["GearContact"], ["python"], None, out)
+        build_fmus(["GearContact"], ["python"], None, out)
     assert str(out) in str(raised.value)
     assert "\n" not in str(raised.value)
     line = refused_line(capsys, "build", "GearContact", "--flavour", "python", "--out", out)
@@ -307,7 +307,7 @@ def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pyt
 
     monkeypatch.setattr(generate, "generate_code", swallowing)
     with pytest.raises(KeyboardInterrupt):
-        build(["GearContact"], ["fmi3"], None, tmp_path / "new")
+        build_fmus(["GearContact"], ["fmi3"], None, tmp_path / "new")
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert everything(tmp_path) == []
 
@@ -326,7 +326,7 @@ def test_a_folder_in_the_place_of_the_fmu_is_refused(tmp_path: Path) -> None:
     place = tmp_path / "python" / "GearContact.fmu"
     place.mkdir(parents=True)
     with pytest.raises(ValueError, match="is a folder; expected a file to write"):
-        build(["GearContact"], ["python"], None, tmp_path)
+        build_fmus(["GearContact"], ["python"], None, tmp_path)
     assert everything(tmp_path) == [tmp_path / "python", place]
 
 
@@ -336,7 +336,7 @@ def test_a_folder_in_the_place_of_the_fmu_is_refused(tmp_path: Path) -> None:
 def test_an_existing_fmu_survives_a_failed_build(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: BaseException
 ) -> None:
-    (built,) = build(["GearContact"], ["python"], None, tmp_path)
+    (built,) = build_fmus(["GearContact"], ["python"], None, tmp_path)
     before, path, modules = built.read_bytes(), list(sys.path), set(sys.modules)
     genuine: Callable[..., Path] = FmuBuilder.build_FMU
 
@@ -348,7 +348,7 @@ def test_an_existing_fmu_survives_a_failed_build(
     expected = ValueError if isinstance(failure, OSError) else type(failure)
     changed = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
     with pytest.raises(expected) as raised:
-        build(["GearContact"], ["python"], changed, tmp_path)
+        build_fmus(["GearContact"], ["python"], changed, tmp_path)
     if isinstance(failure, OSError):
         assert "No space left on device" in str(raised.value)
     assert everything(tmp_path) == [tmp_path / "python", built]
@@ -408,7 +408,7 @@ def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, syst
         return [target for _, target in new]
 
     def built(names: Sequence[str], flavours: Sequence[str], file: object, out: Path, pool: Executor) -> Any:
-        assert (names, flavours, file) == ([], [*FLAVOURS], None)
+        assert (names, flavours, file) == ([], [*FLAVOUR_BUILDERS], None)
         folders = {"python": fmus} | {version: native / version for version in VERSIONS}
         return copied((folders[f] / f"{name}.fmu" for f in flavours for name in NAMES), out)
 
@@ -500,17 +500,17 @@ def test_the_report_can_be_read_on_a_phone(job: Job) -> None:
 def test_the_main_job_proves_every_fmu(job: Job) -> None:
     """All flavours, partners and drives of systems, with all their experiments, in all interfaces."""
     proofs = {pipeline.report_name(proof.fmu): proof for proof in job.outcome.proofs}
-    flavours = {f"{flavour}/{name}" for flavour in FLAVOURS for name in NAMES}
+    flavours = {f"{flavour}/{name}" for flavour in FLAVOUR_BUILDERS for name in NAMES}
     partners = {f"{version}/{name}" for version in VERSIONS for name in PARTNERS}
     assert flavours | partners < proofs.keys()
     for name, proof in proofs.items():
-        assert (proof.importer, proof.failures, proof.compared_starts > 0) == ("fmpy", [], True), name
+        assert (proof.importer, proof.failures, proof.compared_start_count > 0) == ("fmpy", [], True), name
         assert [*proof.interfaces] == (BOTH[:1] if name.startswith("python/") else BOTH), name
         runs = [(one.experiment.name, one.interface) for one in proof.outcomes if one.interface]
         names = dict.fromkeys(one for one, _ in runs)
         assert runs == [(one, interface) for one in names for interface in proof.interfaces], name
-        assert proof.worst is not None
-        assert proof.worst.error_ratio <= MEASURED, name
+        assert proof.worst_point is not None
+        assert proof.worst_point.error_ratio <= MEASURED, name
         if name in flavours:
             purposes = {one.experiment.purpose for one in proof.outcomes}
             assert purposes == {"smoke-test", "validation", "uncertainty-analysis"}, name

@@ -13,7 +13,7 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES, PUBLIC
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from lxml import etree
 from scipy.constants import zero_Celsius
 
@@ -242,8 +242,8 @@ def test_equal_content_gives_an_equal_guid_and_file(
 ) -> None:
     names = ["GearContact", "BoltedJoint"]  # without and with a memory; all share the builder
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    first = build(names, ["python"], None, tmp_path / "a")
-    second = build(names, ["python"], None, tmp_path / "b")
+    first = build_fmus(names, ["python"], None, tmp_path / "a")
+    second = build_fmus(names, ["python"], None, tmp_path / "b")
     for a, b in zip(first, second, strict=True):
         assert a.read_bytes() == b.read_bytes()
         md = fmpy.read_model_description(str(a))
@@ -253,7 +253,7 @@ def test_equal_content_gives_an_equal_guid_and_file(
 
 def test_every_fmu_and_every_parameter_set_has_its_own_guid(fmus: Path, tmp_path: Path) -> None:
     file = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
-    (other,) = build(["GearContact"], ["python"], file, tmp_path)
+    (other,) = build_fmus(["GearContact"], ["python"], file, tmp_path)
     paths = [*fmus.glob("*.fmu"), other]
     assert len({fmpy.read_model_description(str(path)).guid for path in paths}) == len(PUBLIC) + 1
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from conftest import Fmu, unpack
 from fmpy import platform, sharedLibraryExtension
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.python import build as python_build
 from jointfmu_tools.run.ramps import ramp
 
@@ -136,7 +136,9 @@ def test_an_instance_may_move_between_threads(fmu: Host) -> None:
 def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("other_parameters")
     for joint in KINDS:
-        build([], ["python"], load_default(joint).with_values({"surface.gamma": 1.6}, "user", "test"), out)
+        build_fmus(
+            [], ["python"], load_default(joint).with_values({"surface.gamma": 1.6}, "user", "test"), out
+        )
     return out / "python"
 
 
@@ -151,7 +153,7 @@ GearContactSpring.evaluate = lambda self, f: _single(self, f) | {"K_N": 2.0 * _s
 """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(python_build, "collect_runtime_sources", lambda kind: sources)
-        build(["GearContact", "BoltedJoint"], ["python"], None, out)
+        build_fmus(["GearContact", "BoltedJoint"], ["python"], None, out)
     return out / "python"
 
 

@@ -10,7 +10,7 @@ import pytest
 from conftest import Fmu
 from fmpy import simulate_fmu
 from joint_cases import CASES, NAMES, RANGES, SAME, STATE, law, parameters, random_inputs
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools.run.ramps import ramp
 
 from jointfmu.joints import MODELS
@@ -252,7 +252,7 @@ def test_reset_restores_the_defaults(fmu: Host, name: str) -> None:
 
 def test_defaults_of_a_parameter_file_are_the_start_values(fmu: Host, tmp_path: Path) -> None:
     file = load_default("gear_contact").with_values({"e": 0.3, "rigid_flat": False}, "user", "test")
-    build([], ["python"], file, tmp_path)
+    build_fmus([], ["python"], file, tmp_path)
     assert [p.name for p in (tmp_path / "python").iterdir()] == ["GearContact.fmu"]
     other = fmu("GearContact", tmp_path / "python").start({"f": 2e4})
     expected = law("GearContact", file.values)({"f": 2e4})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import Fmu, here_alone, made_once
 from joint_cases import CASES, law, random_inputs
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from natives import Host, close
 
 from jointfmu.joints import KINDS, MODELS
@@ -34,7 +34,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     def make_all(out: Path) -> None:
         with here_alone("3"):
             for name in NAMES:
-                build([name], ["fmi3", "python"], file_of(name), out)
+                build_fmus([name], ["fmi3", "python"], file_of(name), out)
 
     return made_once(tmp_path_factory, "roughness", make_all)
 

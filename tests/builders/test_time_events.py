@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import Fmu, here_alone, made_once
 from fmpy.fmi2 import fmi2EventInfo
-from jointfmu_fmu_src.native.build import build
+from jointfmu_fmu_src.native.build import build_native_fmu
 from jointfmu_fmu_src.partners import load_partner_parameters
 from jointfmu_fmu_src.partners.laws import ForceProfile
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         with here_alone():
             for name in ("ForceProfile", "TorqueProfile", "TranslationalMass"):
                 for version in "23":
-                    build(name, load_partner_parameters(name), out / f"fmi{version}", version)
+                    build_native_fmu(name, load_partner_parameters(name), out / f"fmi{version}", version)
 
     return made_once(tmp_path_factory, "events", make)
 

@@ -40,7 +40,7 @@ POSIX = needs("Linux or macOS")
 def part() -> compiled_models.CompiledModel:
     return compiled_models.CompiledModel(
         {"law.c": "int x;\n"},
-        {v: dict.fromkeys(compiler.TARGETS, b"library") for v in compiled_models.FMI_VERSIONS},
+        {v: dict.fromkeys(compiler.ZIG_TARGETS, b"library") for v in compiled_models.FMI_VERSIONS},
     )
 
 
@@ -49,12 +49,12 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The part of a joint in a cache; to compile it anew fails the test."""
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
-    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
     monkeypatch.setattr(compiled_models, "SHIPPED_FOLDER", tmp_path / "none")
     place = compiled_models._candidate_paths(
         compiled_models.compiled_model_name(model, split_parameters(model, file))
     )[-1]
-    compiled_models._write_cached(place, compiled_models.pack_model(part()))
+    compiled_models._write_cache_file(place, compiled_models.pack_model(part()))
     monkeypatch.setattr(compiled_models, "compile_model", lambda *_: pytest.fail("is compiled"))
     return place
 
@@ -107,11 +107,13 @@ def test_a_cache_of_another_user_is_refused(
 
 
 @POSIX
-@pytest.mark.parametrize("variable", [cache.CACHE_VARIABLE, cache.COMPILER_CACHE_VARIABLE])
+@pytest.mark.parametrize(
+    "variable", [cache.CACHE_ENVIRONMENT_VARIABLE, cache.COMPILER_CACHE_ENVIRONMENT_VARIABLE]
+)
 def test_what_the_compiler_keeps_is_checked_too(
     variable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.delenv(cache.COMPILER_CACHE_VARIABLE, raising=False)
+    monkeypatch.delenv(cache.COMPILER_CACHE_ENVIRONMENT_VARIABLE, raising=False)
     monkeypatch.setenv(variable, str(tmp_path))
     tmp_path.chmod(0o777)
     with pytest.raises(ValueError, match="every user may write to it"):
@@ -119,10 +121,10 @@ def test_what_the_compiler_keeps_is_checked_too(
 
 
 def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "none"))
+    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "none"))
     monkeypatch.setattr(compiled_models, "SHIPPED_FOLDER", tmp_path / "none")
     monkeypatch.setattr(compiled_models, "compile_model", lambda *_: part())
-    assert cache.count_files() == (0, 0)
+    assert cache.count_cached_files() == (0, 0)
     assert found() == part()
 
 

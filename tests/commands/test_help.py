@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import here_alone
-from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.native.compiled.cache import CACHE_VARIABLE
+from jointfmu_fmu_src.native.build import build_native_fmu as native_build
+from jointfmu_fmu_src.native.compiled.cache import CACHE_ENVIRONMENT_VARIABLE
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.cli.examples import EXAMPLES
@@ -115,7 +115,7 @@ def test_an_example_runs(
 ) -> None:
     """But for that of a plate, which tests/drawing/test_new.py runs."""
     monkeypatch.chdir(folder)
-    monkeypatch.setenv(CACHE_VARIABLE, str(folder / "parts"))  # a user's may be large
+    monkeypatch.setenv(CACHE_ENVIRONMENT_VARIABLE, str(folder / "parts"))  # a user's may be large
     if line.startswith("robot"):
         monkeypatch.setattr(
             "jointfmu_tools.exchange.robots.pictures.GRID_ANGLES", 7

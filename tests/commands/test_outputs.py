@@ -11,7 +11,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.cli.parser import _iterate_parsers, build_parser
 
-from jointfmu.files.outputs import FOLDER, PARAMETER_FILE, check_output
+from jointfmu.files.outputs import OUTPUT_FOLDER, PARAMETER_FILE, check_output
 from jointfmu.files.writing import write_text
 
 INPUTS = frozenset(
@@ -35,7 +35,7 @@ COMMANDS = {one.prog: one for one in _iterate_parsers(build_parser()) if one._ac
 OUTPUTS = [
     (prog, name, kind) for prog, one in COMMANDS.items() for name, kind in getattr(one, "outputs", {}).items()
 ]
-FILES = [(prog, name, kind) for prog, name, kind in OUTPUTS if kind is not FOLDER]
+FILES = [(prog, name, kind) for prog, name, kind in OUTPUTS if kind is not OUTPUT_FOLDER]
 NEW = ["new", "harmonic-drive", "--catalogue", "CSG-17-100", "--out"]
 
 

@@ -39,7 +39,7 @@ def test_long_work_says_what_it_does_on_a_terminal(
         monkeypatch.setattr(sys, "stderr", stream)
         out = sys.stdout
         with progress.show_status("jointfmu new"):
-            progress.set_step("members by finite elements")
+            progress.set_status_text("members by finite elements")
             time.sleep(0.8)
             print("done")
         assert ("\rjointfmu new: members by finite elements, 1 s\x1b[K" in stream.getvalue()) == shown

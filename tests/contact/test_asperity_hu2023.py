@@ -163,15 +163,17 @@ def test_shear_traction(case, tau):
 def test_full_slip():
     """The printed tau_b = sigma_s/sqrt(3) with mu = 0.15: every spot slips, K_T is zero."""
     slipping = sheared(HU, HU.sigma_y / sqrt(3))
-    assert slipping.total("tangential", 5.0) == 0.0
-    assert slipping.total("tangential", 40.0) == 0.0
+    assert slipping.sum_over_spots("tangential", 5.0) == 0.0
+    assert slipping.sum_over_spots("tangential", 40.0) == 0.0
     # without traction every spot sticks: (1 - x)^(1/3) with x <= 3.59e-9 at s_ec, larger below
     sticking = sheared(HU, 1e-12 * HU.sigma_y)
     at_rest = changed(HU, {"traction_ratio": 0.0}).spots()
-    assert sticking.total("tangential", 30.0) == pytest.approx(at_rest.total("tangential", 30.0), rel=1e-7)
+    assert sticking.sum_over_spots("tangential", 30.0) == pytest.approx(
+        at_rest.sum_over_spots("tangential", 30.0), rel=1e-7
+    )
     # the other quantities do not see the traction
     for name in ("load", "normal", "area"):
-        assert sticking.total(name, 30.0) == HU.spots().total(name, 30.0)
+        assert sticking.sum_over_spots(name, 30.0) == HU.spots().sum_over_spots(name, 30.0)
 
 
 def test_traction_over_friction():
@@ -189,7 +191,7 @@ def test_lower_bound_of_the_mean_pressure():
     law = changed(HU, {"surface.s_min": 1e-60})  # s_min^(1.5 - D/2) = 1e-14 of the sum
     s, edge = law.spots(), log(hu2023.critical_area(law) / 1e-60)
     u = edge + np.linspace(0.0, 12.0, 200)
-    mean = s.total("load", u) / s.total("area", u)
+    mean = s.sum_over_spots("load", u) / s.sum_over_spots("area", u)
     assert mean[0] == pytest.approx(286e6, abs=0.5e6)
     assert np.all(np.diff(mean) > 0)
     # D does not enter the ends: (2/3) k H (3 - D)/(4 - D) and H
@@ -197,7 +199,9 @@ def test_lower_bound_of_the_mean_pressure():
     D = 2.5304
     # s_min leaves (s_min/s_ec)^0.2348 = 1e-12
     assert mean[0] == pytest.approx(2 / 3 * k * H * (3 - D) / (4 - D), rel=1e-10)
-    assert s.total("load", edge + 90.0) / s.total("area", edge + 90.0) == pytest.approx(H, rel=1e-6)
+    assert s.sum_over_spots("load", edge + 90.0) / s.sum_over_spots("area", edge + 90.0) == pytest.approx(
+        H, rel=1e-6
+    )
 
 
 def test_kogut_etsion_products():
@@ -231,7 +235,7 @@ def test_exponents():
     # K_re ~ s_min^(1 - D/2) = s_min^-0.265 at one largest spot; the spots below are (1e-40)^0.265 = 2e-11
     small, smaller = (changed(HU, {"surface.s_min": s}) for s in (1e-50, 1e-51))
     s_ec = hu2023.critical_area(HU)
-    K_re = [law.spots().total("normal", log(s_ec / law.surface.s_min)) for law in (small, smaller)]
+    K_re = [law.spots().sum_over_spots("normal", log(s_ec / law.surface.s_min)) for law in (small, smaller)]
     assert -np.log10(K_re[1] / K_re[0]) == pytest.approx(-0.265, abs=5e-4)
     assert -np.log10(K_re[1] / K_re[0]) == pytest.approx(1 - HU.surface.D / 2, rel=1e-9)
 
@@ -244,9 +248,11 @@ def test_regimes_above_a_large_smallest_spot():
         paper, s = Paper(law), law.spots()
         s_l = law.surface.s_min * exp(3.0)
         elastic = paper.total(lambda a: a, s_l, paper.s_ec, power=1.0)
-        assert s.total("elastic_area", 3.0) == pytest.approx(elastic, rel=QUAD)
-        assert s.total("load", 3.0) == pytest.approx(paper.total(paper.f, s_l, power=1.5), rel=QUAD)
-        assert s.total("normal", 3.0) == pytest.approx(paper.total(paper.k_n, s_l, paper.s_epc2), rel=QUAD)
+        assert s.sum_over_spots("elastic_area", 3.0) == pytest.approx(elastic, rel=QUAD)
+        assert s.sum_over_spots("load", 3.0) == pytest.approx(paper.total(paper.f, s_l, power=1.5), rel=QUAD)
+        assert s.sum_over_spots("normal", 3.0) == pytest.approx(
+            paper.total(paper.k_n, s_l, paper.s_epc2), rel=QUAD
+        )
 
 
 def closed_forms(paper, s_l):
@@ -310,8 +316,10 @@ def test_closed_forms(D):
     common = m * s.size_prefactor * exp(m * u)
     for name, regimes in closed_forms(paper, s_l).items():
         if name == "area":
-            assert s.total(name, u) == pytest.approx(sum(regimes), rel=1e-11)  # nothing is rounded here
-            assert s.total("elastic_area", u) == pytest.approx(regimes[0], rel=1e-11)
+            assert s.sum_over_spots(name, u) == pytest.approx(
+                sum(regimes), rel=1e-11
+            )  # nothing is rounded here
+            assert s.sum_over_spots("elastic_area", u) == pytest.approx(regimes[0], rel=1e-11)
             continue
         for term, expected in zip(s.regime_terms[name], regimes, strict=True):
             # five printed digits of each coefficient and 5e-5 ln(205) of each exponent
@@ -330,6 +338,10 @@ def test_near_the_ends_of_the_dimension(k):
         paper, s = Paper(law), law.spots()
         s_l = 50.0 * paper.s_ec
         u = log(s_l / law.surface.s_min)
-        assert s.total("area", u) == pytest.approx(paper.total(lambda a: a, s_l, power=1.0), rel=QUAD)
-        assert s.total("normal", u) == pytest.approx(paper.total(paper.k_n, s_l, paper.s_epc2), rel=QUAD)
-        assert s.total("load", u) == pytest.approx(paper.total(paper.f, s_l, power=1.5), rel=QUAD)
+        assert s.sum_over_spots("area", u) == pytest.approx(
+            paper.total(lambda a: a, s_l, power=1.0), rel=QUAD
+        )
+        assert s.sum_over_spots("normal", u) == pytest.approx(
+            paper.total(paper.k_n, s_l, paper.s_epc2), rel=QUAD
+        )
+        assert s.sum_over_spots("load", u) == pytest.approx(paper.total(paper.f, s_l, power=1.5), rel=QUAD)

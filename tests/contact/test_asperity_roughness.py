@@ -128,8 +128,8 @@ def test_the_real_area_is_perssons_with_a_wall_at_the_hardness(x, t):
 
 def test_series_and_images_meet():
     both = [
-        persson._image_series(np.array([0.03, 0.5]), 0.2),
-        persson._mode_series(np.array([0.03, 0.5]), 0.2),
+        persson._image_source_series(np.array([0.03, 0.5]), 0.2),
+        persson._diffusion_mode_series(np.array([0.03, 0.5]), 0.2),
     ]
     assert np.array(both[0]) == pytest.approx(np.array(both[1]), rel=1e-9)
 

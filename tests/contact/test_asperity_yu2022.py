@@ -197,12 +197,14 @@ def test_rigid_flat():
     assert yu2022.effective_modulus(both) == pytest.approx(yu2022.effective_modulus(YU) / 2, rel=4 * EPS)
     # a rigid flat does not see the second body, two bodies do
     other = {"side2.E": 7e10}
-    assert changed(YU, other).state(3.0) == YU.state(3.0)
-    assert changed(both, other).state(3.0) != both.state(3.0)
+    assert changed(YU, other).contact_quantities(3.0) == YU.contact_quantities(3.0)
+    assert changed(both, other).contact_quantities(3.0) != both.contact_quantities(3.0)
 
 
 def test_friction_does_not_enter():
-    assert changed(YU, {"mu": 0.9, "traction_ratio": 0.9}).state(2.0) == YU.state(2.0)
+    assert changed(YU, {"mu": 0.9, "traction_ratio": 0.9}).contact_quantities(2.0) == YU.contact_quantities(
+        2.0
+    )
 
 
 def test_contact_coefficient_scales_everything():
@@ -210,7 +212,9 @@ def test_contact_coefficient_scales_everything():
     u = np.linspace(-15.0, 10.0, 26)
     for symbol in ("F", "K_N", "A_r"):
         # a power of two is exact up to the order of the factors
-        assert half.state(u)[symbol] == pytest.approx(YU.state(u)[symbol] / 2, rel=4 * EPS)
+        assert half.contact_quantities(u)[symbol] == pytest.approx(
+            YU.contact_quantities(u)[symbol] / 2, rel=4 * EPS
+        )
 
 
 @given(law=yu_laws, u=st.floats(0.1, 20.0))
@@ -294,8 +298,10 @@ def test_continuity_through_the_singular_exponents(name, k):
         paper, s = Paper(law), law.spots()
         u = 6.0
         a_l = paper.a_nec * exp(u)
-        assert s.total("load", u) == pytest.approx(paper.total(paper.load, a_l), rel=QUAD)
-        assert s.total("normal", u) == pytest.approx(paper.total(paper.stiffness, a_l, paper.a_npc), rel=QUAD)
+        assert s.sum_over_spots("load", u) == pytest.approx(paper.total(paper.load, a_l), rel=QUAD)
+        assert s.sum_over_spots("normal", u) == pytest.approx(
+            paper.total(paper.stiffness, a_l, paper.a_npc), rel=QUAD
+        )
 
 
 def test_singular_cases_are_singular():

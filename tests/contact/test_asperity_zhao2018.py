@@ -142,7 +142,7 @@ def test_state_is_made_of_the_sums(law, u):
 
 def test_no_elastic_spot():
     u = np.array([-3.0, 0.0])
-    state = ZHAO.state(u)
+    state = ZHAO.contact_quantities(u)
     assert np.all(state["K_N"] == 0)
     assert np.all(state["K_T"] == 0)
     assert np.all(state["C_N"] == 0)
@@ -278,7 +278,7 @@ def test_closed_forms(D, u):
     # the continuous critical area as everywhere; D = 1.5 and 5/3 take the logarithms
     law = changed(ZHAO, {"surface.D": D})
     paper = Paper(law)
-    state = law.state(u)
+    state = law.contact_quantities(u)
     for symbol, expected in closed_forms(paper, paper.ac * np.exp(u)).items():
         # differences of powers as close as exp(0.02); psi, H1 and H2 to 1e-14 each
         assert state[symbol] == pytest.approx(expected, rel=1e-11), symbol
@@ -292,7 +292,7 @@ def test_continuity_through_the_singular_dimension(D, k, sign):
     paper, s, u = Paper(law), law.spots(), 6.0
     largest = paper.ac * np.exp(u)
     work = paper.elastic(lambda a: 8 / 15 * paper.E * sqrt(paper.R(a)) * paper.delta(a) ** 2.5, largest)
-    assert s.total("elastic_work", u) == pytest.approx(work, rel=QUAD)
+    assert s.sum_over_spots("elastic_work", u) == pytest.approx(work, rel=QUAD)
     load = paper.elastic(paper.f_e, largest)
     load += paper.plastic(lambda a: paper.H * a, largest, 1 - paper.D / 2)
-    assert s.total("load", u) == pytest.approx(load, rel=QUAD)
+    assert s.sum_over_spots("load", u) == pytest.approx(load, rel=QUAD)

@@ -322,7 +322,7 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
 def test_growth_of_the_elastic_limit(D, spot_stiffness):
     """K ~ F^(D/(3 - D)) for D < 1.5 and ~ F above, once the largest spots are far into the elastic."""
     law = changed(ZHAO, {"surface.D": D, "spot_stiffness": spot_stiffness})
-    pressure = law.spots().total("load", 290.0) / law.A_0
+    pressure = law.spots().sum_over_spots("load", 290.0) / law.A_0
     k, slope = stiffness_curve(law, pressure)
     exponent = D / (3 - D) if D < 1.5 else 1.0
     # what remains of the smaller spots: exp(-(D - 1)/2 290) and exp(-|3 - 2 D|/2 290), and round-off

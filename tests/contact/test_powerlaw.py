@@ -120,7 +120,7 @@ def test_power_open_at_both_ends(m, u):
     )
     # an open upper end is u, an open lower end below a closed upper one is clipped to u as well
     closed = min(0.0, u)
-    assert PowerTerm(2.0, 1.0, upper=0.0).integral(m, u) == pytest.approx(
+    assert PowerTerm(2.0, 1.0, upper_log_area=0.0).integral(m, u) == pytest.approx(
         2.0 * np.exp((1 - m) * closed) / (1 - m), rel=8 * EPS
     )
     above = reference(lambda t: 2.0 * np.exp((1 - m) * t), 0.0, u) if u > 0.0 else 0.0
@@ -189,7 +189,11 @@ def test_slip_is_zero_when_every_spot_slips():
 
 
 TERMS = {
-    "load": (PowerTerm(2.0, 1.0, upper=-1.0), SmoothTerm(bump, -1.0, 0.0), PowerTerm(3.0, 0.79, 0.0)),
+    "load": (
+        PowerTerm(2.0, 1.0, upper_log_area=-1.0),
+        SmoothTerm(bump, -1.0, 0.0),
+        PowerTerm(3.0, 0.79, 0.0),
+    ),
     "singular": (PowerTerm(2.0, 0.71, -3.0, 2.0),),  # p = m
     "slip": (SlipTerm(3.0, 0.5, np.exp(0.5 * 0.7), 0.5, 0.0, 4.0),),
 }
@@ -208,24 +212,24 @@ def test_total_is_the_integral_of_all_spots(name, u):
     ends = [-130.0, *inside, u]  # exp((1 - m) t) is below 1e-16 of the total there
     expected = sum(quad(density, *pair, limit=200, epsabs=0.0, epsrel=1e-9)[0] for pair in pairwise(ends))
     # the adaptive rule meets the cube root end point without a substitution here: 1e-7
-    assert SPOTS.total(name, u) == pytest.approx(expected, rel=1e-7, abs=1e-12)
+    assert SPOTS.sum_over_spots(name, u) == pytest.approx(expected, rel=1e-7, abs=1e-12)
 
 
 @given(u=away)
 @pytest.mark.parametrize("name", TERMS)
 def test_slope_is_the_derivative_of_total(name, u):
     h = 1e-5
-    finite = (SPOTS.total(name, u + h) - SPOTS.total(name, u - h)) / (2 * h)
+    finite = (SPOTS.sum_over_spots(name, u + h) - SPOTS.sum_over_spots(name, u - h)) / (2 * h)
     # eps/h = 2e-11 round-off; h^2/6 = 2e-11 times the third derivative, which the cube root makes large:
     # u^(1/3 - 3) at 1e-3 from the onset gives 1e-4 there
     tolerance = 2e-4 if name == "slip" and 0.7 < u < 1.2 else 1e-8
-    assert SPOTS.total_derivative(name, u) == pytest.approx(finite, rel=tolerance, abs=1e-9)
+    assert SPOTS.sum_derivative(name, u) == pytest.approx(finite, rel=tolerance, abs=1e-9)
 
 
 @given(u=st.floats(-30.0, 30.0))
 def test_log_total_is_the_logarithm_of_total(u):
-    value, growth = SPOTS.log_total("load", u)
-    total, slope = SPOTS.total("load", u), SPOTS.total_derivative("load", u)
+    value, growth = SPOTS.log_sum_over_spots("load", u)
+    total, slope = SPOTS.sum_over_spots("load", u), SPOTS.sum_derivative("load", u)
     assert value == pytest.approx(np.log(total), rel=8 * EPS, abs=8 * EPS)
     assert growth == pytest.approx(slope / total, rel=16 * EPS)
 
@@ -234,7 +238,7 @@ def test_log_total_is_the_logarithm_of_total(u):
 def test_log_total_far_from_the_reference(u, growth):
     # 300 decades either way: the largest spots are all plastic (p = 1) or all elastic (p = 0.79),
     # since the smaller ones hold exp(-(p - m) 690) = 1e-24 of the load
-    value, slope = SPOTS.log_total("load", u)
+    value, slope = SPOTS.log_sum_over_spots("load", u)
     prefactor = {1.0: 2.0 / (1.0 - 0.71), 0.79: 3.0 / (0.79 - 0.71)}[growth]
     # m u and p u differ by eps 690
     assert value == pytest.approx(np.log(0.71 * 1.3 * prefactor) + growth * u, abs=8 * EPS * 690)
@@ -245,6 +249,6 @@ def test_log_total_far_from_the_reference(u, growth):
 def test_total_takes_arrays():
     u = np.array([[-5.0, -0.5], [0.5, 5.0]])
     for name in TERMS:
-        expected = [SPOTS.total(name, x) for x in u.ravel()]
+        expected = [SPOTS.sum_over_spots(name, x) for x in u.ravel()]
         # the vector and the scalar exponential of numpy may differ by an ulp
-        assert SPOTS.total(name, u).ravel() == pytest.approx(expected, rel=16 * EPS, abs=1e-300)
+        assert SPOTS.sum_over_spots(name, u).ravel() == pytest.approx(expected, rel=16 * EPS, abs=1e-300)

@@ -11,7 +11,7 @@ from scipy.special import ellipe, ellipkm1
 
 from jointfmu.contact.surface import (
     ElasticConstants,
-    complete_elliptic,
+    complete_elliptic_integrals,
     contact_modulus,
     contact_shear_modulus,
     domain_extension,
@@ -78,7 +78,7 @@ def test_hu_fit_is_wrong_with_a_profile_dimension():
 
 @given(e=st.floats(0.0, 1.0 - 1e-7))
 def test_complete_elliptic(e):
-    first, second = complete_elliptic(e)
+    first, second = complete_elliptic_integrals(e)
     complement = (1 - e) * (1 + e)
     # scipy's ellipkm1 keeps 1 - e^2; the mean and the sum of squares are right to some ulp
     assert first == pytest.approx(ellipkm1(complement), rel=32 * EPS)
@@ -86,13 +86,13 @@ def test_complete_elliptic(e):
 
 
 def test_complete_elliptic_is_a_circle_at_zero():
-    assert complete_elliptic(0.0) == pytest.approx((math.pi / 2, math.pi / 2), rel=2 * EPS)
+    assert complete_elliptic_integrals(0.0) == pytest.approx((math.pi / 2, math.pi / 2), rel=2 * EPS)
 
 
 @given(e=st.floats(0.01, 0.99))
 def test_legendre_relation(e):
-    K, E = complete_elliptic(e)
-    K1, E1 = complete_elliptic(math.sqrt(1 - e**2))
+    K, E = complete_elliptic_integrals(e)
+    K1, E1 = complete_elliptic_integrals(math.sqrt(1 - e**2))
     area = E * K1 + E1 * K - K * K1
     # terms up to 10 times pi/2, and 1 - e^2 is formed twice
     assert area == pytest.approx(math.pi / 2, rel=1e-12)
@@ -101,7 +101,7 @@ def test_legendre_relation(e):
 @pytest.mark.parametrize("distance", [1e-8, 1e-10, 1e-12])
 def test_complete_elliptic_near_a_line(distance):
     e = 1 - distance
-    first, second = complete_elliptic(e)
+    first, second = complete_elliptic_integrals(e)
     complement = (1 - e) * (1 + e)
     # the documented range: round-off for e <= 1 - 1e-12
     assert first == pytest.approx(ellipkm1(complement), rel=32 * EPS)

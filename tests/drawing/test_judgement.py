@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.common.judgement import MAX_STIFFNESS_RATIO, assess_law, find_rms_height
-from jointfmu_tools.common.pressure import judge_file, nominal_pressure
+from jointfmu_tools.common.pressure import judge_joint_stiffness, nominal_pressure
 from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.inputs.drawing.tables import read_threads
 from jointfmu_tools.inputs.drawing.vdi2230 import proof_load, stress_area
@@ -31,22 +31,22 @@ def rough(joint, h):
 
 def test_the_ratio_is_that_of_the_joint():
     """K_zz of the uneven joint over F/(0.45 h): the law at the mean pressure says it within 10 %."""
-    found = judge_file(BOLTED, [9e3, 15e3])
+    found = judge_joint_stiffness(BOLTED, [9e3, 15e3])
     for ratio, preload in zip(found.comparison.ratio, (9e3, 15e3), strict=True):
-        K = BoltedJointSpring.of(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
+        K = BoltedJointSpring.for_joint(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
         assert ratio == pytest.approx(K * PERSSON_GAMMA * find_rms_height(BOLTED) / (8 * preload), rel=0.1)
     assert found.warnings == ()
 
 
 def test_the_law_roughness_is_judged_by_its_own_height():
     """Many spots on 0.04 m2: the line itself, and a little for the few spots."""
-    found = judge_file(load_default("bolted_joint", "roughness"), [9e3])
+    found = judge_joint_stiffness(load_default("bolted_joint", "roughness"), [9e3])
     assert found.comparison.ratio == pytest.approx([1.0], abs=0.05)
 
 
 def test_a_height_that_is_no_roughness():
     file = load_default("bolted_joint", "roughness").with_values({"h": 8e-3}, "user", "test")
-    assert judge_file(file, [9e3]).warnings[0].startswith("h = 0.008 m is not a roughness: ")
+    assert judge_joint_stiffness(file, [9e3]).warnings[0].startswith("h = 0.008 m is not a roughness: ")
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -65,16 +65,16 @@ def test_a_factor_of_three_either_way(side):
 def test_what_is_not_known_is_not_judged():
     for joint in KINDS:
         file = load_default(joint)
-        found = judge_file(file)
+        found = judge_joint_stiffness(file)
         assert (found.comparison is None) == (find_rms_height(file) is None)
-        assert judge_file(file).to_json()["warnings"] == []
+        assert judge_joint_stiffness(file).to_json()["warnings"] == []
     assert assess_law(BOLTED.values, [0.0], 1e-6).comparison is None
 
 
 @pytest.mark.parametrize("joint", [name for name in KINDS if nominal_pressure(KINDS[name])])
 def test_every_joint_is_judged_under_its_load(joint):
     file = rough(joint, 2e-6)
-    how, found = nominal_pressure(KINDS[joint]), judge_file(file)
+    how, found = nominal_pressure(KINDS[joint]), judge_joint_stiffness(file)
     assert how.load_variable in KINDS[joint].variables
     pressure = how.mean_pressure(file.values, how.default_load(file.values))
     assert found.comparison.pressure == pytest.approx([pressure])
@@ -93,7 +93,7 @@ def test_every_joint_is_judged_under_its_load(joint):
 def test_the_start_value_of_the_load_is_a_working_point(tmp_path):
     text = format_parameter_file(BOLTED).replace("preload = { value = 0.0", "preload = { value = 12e3")
     (tmp_path / "tight.toml").write_text(text)
-    found = judge_file(load_parameter_file(tmp_path / "tight.toml"))
+    found = judge_joint_stiffness(load_parameter_file(tmp_path / "tight.toml"))
     assert found.comparison.pressure == pytest.approx([8 * 12e3 / BOLTED.values.A_0])
 
 
@@ -146,8 +146,8 @@ def test_holes_of_no_bolt():
 
 
 def test_a_preload_that_no_bolt_bears():
-    assert judge_file(BOLTED, [150e3]).warnings[0].startswith("stiffness by the law")
-    first, *_ = judge_file(BOLTED, [155e3]).warnings
+    assert judge_joint_stiffness(BOLTED, [150e3]).warnings[0].startswith("stiffness by the law")
+    first, *_ = judge_joint_stiffness(BOLTED, [155e3]).warnings
     assert first.startswith("preload = 155000 N is above 1.52e+05 N, the proof load of M16, class 12.9")
 
 

@@ -138,8 +138,8 @@ def test_bolts_grow():
         values = [getattr(thread, column) for thread in sizes]
         assert values == sorted(values)
     for thread in sizes:
-        assert thread.pitch < thread.d < thread.hole < thread.hexagon < thread.socket
-        assert thread.d == pytest.approx(float(thread.name[1:]) * 1e-3)
+        assert thread.pitch < thread.nominal_diameter < thread.hole < thread.hexagon < thread.socket
+        assert thread.nominal_diameter == pytest.approx(float(thread.name[1:]) * 1e-3)
     for strength in read_property_classes().values():
         assert all(p < y for p, y in zip(strength["proof"], strength["yield"], strict=True))
 

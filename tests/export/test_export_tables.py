@@ -24,7 +24,7 @@ STATE = TightenedState(9e3, 0.0)
 
 @pytest.fixture(scope="module")
 def bolted():
-    return BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
+    return BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +134,7 @@ def test_contact_text(bolted):
 
 def test_calculix_refuses_more_rows_than_it_holds():
     file = load_default("bolted_joint")
-    rows = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-4).facts["rows"]
+    rows = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-4).facts_by_name["rows"]
     assert rows > 200
     with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; state a larger error"):
         writing.export_contact("calculix", file, SI_UNIT_SET, 1e-4)
@@ -153,7 +153,7 @@ def test_csv_is_read_by_numpy(joint, state, heads):
     lines = [line for line in written.text.splitlines() if not line.startswith("#")]
     assert lines[0] == heads
     rows = np.loadtxt(lines[1:], delimiter=",")
-    assert rows.shape == (written.facts["rows"], 3)
+    assert rows.shape == (written.facts_by_name["rows"], 3)
     slope = np.gradient(rows[:, 1], rows[:, 0])[2:-2]
     inside = rows[2:-2, 2] > 0.1 * rows[:, 2].max()
     assert np.max(np.abs(slope / rows[2:-2, 2] - 1.0)[inside]) < 0.01  # central differences of the load
@@ -236,7 +236,7 @@ def modelica_table(text):
 def test_modelica_text(joint, state):
     written = writing.export_curve("modelica", load_default(joint), state, SI_UNIT_SET, 1e-3)
     name, rows = modelica_table(written.text)
-    assert name == written.facts["table"] == ("torque" if joint == "harmonic_drive" else "force")
+    assert name == written.facts_by_name["table"] == ("torque" if joint == "harmonic_drive" else "force")
     assert np.all(np.diff(rows[:, 0]) > 0.0)
     csv = writing.export_curve("csv", load_default(joint), state, SI_UNIT_SET, 1e-3).text
     same = np.loadtxt([line for line in csv.splitlines() if line[0] in "-0123456789"], delimiter=",")

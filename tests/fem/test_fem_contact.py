@@ -9,7 +9,7 @@ from clients import needs
 from jointfmu_tools.fem import newton, require_fem_packages
 from jointfmu_tools.fem.balance import RigidBalance
 from jointfmu_tools.fem.bolted_contact import BoltedContact, bolt_midpoints, elastic_body
-from jointfmu_tools.fem.contact import ContactModel, ContactSolution, Interface
+from jointfmu_tools.fem.contact import ContactInterface, ContactModel, ContactSolution
 from jointfmu_tools.fem.elasticity import Cholesky, ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from scipy.sparse import diags_array
@@ -68,7 +68,7 @@ def test_two_blocks_pressed_uniformly(law):
         mesh = MeshHex.init_tensor(lines, lines, np.sort(sign * z))
         far = {"far": lambda x, end=sign * depth: np.isclose(x[2], end)}
         bodies.append(ElasticBody(mesh.with_boundaries(far), modulus, 0.3, 7800.0))
-    interface = Interface.from_mesh(MeshQuad.init_tensor(lines, lines))
+    interface = ContactInterface.from_mesh(MeshQuad.init_tensor(lines, lines))
     area = 0.05**2
     loads = [
         -sign * p * area * body.uniform_load(body.mesh.boundaries["far"])
@@ -107,7 +107,7 @@ def wavy(n: int, mean: float, k: float, amplitude: float) -> ContactSolution:
     body = ElasticBody(mesh, 1.0, 0.3, 1.0)
     ends = np.isclose(body.nodes[0], 0.0) | np.isclose(body.nodes[0], 0.5)
     held = np.concatenate([3 * np.flatnonzero(ends), 3 * np.arange(ends.size) + 1])
-    interface = Interface.from_mesh(MeshQuad.init_tensor(x, y))
+    interface = ContactInterface.from_mesh(MeshQuad.init_tensor(x, y))
     model = ContactModel(
         (body,), interface, Linear(k), lambda x, y: amplitude * (1.0 - np.cos(2.0 * np.pi * x)), (held,)
     )
@@ -129,8 +129,8 @@ def test_full_contact_on_springs_converges_with_order_three():
     errors = []
     for n in (4, 8, 16):
         solution = wavy(n, 2.0 * wave, k, amplitude)
-        x = solution.model.interface.quadrature_position[:, 0]
-        weight = solution.model.interface.quadrature_area
+        x = solution.model.contact_interface.quadrature_position[:, 0]
+        weight = solution.model.contact_interface.quadrature_area
         exact = 2.0 * wave + wave * np.cos(2.0 * np.pi * x)
         errors.append(float(np.sqrt(weight @ (solution.pressure - exact) ** 2 / (weight @ exact**2))))
     assert errors[-1] < 3e-5  # 1.4e-5 measured
@@ -144,8 +144,8 @@ def test_partial_contact_converges_to_westergaard():
     errors, peaks = [], []
     for n in (8, 16, 32):
         solution = wavy(n, mean, 20.0 * n * np.pi * MODULUS, amplitude)
-        x = solution.model.interface.quadrature_position[:, 0]
-        weight = solution.model.interface.quadrature_area
+        x = solution.model.contact_interface.quadrature_position[:, 0]
+        weight = solution.model.contact_interface.quadrature_area
         root = np.sqrt(np.maximum(sine**2 - np.sin(np.pi * x) ** 2, 0.0))
         exact = 2.0 * mean * np.cos(np.pi * x) / sine**2 * root
         errors.append(float(weight @ np.abs(solution.pressure - exact) / (weight @ exact)))
@@ -218,9 +218,11 @@ def test_bodies_of_different_kind(law):
     solution = joint.solve(law, 4e3, -30.0)
     area = PLATE.length * PLATE.width
     assert joint.assembly.contact_area == pytest.approx(area - 2.0 * np.pi * 0.0033**2, rel=1e-12)
-    assert solution.field.area.sum() == pytest.approx(joint.assembly.contact_area, rel=1e-12)
-    assert solution.field.force == pytest.approx(8e3, rel=ROUND_OFF)
-    moment = (solution.field.area * solution.field.pressure) @ solution.field.position[:, 1]
+    assert solution.contact_field.area.sum() == pytest.approx(joint.assembly.contact_area, rel=1e-12)
+    assert solution.contact_field.force == pytest.approx(8e3, rel=ROUND_OFF)
+    moment = (
+        solution.contact_field.area * solution.contact_field.pressure
+    ) @ solution.contact_field.position[:, 1]
     assert moment == pytest.approx(-30.0, rel=1e-8)
 
 
@@ -264,7 +266,9 @@ def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
 def test_contact_forces_are_checked_by_their_sums(plates, law):
     model, loads = pulled(plates, law, -4e3, -4e3)
     solution, balance = model.solve(loads, 1e6), model.rigid_balance(loads)
-    force = 0.5 * model.interface.quadrature_area * solution.pressure  # the mirror image takes the other half
+    force = (
+        0.5 * model.contact_interface.quadrature_area * solution.pressure
+    )  # the mirror image takes the other half
     balance.check_contact(force * (1.0 + 1e-8))
     with pytest.raises(RuntimeError, match=r"leaves \S+ times the loads unbalanced, allowed is 1e-06$"):
         balance.check_contact(force * (1.0 + 1e-5))
@@ -336,7 +340,7 @@ def test_a_stiff_side_does_not_tell_how_a_bolt_holds_it(law):
     fields = [
         BoltedContact.from_assembly(Assembly("stiff", Plate(**sizes, **STEEL), side, bolts), 0.5)
         .solve(law, 15e3)
-        .field
+        .contact_field
         for side in (Plate(**sizes, **stiff), TappedPlate(**sizes, **stiff, depth=0.008))
     ]
     nut, thread = fields
@@ -354,7 +358,7 @@ def test_a_thread_pulls_beside_its_hole(law):
     for tapped in (False, True):
         side = TappedPlate(**sizes, **STEEL, depth=0.008) if tapped else Plate(**sizes, **STEEL)
         joint = BoltedContact.from_assembly(Assembly("thread", Plate(**sizes, **STEEL), side, bolt), 0.5)
-        field, head = joint.solve(law, 15e3).field, joint.bolt_head_loads[-1][:, 0].reshape(-1, 3)
+        field, head = joint.solve(law, 15e3).contact_field, joint.bolt_head_loads[-1][:, 0].reshape(-1, 3)
         assert head.sum(axis=0) == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
         at = joint.bodies[-1].nodes[:, np.abs(head[:, 2]) > 1e-9]
         if tapped:

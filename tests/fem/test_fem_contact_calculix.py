@@ -39,17 +39,17 @@ def deck(model: ContactModel, loads: list[np.ndarray], overclosure: float) -> It
 def test_calculix_finds_the_same_contact(tmp_path):
     other = replace(PLATE, thickness=0.02, E=7e10)
     joint = BoltedContact.from_assembly(Assembly("plates", PLATE, other, BOLTS), 0.5)
-    law, model = Linear(STIFFNESS), ContactModel(joint.bodies, joint.interface, Linear(STIFFNESS))
+    law, model = Linear(STIFFNESS), ContactModel(joint.bodies, joint.contact_interface, Linear(STIFFNESS))
     force = np.array([4.8e3, 3.2e3])
     loads = [sign * head @ force for sign, head in zip((1.0, -1.0), joint.bolt_head_loads, strict=True)]
-    mean = force.sum() / joint.interface.quadrature_area.sum()
+    mean = force.sum() / joint.contact_interface.quadrature_area.sum()
     ours = model.solve(loads, mean)
     (tmp_path / "plates.inp").write_text("\n".join(deck(model, loads, mean / STIFFNESS)) + "\n")
     run = subprocess.run(["ccx", "plates"], cwd=tmp_path, capture_output=True, text=True, timeout=300)
     assert run.returncode == 0, run.stdout[-500:]
     moved = displacements(tmp_path / "plates.dat")
     first = joint.bodies[0].basis.N
-    flat = np.column_stack([*joint.interface.nodes, np.zeros(joint.interface.nodes.shape[1])])
+    flat = np.column_stack([*joint.contact_interface.nodes, np.zeros(joint.contact_interface.nodes.shape[1])])
     lower, upper = (cKDTree(body.nodes.T).query(flat)[1] for body in joint.bodies)
     approach = ours.approach_offset + moved[lower, 2] - moved[first + upper, 2]
     pressure, peak = law.derivatives(approach)[0], ours.node_pressure.max()

@@ -110,7 +110,7 @@ def test_the_joint_has_the_field(computed):
     joint = load_parameter_file(folder / "joint.toml", "bolted_joint").values
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == (4.0, 2.0, 0.03)
     assert (joint.side1.E, joint.side1.nu) == (2.1e11, 0.3)
-    state = BoltedJointSpring.of_nodes(joint).evaluate(5e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    state = BoltedJointSpring.for_interface_nodes(joint).evaluate(5e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for name, sum_ in (("K_zz", "K_N"), ("K_rx", "K_rx"), ("K_ry", "K_ry")):
         assert state[name] == pytest.approx(found[sum_], rel=1e-6), name  # what the reduction keeps
 

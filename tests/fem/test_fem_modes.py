@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from jointfmu_tools.fem.contact import Interface
+from jointfmu_tools.fem.contact import ContactInterface
 from jointfmu_tools.fem.elasticity import ElasticBody
 from jointfmu_tools.fem.modes import compute_modes
 from scipy.linalg import eigh
@@ -34,7 +34,7 @@ class Block:
 
     def contact(self, size):
         x, y = steps(self.length, size), steps(self.width, size)
-        return Interface.from_mesh(MeshQuad.init_tensor(x - 0.5 * self.length, y - 0.5 * self.width))
+        return ContactInterface.from_mesh(MeshQuad.init_tensor(x - 0.5 * self.length, y - 0.5 * self.width))
 
 
 def steps(end, size):

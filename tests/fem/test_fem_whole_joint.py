@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from clients import needs
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
-from jointfmu_tools.fem.reduction.states import CellLoads
+from jointfmu_tools.fem.reduction.states import UnitLoadResponse
 from jointfmu_tools.fem.whole_joint import ATTACHMENT_NODES, JointFiniteElements
 
 pytestmark = pytest.mark.slow  # solves finite elements
@@ -47,7 +47,7 @@ def test_a_lap_has_the_compliance_of_shear_lag(reach):
         ),
     )
     springs = even(joint, 0.5 * beta**2 * plate.E * plate.thickness, 1e12)
-    found = joint.compliances(springs, 0.0).total[0]
+    found = joint.compliances(springs, 0.0).total_compliance[0]
     per = plate.E * plate.thickness * plate.width
     expected = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per
     assert found == pytest.approx(expected, rel=0.01)
@@ -62,8 +62,8 @@ def test_bodies_without_compliance_leave_the_interface(attached):
     stiff = replace(assembly.side1, E=206e15)
     joint = JointFiniteElements.from_assembly(replace(assembly, side1=stiff, side2=stiff), attached)
     found = joint.compliances(even(joint, 1e12, 1e12), 0.0)
-    assert found.total == pytest.approx(found.interface_compliance, rel=1e-4)
-    assert found.components[0] == pytest.approx(found.interface_compliance, rel=1e-4)
+    assert found.total_compliance == pytest.approx(found.interface_compliance, rel=1e-4)
+    assert found.component_compliances[0] == pytest.approx(found.interface_compliance, rel=1e-4)
 
 
 @needs("gmsh")
@@ -73,24 +73,26 @@ def test_each_stiffer_part_makes_a_stiffer_joint():
     base, bolted, rough = (
         joint.compliances(springs * s, bolt) for s, bolt in ((1.0, 0.0), (1.0, 1e9), (0.5, 0.0))
     )
-    assert np.all(bolted.total < base.total * (1.0 + 1e-9))
-    assert np.all(rough.total > base.total)
+    assert np.all(bolted.total_compliance < base.total_compliance * (1.0 + 1e-9))
+    assert np.all(rough.total_compliance > base.total_compliance)
     # in equilibrium bolts and members share the load as their stiffness under the heads does, but for what a
     # mesh that is not symmetric turns
-    bolt, members = 1e9, 1.0 / base.total[2]
+    bolt, members = 1e9, 1.0 / base.total_compliance[2]
     assert bolted.load_factor == pytest.approx(bolt / (bolt + members), rel=1e-5)
-    assert 1.0 / bolted.total[2] == pytest.approx(bolt + members, rel=1e-9)
+    assert 1.0 / bolted.total_compliance[2] == pytest.approx(bolt + members, rel=1e-9)
 
 
 @needs("gmsh")
 def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     """It is not solved for. A softer side is none, nor other heads, nor edges, held at opposite ends."""
     joint = JointFiniteElements.from_assembly(block(nu=0.3), "heads")
-    near = SimpleNamespace(points=SimpleNamespace(position=joint.interface.centred_position[::40]))
+    near = SimpleNamespace(points=SimpleNamespace(position=joint.contact_interface.centred_position[::40]))
     springs = even(joint, 1e12, 2e12)
 
     def moved():
-        cells = CellLoads.from_joint(joint, near, np.ones(joint.interface.quadrature_area.size))
+        cells = UnitLoadResponse.from_joint(
+            joint, near, np.ones(joint.contact_interface.quadrature_area.size)
+        )
         return cells.unit_load_displacement, joint.linearize(springs, 1e8).unit_motion_displacement
 
     found = moved()

@@ -24,7 +24,7 @@ LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
 @pytest.fixture(scope="module")
 def disc():
     """An evenly pressed disc of many points, whose middle lags behind by two modes, and patches of it."""
-    law = BoltedJointSpring.of(load_default("bolted_joint").values).friction.foundation()
+    law = BoltedJointSpring.for_joint(load_default("bolted_joint").values).friction_law.foundation()
     line = RADIUS * (np.arange(COUNT) + 0.5) / COUNT * 2.0 - RADIUS
     place = np.stack([each.ravel() for each in np.meshgrid(line, line)], axis=1)
     place = place[np.hypot(*place.T) < RADIUS]
@@ -85,8 +85,11 @@ def test_patches_lose_and_resist_as_all_points(disc):
     partial = np.arange(1, 7)  # along x
     assert np.min(before.cycle_loss[partial] / aim.cycle_loss[partial]) < 0.97
     np.testing.assert_allclose(after.cycle_loss[partial], aim.cycle_loss[partial], rtol=0.03)
-    size = np.linalg.norm(aim.forces[:7, :2], axis=1)
-    missed = [np.max(np.linalg.norm((w.forces - aim.forces)[:7, :2], axis=1) / size) for w in (before, after)]
+    size = np.linalg.norm(aim.friction_forces[:7, :2], axis=1)
+    missed = [
+        np.max(np.linalg.norm((w.friction_forces - aim.friction_forces)[:7, :2], axis=1) / size)
+        for w in (before, after)
+    ]
     assert missed[1] < max(0.5 * missed[0], 0.01)
 
 

@@ -261,16 +261,16 @@ def test_surface_mesh_in_another_plane(tmp_path, suffix, monkeypatch):
     path = tmp_path / f"a{suffix}"
     meshio.write(path, meshio.Mesh(place, {"quad": cells}, {"p": p}))
     field, _ = FieldReader(
-        **UNITS, point_data_name="p", contact_plane=ContactPlane("x"), format="mesh"
+        **UNITS, point_data_name="p", contact_plane=ContactPlane("x"), file_format="mesh"
     ).read_field(path)
     np.testing.assert_allclose(1e3 * field.position, points, rtol=1e-12, atol=1e-15)
     turned, _ = FieldReader(
-        **UNITS, point_data_name="p", contact_plane=ContactPlane("x", "z"), format="mesh"
+        **UNITS, point_data_name="p", contact_plane=ContactPlane("x", "z"), file_format="mesh"
     ).read_field(path)
     np.testing.assert_allclose(turned.position[:, 0], field.position[:, 1])
     np.testing.assert_allclose(turned.position[:, 1], -field.position[:, 0])
     with pytest.raises(ValueError, match=r"node \d+: lies .* away from the plane z = "):
-        FieldReader(**UNITS, point_data_name="p", format="mesh").read_field(path)
+        FieldReader(**UNITS, point_data_name="p", file_format="mesh").read_field(path)
 
 
 @pytest.mark.parametrize("normal", ["y", "z"])

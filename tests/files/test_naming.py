@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.naming import MAX_NAME_LENGTH, check_name
+from jointfmu_fmu_src.naming import MAX_NAME_LENGTH, check_fmu_name
 
 from jointfmu.joints import MODELS
 
@@ -14,7 +14,7 @@ ALLOWED = "allowed are at most 63 letters, digits and _, no digit first, no word
 
 @pytest.mark.parametrize("name", ["A", "_", "ShoulderDrive", "drive_2", "x" * MAX_NAME_LENGTH])
 def test_identifiers_are_names(name: str) -> None:
-    assert check_name(name) == name
+    assert check_fmu_name(name) == name
 
 
 @pytest.mark.parametrize(

@@ -182,7 +182,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
 def test_joint_stiffness_is_the_exported_one(direction):
     """Also at 20 N of preload, where most nodes are still closing."""
     joint = load_default("bolted_joint").values
-    spring = BoltedJointSpring.of_nodes(replace(joint, memory=False))
+    spring = BoltedJointSpring.for_interface_nodes(replace(joint, memory=False))
     loads = np.array([20.0, 2e3, 3e4])
     name = {"normal": "K_zz", "tangential": "K_xx"}[direction]
     exported = [spring.evaluate(load, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[name] for load in loads]

@@ -35,7 +35,7 @@ def test_first_loading_is_the_normal_curve_once_more():
     """B(u) = mu (F_N(0) - F_N(kappa u/mu)) with the normal force of the exported joint, all of its nodes."""
     joint = load_default("bolted_joint").values
     law, told = loop.first_loading(joint, PRELOAD)
-    spring = BoltedJointSpring.of_nodes(joint)
+    spring = BoltedJointSpring.for_interface_nodes(joint)
 
     def state(apart):
         return spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
@@ -75,7 +75,7 @@ def test_loop_of_a_parabola():
 def test_decay_of_a_parabola():
     """First and second order of the decrement by hand: (2/3) e (1 + 2 e), e = C h/K."""
     e = np.array([1e-3, 2e-3])
-    omega, decrement = PARABOLA.decay(e * K / C, 5.0)
+    omega, decrement = PARABOLA.free_decay(e * K / C, 5.0)
     np.testing.assert_allclose(decrement, 2.0 / 3.0 * e * (1.0 + 2.0 * e), rtol=2e-5)  # third order
     np.testing.assert_allclose(omega, np.sqrt((K - C * e * K / C) / 5.0), rtol=2e-6)  # second order
 
@@ -83,7 +83,7 @@ def test_decay_of_a_parabola():
 def test_decay_of_a_viscous_spring():
     """No friction: sqrt(K/M), and the decrement pi d/(2 sqrt(K M)) of half a period."""
     law = HysteresisLaw(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous_damping=200.0)
-    omega, decrement = law.decay(AMPLITUDES, 5.0)
+    omega, decrement = law.free_decay(AMPLITUDES, 5.0)
     np.testing.assert_allclose(omega, np.sqrt(K / 5.0), rtol=1e-9)
     np.testing.assert_allclose(decrement, 0.5 * np.pi * 200.0 / np.sqrt(K * 5.0), rtol=1e-5)  # second order
 
@@ -163,7 +163,7 @@ def test_the_place_of_rest_is_found_in_loops(middle):
     assert rest == pytest.approx(3e-5, rel=1e-6)
     # steps of 50 nm: the turning points are the outermost samples
     assert np.max(
-        np.abs(found.fit_turning_points(law.shift_rest(rest), found.residual_scale)[2])
+        np.abs(found.fit_turning_points(law.with_rest_position(rest), found.residual_scale)[2])
     ) < 1e-9 * np.ptp(force)
 
 

@@ -65,9 +65,9 @@ def test_without_memory_nothing_is_lost(native, version):
     fmu = native / version / "GearContact.fmu"
     found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
     assert (found.motion_name, found.force_name) == ("s_rel", "f")
-    assert [row["loss"] for row in found.compute_rows()] == [0.0, 0.0]
-    assert found.compute_rows()[1]["force"] == 300.0
-    assert "E_loss" not in found.compute_rows()[0]
+    assert [row["loss"] for row in found.compute_loop_results()] == [0.0, 0.0]
+    assert found.compute_loop_results()[1]["force"] == 300.0
+    assert "E_loss" not in found.compute_loop_results()[0]
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ def test_every_part_can_be_loaded(joint: str) -> None:
     assert loaded == sorted(tools.PARTS[joint].modules)
     load = builders.FMU_PARTS[joint].native
     assert load is not None
-    assert load().shared_files
+    assert load().shared_file_stems
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ import toy_joint.tools as toy_tools
 from conftest import here_alone
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import joints as builders
-from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica import library
 from jointfmu_tools.studies.checks import check_ramp, compare_flavour, run_default_ramp
@@ -39,7 +39,7 @@ def toy():
 def built(toy, tmp_path_factory):
     out = tmp_path_factory.mktemp("toy")
     with here_alone():
-        build(["ToySpring"], list(FLAVOURS), None, out)
+        build_fmus(["ToySpring"], list(FLAVOUR_BUILDERS), None, out)
     return out
 
 
@@ -55,7 +55,7 @@ def test_a_name_is_taken_once():
         joints.register_joint(toy_joint.KIND)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("flavour", FLAVOUR_BUILDERS)
 def test_every_flavour_is_valid_and_gives_hookes_law(built, flavour):
     path = built / flavour / "ToySpring.fmu"
     assert validate_fmu(str(path)) == []

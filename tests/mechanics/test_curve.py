@@ -313,7 +313,7 @@ def test_stiffness_is_the_laws(law):
     t = np.linspace(0.0, 1.0, 11)[:-1, None]
     p, k = curve.derivatives((x[:-1] + t * np.diff(x)).ravel(), 1)
     np.testing.assert_allclose(k, stiffness_curve(law, p)[0], rtol=MAX_ERROR)
-    assert curve.end[1] == pytest.approx(law.hardness, rel=1e-12)  # residual of the pressure inversion
+    assert curve.end_point[1] == pytest.approx(law.hardness, rel=1e-12)  # residual of the pressure inversion
 
 
 @pytest.mark.parametrize("kind", ["zhao", "yu"])

@@ -44,8 +44,8 @@ def test_force_is_conserved(pattern):
     np.testing.assert_allclose(bolt_pressures(pattern, areas, points, points) @ areas, 1.0, rtol=SUM)
     shape = pressure_distribution(pattern)
     assert shape.area_share.sum() == pytest.approx(1.0, rel=SUM)
-    assert shape.area_share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
-    assert shape.area_share @ shape.moment_shape == pytest.approx(0.0, abs=SUM)
+    assert shape.area_share @ shape.preload_pressure_ratio == pytest.approx(1.0, rel=SUM)
+    assert shape.area_share @ shape.moment_pressure_ratio == pytest.approx(0.0, abs=SUM)
     np.testing.assert_allclose(shape.area_share @ shape.position, 0.0, atol=SUM)  # m, about the centroid
 
 
@@ -90,8 +90,8 @@ def test_shapes_are_symmetric(pattern):
     shape = pressure_distribution(pattern)
     for sign, parity in (((-1, 1), 1.0), ((1, -1), -1.0)):
         for values, factor in (
-            (shape.preload_shape, 1.0),
-            (shape.moment_shape, parity),
+            (shape.preload_pressure_ratio, 1.0),
+            (shape.moment_pressure_ratio, parity),
             (shape.area_share, 1.0),
         ):
             image = mirrored(shape.position, values, np.array(sign))
@@ -244,16 +244,16 @@ def test_merged_nodes_keep_the_sums(moment):
     x2, y2 = shape.position.T**2
     for found, expected in (
         (1.0, 1.0 + 0.0 * x2),
-        (merged.preload_shape, shape.preload_shape),
-        (merged.preload_shape**2, shape.preload_shape**2),
+        (merged.preload_pressure_ratio, shape.preload_pressure_ratio),
+        (merged.preload_pressure_ratio**2, shape.preload_pressure_ratio**2),
         (merged.mean_square_x, x2),
-        (merged.mean_square_y * merged.preload_shape, y2 * shape.preload_shape),
-        (merged.moment_shape**2, moment * shape.moment_shape**2),
+        (merged.mean_square_y * merged.preload_pressure_ratio, y2 * shape.preload_pressure_ratio),
+        (merged.moment_pressure_ratio**2, moment * shape.moment_pressure_ratio**2),
     ):
         # equal is rounded to ALIKE decimals where nodes are compared
         assert np.sum(merged.area_share * found) == pytest.approx(
             shape.area_share @ expected, rel=10.0**-PRESSURE_DECIMALS
         )
-    assert np.max(merged.preload_shape) == pytest.approx(
-        np.max(shape.preload_shape), rel=10.0**-PRESSURE_DECIMALS
+    assert np.max(merged.preload_pressure_ratio) == pytest.approx(
+        np.max(shape.preload_pressure_ratio), rel=10.0**-PRESSURE_DECIMALS
     )

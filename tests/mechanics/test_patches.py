@@ -55,7 +55,12 @@ def moved(name: str) -> FrictionPatches:
 
 def balance(shape: PressureDistribution) -> np.ndarray:
     """Sums that are exact, each over the sum of its sizes."""
-    (x, y), share, equal, tilt = shape.position.T, shape.area_share, shape.preload_shape, shape.moment_shape
+    (x, y), share, equal, tilt = (
+        shape.position.T,
+        shape.area_share,
+        shape.preload_pressure_ratio,
+        shape.moment_pressure_ratio,
+    )
     one, own = np.ones_like(x), 0.5 * shape.radius**2 if isinstance(shape, FrictionPatches) else 0.0
     rows = np.stack(
         [one, x, y, x * x + own, x * y, y * y + own, equal, equal * x, equal * y, tilt, tilt * x, tilt * y]
@@ -81,7 +86,7 @@ def test_patches_that_left_the_nodes_keep_the_same_sums(name):
     shape, patches = contact(name), moved(name)
     assert patches.area_share.size <= 22
     assert np.min(patches.area_share) > 0.0
-    assert np.min(patches.preload_shape) >= 0.0
+    assert np.min(patches.preload_pressure_ratio) >= 0.0
     there, size = balance(shape)
     np.testing.assert_allclose(balance(patches)[0] / size, there / size, rtol=0.0, atol=1e-13)
 
@@ -92,8 +97,8 @@ def test_largest_pressure_is_that_of_all_nodes(name):
     shape = contact(name)
     points = reduced(name, 160)
     for moment in np.linspace(-1.0, 1.0, 41):
-        highest = np.max(shape.preload_shape + moment * shape.moment_shape)
-        assert np.max(points.preload_shape + moment * points.moment_shape) == pytest.approx(
+        highest = np.max(shape.preload_pressure_ratio + moment * shape.moment_pressure_ratio)
+        assert np.max(points.preload_pressure_ratio + moment * points.moment_pressure_ratio) == pytest.approx(
             highest, rel=1e-14
         )
 
@@ -127,7 +132,7 @@ def test_too_few_points_are_refused():
 @pytest.fixture(scope="module")
 def spring() -> BoltedJointSpring:
     """The default joint, whose curve the points do not know."""
-    return BoltedJointSpring.of(load_default("bolted_joint").values)
+    return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
 
 
 @pytest.mark.parametrize(

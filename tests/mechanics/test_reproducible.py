@@ -97,14 +97,16 @@ def test_rounded_numbers_keep_their_place():
     once = round_distribution(shape)
     assert content(round_distribution(once)) == content(once)
     assert np.max(np.abs(once.area_share / shape.area_share - 1.0)) < 2.0**-19
-    assert np.max(np.abs(once.moment_shape - shape.moment_shape)) < 2.0**-19 * np.max(
-        np.abs(shape.moment_shape)
+    assert np.max(np.abs(once.moment_pressure_ratio - shape.moment_pressure_ratio)) < 2.0**-19 * np.max(
+        np.abs(shape.moment_pressure_ratio)
     )
     mirrored = round_distribution(
-        PressureDistribution(shape.area_share, -shape.position, shape.preload_shape, -shape.moment_shape)
+        PressureDistribution(
+            shape.area_share, -shape.position, shape.preload_pressure_ratio, -shape.moment_pressure_ratio
+        )
     )
     assert np.array_equal(mirrored.position, -once.position)
-    assert np.array_equal(mirrored.moment_shape, -once.moment_shape)
+    assert np.array_equal(mirrored.moment_pressure_ratio, -once.moment_pressure_ratio)
 
 
 def test_what_rounding_leaves_is_zero():
@@ -112,7 +114,7 @@ def test_what_rounding_leaves_is_zero():
         np.ones(2), np.array([[1.0, 1e-17], [-1.0, 2.0]]), np.ones(2), np.array([1e-18, 0.5])
     )
     found = clear_round_off(shape)
-    assert found.position[0, 1] == found.moment_shape[0] == 0.0
+    assert found.position[0, 1] == found.moment_pressure_ratio[0] == 0.0
     assert np.array_equal(found.position[1], shape.position[1])
 
 

@@ -63,7 +63,7 @@ def drive() -> HarmonicDriveSpring:
 
 @pytest.fixture(scope="module")
 def bolted() -> BoltedJointSpring:
-    return BoltedJointSpring.of(load_default("bolted_joint").values)
+    return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
@@ -305,7 +305,7 @@ def test_rumoca_finds_no_error_in_any_file(rumoca: Any):
 
 
 def test_drive_component_gives_the_torque_of_the_package(rumoca: Any, drive: HarmonicDriveSpring):
-    reach = 1.2 * drive.curve.end[0]  # beyond the table on both sides
+    reach = 1.2 * drive.curve.end_point[0]  # beyond the table on both sides
     text = top(
         "JointStiffness.Components.HarmonicDriveSpring drive(d=0, stateSelect=StateSelect.default);\n"
         f"  Move motor;\n  Move load(at={-reach!r}, rate={2.0 * reach!r});",
@@ -380,7 +380,7 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
     """Without memory: far below the limit, which the FMU has for each of its nodes."""
     s, v = (0.0, -2e-9, -4e-6), (2e-6, -1e-6, 6e-3)
     flags = {"memory": False, "damping": True, "plastic_damping": True}
-    plastic = BoltedJointSpring.of_nodes(replace_values(bolted.joint, flags))
+    plastic = BoltedJointSpring.for_interface_nodes(replace_values(bolted.joint, flags))
     record = make_identifier(f"{load_default('bolted_joint').name} 15 kN 4500 Nm")
     body = (
         f"JointStiffness.Components.BoltedJoint joint(data=JointStiffness.Data.{record}(), "
@@ -415,7 +415,7 @@ def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tm
     body += "\n  Move mx; Move my; Move mz(at=1e-6, rate=-4e-6);"
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 2e-2, written=tmp_path)
-    spring = BoltedJointSpring.of_nodes(replace(file.values, memory=False))
+    spring = BoltedJointSpring.for_interface_nodes(replace(file.values, memory=False))
     exact = [
         spring.evaluate(15e3, 4500.0, (0.0, 0.0, z), (0.0,) * 3)["f_z"] for z in 1e-6 - 4e-6 * found.time
     ]
@@ -504,7 +504,7 @@ def test_joints_with_the_law_roughness_give_the_forces_of_the_package(rumoca: An
     body += "".join(f"\n  Move m{a}(at={x!r}, rate={v!r});" for a, x, v in zip("xyz", at, rate, strict=True))
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 2e-3, 1e-4, tmp_path)
-    spring = BoltedJointSpring.of(replace_values(bolted.values, {"memory": False}))
+    spring = BoltedJointSpring.for_joint(replace_values(bolted.values, {"memory": False}))
     for k, t in enumerate(found.time):
         exact = spring.evaluate(9e3, 0.0, tuple(x + v * t for x, v in zip(at, rate, strict=True)), rate)
         for i, axis in enumerate("xyz"):

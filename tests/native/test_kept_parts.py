@@ -10,13 +10,13 @@ from typing import Any
 import pytest
 from conftest import RELEASED, Fmu, run_host
 from joint_cases import CASES, STATE, law, random_inputs
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.native.code.generate import generate_sources
 from jointfmu_fmu_src.native.compiled import cache, compiled_models
 from jointfmu_fmu_src.native.compiled.binary import fill_library
-from jointfmu_fmu_src.native.compiled.compile_ahead import list_structures
+from jointfmu_fmu_src.native.compiled.compile_ahead import list_code_structures
 from jointfmu_fmu_src.native.data import (
-    PLACEHOLDER,
+    PLACEHOLDER_NAME,
     make_data_block,
     make_fmu_data,
     make_placeholder,
@@ -55,7 +55,7 @@ def test_numbers_are_data_and_choices_are_code(name: str) -> None:
     numbers = {n: v for n, v in file.values_by_name.items() if type(v) is float and v and not v.is_integer()}
     changed = file.with_values({n: v * (1.0 + 1e-6) for n, v in numbers.items()}, "user", "test")
     assert part_name(model, changed) == part_name(model, file)
-    every = [part_name(*one) for one in list_structures(MODELS[name])]
+    every = [part_name(*one) for one in list_code_structures(MODELS[name])]
     assert part_name(model, file) in every
     assert len({*every}) == len(every)
 
@@ -96,7 +96,7 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compiled = []
-    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path))
     monkeypatch.setattr(compiled_models, "compile_model", lambda *_: compiled.append(1) or a_part())
     model, file = of(NAMES[0])
     for _ in range(3):
@@ -111,7 +111,7 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
 
 def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("mine")
-    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "file" / "below"))
+    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "file" / "below"))
     monkeypatch.setattr(compiled_models, "compile_model", lambda *_: a_part())
     model, file = of(NAMES[0])
     assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
@@ -127,7 +127,7 @@ def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest
         os.utime(old, (i, i))
 
     def keep_and_read(_: int) -> compiled_models.CompiledModel:
-        compiled_models._write_cached(place, content)
+        compiled_models._write_cache_file(place, content)
         return compiled_models.unpack_model(place.read_bytes())
 
     with ThreadPoolExecutor(8) as pool:
@@ -139,7 +139,10 @@ def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest
 
 
 def test_a_library_of_other_data_is_refused() -> None:
-    before, after = make_data_block(PLACEHOLDER, "", [0.0] * 3), make_data_block("Mine", "{1}", [1.0] * 3)
+    before, after = (
+        make_data_block(PLACEHOLDER_NAME, "", [0.0] * 3),
+        make_data_block("Mine", "{1}", [1.0] * 3),
+    )
     library = b"head" + before.content + b"tail"
     assert fill_library(library, before, after, "Mine") == b"head" + after.content + b"tail"
     for other in (b"head", library + before.content):
@@ -176,7 +179,7 @@ def test_the_table_in_c_has_the_bytes_of_the_binaries(name: str, native: Path, t
             if path.startswith("binaries/"):
                 copies = len([*images(content)])
                 assert (content.count(data.content), copies) == (copies, copies), path
-                assert PLACEHOLDER.encode() not in content
+                assert PLACEHOLDER_NAME.encode() not in content
                 assert make_placeholder(model, given).content not in content
 
 
@@ -190,7 +193,7 @@ def test_each_variant_is_signed_and_has_a_number_of_its_own(tmp_path: Path) -> N
         model, file = of(NAMES[0])
         name = next(iter(model.parameter_fields()))
         changed = file.with_values({name: factor * file.values_by_name[name]}, "user", "test")
-        (path,) = build([NAMES[0]], ["fmi3"], changed, tmp_path, alias=alias)
+        (path,) = build_fmus([NAMES[0]], ["fmi3"], changed, tmp_path, alias=alias)
         for member, content in members(path).items():
             if not member.endswith(".dylib"):
                 continue

@@ -16,7 +16,7 @@ from typing import Any
 import fmpy
 import pytest
 from conftest import run_host
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.native.compiled import compiler
 
 from jointfmu.joints import MODELS
@@ -107,7 +107,7 @@ def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Pa
             assert exported(image) == {prefix + f for f in functions}, path
 
 
-@pytest.mark.parametrize("platform", compiler.TARGETS)
+@pytest.mark.parametrize("platform", compiler.ZIG_TARGETS)
 def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path: Path) -> None:
     """So that the licences of FMUs are complete: what links is our objects, and stubs of the system's."""
     source = "#include <math.h>\nint run(double x);\nint run(double x) { return sin(x) > 0.5; }\n"
@@ -290,7 +290,7 @@ def test_a_missing_package_is_one_line_that_says_what_to_install(
 
 
 def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (built,) = build(["GearContact"], ["fmi3"], None, tmp_path)
+    (built,) = build_fmus(["GearContact"], ["fmi3"], None, tmp_path)
     before = built.read_bytes()
 
     def fail(*arguments: object) -> None:
@@ -298,7 +298,7 @@ def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.Monk
 
     monkeypatch.setattr("jointfmu_fmu_src.native.build.get_compiled_model", fail)
     with pytest.raises(RuntimeError, match=r"law\.c:1:1"):
-        build(["GearContact"], ["fmi3"], None, tmp_path)
+        build_fmus(["GearContact"], ["fmi3"], None, tmp_path)
     assert sorted(tmp_path.rglob("*")) == [built.parent, built]
     assert built.read_bytes() == before
 
@@ -311,7 +311,7 @@ def test_an_unwritable_place_is_refused_before_anything_is_compiled(
         "jointfmu_fmu_src.native.build.get_compiled_model", lambda *arguments: pytest.fail("compiled")
     )
     with pytest.raises(ValueError, match="cannot be written") as raised:
-        build(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")
+        build_fmus(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")
     assert "\n" not in str(raised.value)
     assert (tmp_path / "file").read_text() == "mine"
 

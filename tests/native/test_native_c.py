@@ -28,7 +28,7 @@ from jointfmu_fmu_src.native.code.generate import (
     list_runtime_files,
     read_token,
 )
-from jointfmu_fmu_src.native.compiled.compiler import TARGETS
+from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS
 from jointfmu_fmu_src.native.compiled.compiler import _write_source_folder as source_folder
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
@@ -55,7 +55,7 @@ SANITIZERS = {
 """The first that is installed is taken. Zig has no runtime of the address sanitizer."""
 PLAIN = {
     "gcc": ("-O2", "-fPIC"),  # which finds some faults only where it optimizes
-    "zig": ("-O0", "-fPIC", "-fno-sanitize=all", "-target", TARGETS[fmpy.platform_tuple]),
+    "zig": ("-O0", "-fPIC", "-fno-sanitize=all", "-target", ZIG_TARGETS[fmpy.platform_tuple]),
 }
 VERSIONS = ("2", "3")
 OWN = {
@@ -98,7 +98,7 @@ def sanitized(compiler: str) -> tuple[str, ...]:
     """A compiler's options for its sanitizers. Checks are put in before the compiler optimizes."""
     found = ("-O1", "-g1", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
     # Zig would compile its runtime first, 30 s: without one, the program ends by a signal, which says less.
-    alone = (f"-fsanitize-trap={SANITIZERS[compiler]}", "-target", TARGETS[fmpy.platform_tuple])
+    alone = (f"-fsanitize-trap={SANITIZERS[compiler]}", "-target", ZIG_TARGETS[fmpy.platform_tuple])
     return (*found, *alone) if compiler == "zig" else found
 
 

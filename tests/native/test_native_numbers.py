@@ -9,7 +9,12 @@ from types import ModuleType
 
 import pytest
 from jointfmu_fmu_src import joints
-from jointfmu_fmu_src.joint_parts.native import COUNT_NAMES, NUMBER_NAMES, Definitions, ModuleConstants
+from jointfmu_fmu_src.joint_parts.native import (
+    INTEGER_CONSTANT_NAMES,
+    REAL_CONSTANT_NAMES,
+    CDefinitions,
+    ModuleConstants,
+)
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.code import generate
 
@@ -29,9 +34,9 @@ def pairs(*given: ModuleConstants) -> list[tuple[ModuleType, str]]:
     return [(module, name) for one in given for module, names in one.items() for name in names]
 
 
-TABLES = pairs(NUMBER_NAMES, COUNT_NAMES)
+TABLES = pairs(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES)
 EVERY = {
-    DRIVE: (*TABLES, *pairs(drive_native.NUMBER_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
+    DRIVE: (*TABLES, *pairs(drive_native.REAL_CONSTANT_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
     GEAR: (*TABLES, (curve, "CLOSING_AREA_RATIO")),
 }
 
@@ -57,9 +62,9 @@ def compiles(folder: Path, files: dict[str, str], text: str) -> bool:
 
 
 def test_one_name_of_a_constant_has_one_value() -> None:
-    first = Definitions({"MAX_ITERATIONS": 200}, {"TOLERANCE": 1e-9})
-    assert (first | Definitions({"MAX_ITERATIONS": 200})).counts == {"MAX_ITERATIONS": 200}
-    for other in (Definitions({"MAX_ITERATIONS": 16}), Definitions({}, {"MAX_ITERATIONS": 16.0})):
+    first = CDefinitions({"MAX_ITERATIONS": 200}, {"TOLERANCE": 1e-9})
+    assert (first | CDefinitions({"MAX_ITERATIONS": 200})).integer_constants == {"MAX_ITERATIONS": 200}
+    for other in (CDefinitions({"MAX_ITERATIONS": 16}), CDefinitions({}, {"MAX_ITERATIONS": 16.0})):
         with pytest.raises(ValueError, match="C constant MAX_ITERATIONS has two values"):
             _ = first | other
 

@@ -21,7 +21,7 @@ import pytest
 import ziglang
 from clients import SYSROOT, needs, prepare_wine, qemu, unusable
 from fmpy import read_model_description
-from jointfmu_fmu_src.native.compiled.compiler import _COMMON_OPTIONS, TARGETS
+from jointfmu_fmu_src.native.compiled.compiler import _COMMON_OPTIONS, ZIG_TARGETS
 from natives import SAID
 
 from jointfmu.joints import MODELS
@@ -65,21 +65,21 @@ class Machine(NamedTuple):
 
 
 HERE = Machine(
-    TARGETS["x86_64-linux"],
+    ZIG_TARGETS["x86_64-linux"],
     ("-ldl", "-lpthread"),
     {"fmi2": "linux64", "fmi3": "x86_64-linux"},
     "so",
 )
 OTHERS = {
     "windows": Machine(
-        TARGETS["x86_64-windows"],
+        ZIG_TARGETS["x86_64-windows"],
         WINDOWS,
         {"fmi2": "win64", "fmi3": "x86_64-windows"},
         "dll",
         lambda: ("wine",),
     ),
     "aarch64": Machine(
-        TARGETS["aarch64-linux"],
+        ZIG_TARGETS["aarch64-linux"],
         ("-ldl", "-lpthread"),
         {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
         "so",

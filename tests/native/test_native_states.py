@@ -8,7 +8,7 @@ from threading import Barrier
 import pytest
 from conftest import here_alone, run_host
 from joint_cases import NAMES, STATE, TUNED, random_inputs
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from natives import VERSIONS, Host, close, numbers, package, settle, slope
 
 from jointfmu.joints import MODELS
@@ -106,7 +106,7 @@ def test_a_state_of_a_joint_with_other_parameters_is_refused_by_name(
     """Both have the same size: only the instantiation token tells them apart."""
     file = load_default(MODELS["BoltedJoint"].joint).with_values({"embedding": 800.0}, "user", "test")
     with here_alone(version[-1]):
-        build(["BoltedJoint"], [version], file, tmp_path)
+        build_fmus(["BoltedJoint"], [version], file, tmp_path)
     sender, receiver = host("BoltedJoint", version).start(), host("BoltedJoint", version, tmp_path).start()
     data = sender.fmu.serializeFMUState(sender.fmu.getFMUState())
     before = numbers(receiver)

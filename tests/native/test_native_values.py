@@ -15,7 +15,7 @@ from fmpy import simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES, RANGES, STATE, TUNED, law, random_inputs
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from natives import VERSIONS, Host, attempt, close, near, package, settle, slope
 
 from jointfmu.joints import MODELS
@@ -346,7 +346,7 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
 def test_a_parameter_file_is_baked_in(host: Host, tmp_path: Path, name: str, changes: dict[str, Any]) -> None:
     file = load_default(MODELS[name].joint).with_values(changes, "user", "test")
     with here_alone("3"):
-        build([name], ["fmi3"], file, tmp_path)
+        build_fmus([name], ["fmi3"], file, tmp_path)
     instance, plain = host(name, folder=tmp_path).start(STATE[name]), host(name).start(STATE[name])
     assert instance.get() != plain.get()
     for parameter, value in changes.items():

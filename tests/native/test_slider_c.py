@@ -7,10 +7,10 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from jointfmu_fmu_src.joint_parts.graph import Graph
+from jointfmu_fmu_src.joint_parts.graph import FunctionGraph
 from jointfmu_fmu_src.joint_parts.sliders import add_slider_functions
 from jointfmu_fmu_src.native.code import elementary
-from jointfmu_fmu_src.native.code.emit import C_HELPERS, format_function
+from jointfmu_fmu_src.native.code.emit import C_HELPER_FUNCTIONS, format_function
 from jointfmu_fmu_src.native.code.generate import RUNTIME_FOLDER
 from jointfmu_fmu_src.native.compiled import compiler
 
@@ -69,7 +69,7 @@ class SliderResultant(Structure):
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
     """The C of the sliders, all functions visible."""
-    g = Graph({}, None, [])
+    g = FunctionGraph({}, None, [])
     before = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
@@ -91,7 +91,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
     law = "\n".join(text.replace("\nvoid ", "\nstatic inline void ", 1) for text in texts)
     names = ("jenkins.c", "jenkins.h", "simd.h", "elementary.c", "elementary.h")
     files = {name: (RUNTIME_FOLDER / "law" / name).read_text(encoding="utf-8") for name in names}
-    files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{C_HELPERS}\n{law}'}
+    files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{C_HELPER_FUNCTIONS}\n{law}'}
     files |= {"elementary_tables.h": elementary.make_tables_header()}
     visible = "#pragma GCC visibility push(default)\n"
     files["jenkins.c"] = visible + files["jenkins.c"]

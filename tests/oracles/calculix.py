@@ -83,7 +83,7 @@ def rigid_bodies(folder: Path, preload: float, moment: float, normal: str = "z")
         *("--normal", normal, "--out", folder / "springs.inp"),
     )
     x, y, z = AXIS_ORDER[normal]
-    spring = BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
+    spring = BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
     K = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     deck = (DECKS / "two_bodies.inp").read_text()
     for axis, place in ((1, x), (3, z)):
@@ -119,7 +119,7 @@ def meshed_blocks(folder: Path) -> list[Case]:
     top = [row[2] for node, row in run_deck(folder / "meshed.inp").items()]
     assert np.ptp(top) < 1e-4 * np.mean(top)
     joint = load_default("bolted_joint").values
-    spring = BoltedJointSpring.of_nodes(joint)
+    spring = BoltedJointSpring.for_interface_nodes(joint)
     k = spring.curve.derivatives(spring.curve.inverse(pressure * 1e6), 1)[1]
     expected = FORCE / (joint.A_0 * float(k)) * 1e3 + FORCE * 2.0 * HEIGHT / (E * area.sum())
     return [("springs on a mesh: two elastic blocks [mm]", float(np.mean(top)), expected)]

@@ -88,8 +88,8 @@ def ranges(moment: float) -> dict[str, StateRange]:
 
 def opening_moment(shape: PressureDistribution) -> float:
     """Factor of the moment shape [1] at which the first node in contact opens."""
-    touches = (shape.preload_shape > 0.0) & (shape.moment_shape != 0.0)
-    return float(np.min(shape.preload_shape[touches] / np.abs(shape.moment_shape[touches])))
+    touches = (shape.preload_pressure_ratio > 0.0) & (shape.moment_pressure_ratio != 0.0)
+    return float(np.min(shape.preload_pressure_ratio[touches] / np.abs(shape.moment_pressure_ratio[touches])))
 
 
 def deviation(
@@ -122,7 +122,9 @@ def deviation(
 
 def preloaded_approaches(curve: Curve, shape: PressureDistribution, load: tuple[float, float]) -> Array:
     """Approaches (n) [m] under a mean pressure [Pa] and a factor of the moment shape [1]."""
-    return curve.inverse(load[0] * np.maximum(shape.preload_shape + load[1] * shape.moment_shape, 0.0))
+    return curve.inverse(
+        load[0] * np.maximum(shape.preload_pressure_ratio + load[1] * shape.moment_pressure_ratio, 0.0)
+    )
 
 
 def pressure_moments(
@@ -231,7 +233,7 @@ def friction_and_losses(
     approach = start - motion.tilt * largest * shape.position[:, 0] / gyration
     q = np.array([0.0, np.sqrt(1.0 - motion.turn**2), 0.0, 0.0, 0.0, motion.turn / gyration])
     along = tangential_displacement(patches, q)
-    sliders = spring.on_nodes(shape).friction.foundation(start)
+    sliders = spring.with_nodes(shape).friction_law.foundation(start)
     if fine:
         sliders = sliders_at_levels(spring.curve, ratio, spring.joint.mu, FINE)
     gross = spring.joint.mu / ratio * largest * along
@@ -277,7 +279,7 @@ def pole_deviations(shape: PressureDistribution, patches: FrictionPatches) -> Ar
     """
     poles = random_poles(shape, POLE_COUNT)
     both = (
-        gross_slip_forces(points, points.area_share * points.preload_shape, poles)
+        gross_slip_forces(points, points.area_share * points.preload_pressure_ratio, poles)
         for points in (shape.as_patches(), patches)
     )
     off = np.linalg.norm(np.subtract(*both), axis=1)

@@ -34,7 +34,7 @@ class Springs:
     @classmethod
     def of(cls, curve: Curve, ratio: float, friction: float) -> "Springs":
         """Close where joints work."""
-        end = curve.end[1]
+        end = curve.end_point[1]
         level = load_levels(LOWEST, (WORKING[0] / end, WORKING[1] / end), STEP)
         return cls(curve, ratio, friction, curve.inverse(level * end))
 

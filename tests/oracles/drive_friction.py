@@ -6,7 +6,7 @@ from importlib.resources import files
 import numpy as np
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.friction import collect_published, scale_friction
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from scipy.optimize import minimize_scalar
 
 from jointfmu.joints.harmonic_drive.friction import dry_friction_factor, friction_limits, viscous_torque
@@ -44,9 +44,9 @@ JOINTS = {"CSG-25-100": ("0.019", 150.0), "CSG-14-100": ("0.006", 28.0)}
 
 def robot_drive(name, drag):
     """Parameters of a catalogue drive of the robot, with the flexspline fixed."""
-    options = dict.fromkeys(option.name for option in NEW.options)
+    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options)
     options |= {"catalogue": name, "fixed": "flexspline", "temperature": f"{WARM}K", "motor_drag": drag}
-    return NEW.make_joint(options).file.values
+    return NEW_JOINT_COMMAND.make_joint(options).file.values
 
 
 def motor_friction(drive):

@@ -13,9 +13,9 @@ import numpy as np
 from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.fem.reduction.elastic_bodies import reduce_bodies
-from jointfmu_tools.fem.reduction.states import CellJoint, CellLoads, approach_at_stiffness
+from jointfmu_tools.fem.reduction.states import CellwiseJoint, UnitLoadResponse, approach_at_stiffness
 from jointfmu_tools.fem.whole_joint import JointFiniteElements, LinearJoint
-from jointfmu_tools.joints.bolted_joint.new import NEW, plate_finite_elements
+from jointfmu_tools.joints.bolted_joint.new import NEW_JOINT_COMMAND, plate_finite_elements
 from numpy.typing import NDArray
 from scipy import sparse as sp
 
@@ -140,7 +140,7 @@ class PlateJoint:
         ) -> plate_finite_elements.ComputedJoint:
             joint = JointFiniteElements.from_assembly(plates.make_assembly(file), to, refinement)
             if elements:
-                joint = replace(joint, interface=patches(joint.interface))
+                joint = replace(joint, interface=patches(joint.contact_interface))
             springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, shape)
             linear = joint.linearize(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
@@ -154,9 +154,9 @@ class PlateJoint:
 
         plate_finite_elements.compute_joint = watched
         try:
-            given = dict.fromkeys(option.name for option in NEW.options) | dict(example)
+            given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | dict(example)
             given["attached"] = attached
-            made = NEW.make_joint(given)
+            made = NEW_JOINT_COMMAND.make_joint(given)
         finally:
             plate_finite_elements.compute_joint = real
         facts: dict[str, tuple[float, str, str]] = dict(made.facts)
@@ -165,7 +165,7 @@ class PlateJoint:
     @property
     def spring(self) -> BoltedJointSpring:
         """Spring with elastic plates."""
-        return BoltedJointSpring.of(self.file.values)
+        return BoltedJointSpring.for_joint(self.file.values)
 
     def load(self) -> Array:
         """Forces and moments (6) of gross slip, or of the loss of the clamping force."""
@@ -193,17 +193,17 @@ def stiffnesses(joint: PlateJoint) -> tuple[Array, Array]:
     return np.array([float(out[name]) for name in AXES]), joint.linear.stiffness.diagonal()
 
 
-def joint_on_cells(joint: PlateJoint, count: int) -> CellJoint:
+def joint_on_cells(joint: PlateJoint, count: int) -> CellwiseJoint:
     """Joint with all compliances of `count` cells of the contact, without modes and patches."""
     fine = reduce_points(pressure_distribution(joint.rigid.values.pattern), count)
-    spring = BoltedJointSpring.of(joint.rigid.values).on_nodes(fine)
-    at = joint.linear.joint.interface
+    spring = BoltedJointSpring.for_joint(joint.rigid.values).with_nodes(fine)
+    at = joint.linear.joint_model.contact_interface
     bolts = (
-        joint.linear.joint.bolt_positions
+        joint.linear.joint_model.bolt_positions
         - at.quadrature_area @ at.quadrature_position / at.quadrature_area.sum()
     )
-    return CellJoint.from_cells(
-        CellLoads.from_joint(joint.linear.joint, spring, joint.normal), bolts, joint.preload
+    return CellwiseJoint.from_cells(
+        UnitLoadResponse.from_joint(joint.linear.joint_model, spring, joint.normal), bolts, joint.preload
     )
 
 
@@ -252,7 +252,7 @@ class FrictionElements:
         pressure : (P) [Pa] at the points of the interface
         """
         values, ratio = spring.joint, float(spring.joint.shear_stiffness_ratio())
-        approach, at = spring.curve.inverse(pressure), whole.interface
+        approach, at = spring.curve.inverse(pressure), whole.contact_interface
         springs = np.outer(spring.curve.derivatives(approach, 1)[1], [ratio, ratio, 1.0])
         linear = whole.linearize(springs, values.bolt_stiffness)
         matrix = linear.body_matrix + linear.contact_matrix + linear.bolt_matrix
@@ -277,9 +277,9 @@ class FrictionElements:
     @classmethod
     def clamped(cls, joint: PlateJoint, wrench: Array) -> "FrictionElements":
         """Joint under the preload of its bolts; the load 1 is the linear motion at the friction limit."""
-        spring = BoltedJointSpring.of(joint.rigid.values)
+        spring = BoltedJointSpring.for_joint(joint.rigid.values)
         pressure = spring.curve.derivatives(approach_at_stiffness(spring, joint.normal), 0)[0]
-        return cls.of(joint.linear.joint, pressure, spring, joint.load()[0], wrench)
+        return cls.of(joint.linear.joint_model, pressure, spring, joint.load()[0], wrench)
 
     def follow(self, loads: Sequence[float]) -> tuple[Array, Array]:
         """Generalized force (n) [N.m] and heat so far (n) [J] along a sequence of loads from rest."""
@@ -354,9 +354,9 @@ class Lap:
     @classmethod
     def of(cls, refinement: float = 1.0) -> "Lap":
         """Lap of steel; element sizes are divided by `refinement`."""
-        given = dict.fromkeys(option.name for option in NEW.options) | FACES
+        given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | FACES
         given |= STEEL_M12 | {"tapped": True}  # so the command makes no bodies
-        values = NEW.make_joint(given).file.values
+        values = NEW_JOINT_COMMAND.make_joint(given).file.values
         plate = Plate(length=0.1, width=0.04, thickness=2e-3, E=206e9, nu=0.0, density=7850.0)
         bolts = BoltList(x=(0.0,), y=(0.0,), hole_diameter=2e-3, head_diameter=4e-3)
         assembly = Assembly("lap", plate, plate, bolts)
@@ -366,7 +366,7 @@ class Lap:
             z = np.abs(body.nodes[2])
             held.append(np.union1d(ends, 3 * np.flatnonzero(z > z.max() - 1e-9) + 2))
         joint = replace(joint, attachment_unknowns=(held[0], held[1]))
-        at = patches(joint.interface)
+        at = patches(joint.contact_interface)
         one = np.ones(at.quadrature_area.size)
         x, y = (
             at.quadrature_position - at.quadrature_area @ at.quadrature_position / at.quadrature_area.sum()
@@ -390,25 +390,25 @@ class Lap:
         """
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
         shear = 0.5 * beta**2 * plate.E * plate.thickness
-        spring = BoltedJointSpring.of(self.values)
-        normal = shear / spring.friction.foundation().stiffness_ratio
+        spring = BoltedJointSpring.for_joint(self.values)
+        normal = shear / spring.friction_law.foundation().stiffness_ratio
         spring = replace(spring, curve=linear_curve(normal, LAP_LOAD / self.values.A_0 / normal))
-        springs = np.tile([shear, shear, normal], (self.bodies.interface.quadrature_area.size, 1))
+        springs = np.tile([shear, shear, normal], (self.bodies.contact_interface.quadrature_area.size, 1))
         return shear, spring, self.bodies.linearize(springs, 0.0)
 
     def reduced(self, spring: BoltedJointSpring, linear: LinearJoint, normal: float) -> BoltedJointSpring:
         """Lap on the modes of its plates."""
-        stiffness = np.full(self.bodies.interface.quadrature_area.size, normal)
+        stiffness = np.full(self.bodies.contact_interface.quadrature_area.size, normal)
         bodies = reduce_bodies(linear, spring, stiffness, LAP_LOAD)
-        whole = BoltedJointSpring.of(replace(self.values, sides="elastic", bodies=bodies))
+        whole = BoltedJointSpring.for_joint(replace(self.values, sides="elastic", bodies=bodies))
         return replace(whole, curve=spring.curve)
 
     def compliances(self, reach: float) -> tuple[float, float, float]:
         """Compliance [m/N] along x: reduced joint, finite elements, closed form of shear lag."""
         shear, spring, linear = self.linear(reach)
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
-        whole = self.reduced(spring, linear, shear / spring.friction.foundation().stiffness_ratio)
+        whole = self.reduced(spring, linear, shear / spring.friction_law.foundation().stiffness_ratio)
         out = whole.evaluate(LAP_LOAD, 0.0, (0.0,) * 3, (0.0,) * 3)
         per = plate.E * plate.thickness * plate.width
         form = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per
-        return 1.0 / float(out[AXES[0]]), float(linear.compliances().total[0]), form
+        return 1.0 / float(out[AXES[0]]), float(linear.compliances().total_compliance[0]), form

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from jointfmu_tools.common import columns
 from jointfmu_tools.joints.harmonic_drive.fit import log
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -44,8 +44,8 @@ SPEEDS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 1.5, 2.2, 3.2)
 
 def drive():
     """Parameter file with the true values."""
-    given = dict.fromkeys(option.name for option in NEW.options) | {"catalogue": "CSG-25-100"}
-    return NEW.make_joint(given).file.with_values(TRUE, "user", "made up")
+    given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": "CSG-25-100"}
+    return NEW_JOINT_COMMAND.make_joint(given).file.with_values(TRUE, "user", "made up")
 
 
 def start():

@@ -59,7 +59,7 @@ def load_levels(lowest: float, working: tuple[float, float], step: float) -> Arr
 
 def sliders_at_levels(curve: Curve, ratio: float, friction: float, level: ArrayLike) -> Foundation:
     """Sliders of a curve with heights at the loads `level` over the load at its end."""
-    return Foundation(curve, ratio, friction, curve.inverse(np.asarray(level) * curve.end[1]))
+    return Foundation(curve, ratio, friction, curve.inverse(np.asarray(level) * curve.end_point[1]))
 
 
 def foundation(step: float) -> Foundation:

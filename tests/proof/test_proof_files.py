@@ -18,7 +18,11 @@ from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, list_shipped_variants, make_study
+from jointfmu_fmu_src.proof.experiments import (
+    ReferenceExperiment,
+    list_shipped_variants,
+    make_uncertainty_study,
+)
 from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import get_experiments, make_proof_files
 from jointfmu_fmu_src.proof.reference import Stimulus, compute_results
@@ -102,7 +106,7 @@ def test_parameter_sets_are_valid_and_have_every_parameter(name: str) -> None:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_every_experiment_states_times_and_tolerance(name: str) -> None:
-    for purpose in standard.PURPOSES:
+    for purpose in standard.EXPERIMENT_PURPOSES:
         root = ElementTree.fromstring(members(name)[f"{standard.REFERENCE_FOLDER}/{purpose}.exp"])
         for one in root.iter("Experiment"):
             assert one[0].tag == "TransientSimulation"
@@ -153,9 +157,9 @@ def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
     for one in found:
         usual = {
             model.ramp.input_name: model.ramp.end_value,
-            **model.ramp.settings,
+            **model.ramp.parameter_values,
         }  # what drives states, and a course
-        ((parameter, value),) = one.settings.items() - usual.items()
+        ((parameter, value),) = one.variable_values.items() - usual.items()
         interval = model.parameter_fields()[parameter].metadata["interval"]
         own = file.values_by_name[parameter]
         end = interval.low if value < own else interval.high
@@ -196,13 +200,13 @@ def test_one_shipped_model_at_least_is_carried_by_the_fmu_of_another() -> None:
 def test_the_uncertainty_experiment_can_be_read_as_a_study(name: str, tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_bytes(members(name)[f"{standard.REFERENCE_FOLDER}/parameters/study.toml"])
-    assert study_files.read_study(path) == make_study(*given(name))
+    assert study_files.read_study(path) == make_uncertainty_study(*given(name))
     samples = [one for one in made(name) if one.purpose == "uncertainty-analysis"]
     assert len(samples) == 6
     for one in samples:
-        for parameter, value in one.settings.items():
+        for parameter, value in one.variable_values.items():
             assert abs(value / given(name)[1].values_by_name[parameter] - 1.0) <= 0.01 * (1.0 + 1e-9)
-    assert len({tuple(one.settings.values()) for one in samples}) == 6
+    assert len({tuple(one.variable_values.values()) for one in samples}) == 6
 
 
 def test_the_sources_of_parameters_can_be_built_from(tmp_path: Path) -> None:
@@ -244,7 +248,7 @@ def test_a_course_over_time_shows_itself_in_its_proof_alone(name: str) -> None:
 def test_a_mass_under_a_constant_force_moves_as_newton_says() -> None:
     model, file = given("TranslationalMass")
     one = made("TranslationalMass")[1]
-    t, f = one.stimulus.instants, one.settings[model.ramp.input_name]
+    t, f = one.stimulus.sampling_instants, one.variable_values[model.ramp.input_name]
     a = f / file.values.m
     for output, expected in (("s", 0.5 * a * t**2), ("v", a * t), ("a", a + 0.0 * t)):
         assert one.results.columns[output] == pytest.approx(expected, rel=1e-11)
@@ -284,7 +288,7 @@ def test_a_jump_is_taken_where_it_stands() -> None:
     times = np.array([0.5, 1.0, 1.5, 3.0])
     assert series.interpolate("u", times).tolist() == [0.5, 5.0, 5.5, 6.0]
     assert series.interpolate_left("u", times).tolist() == [0.5, 1.0, 5.5, 6.0]
-    assert series.hold("u", times).tolist() == [0.0, 5.0, 5.0, 6.0]
+    assert series.interpolate_constant("u", times).tolist() == [0.0, 5.0, 5.0, 6.0]
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from clients import needs
 from conftest import here_alone, refused_line
 from fmpy.cross_check import validate_result
 from fmpy.util import read_csv, read_ref_opt_file
-from jointfmu_fmu_src.native.build import build as native_build
+from jointfmu_fmu_src.native.build import build_native_fmu as native_build
 from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import make_proof_files
 from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER

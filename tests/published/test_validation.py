@@ -356,7 +356,7 @@ def test_another_parameter_set_is_compared():
 
 
 def fitted_points():
-    return [(paper, name) for paper, fits in FITS.values() for fit in fits for name in fit.points]
+    return [(paper, name) for paper, fits in FITS.values() for fit in fits for name in fit.point_ids]
 
 
 def test_fits_name_calibration_points_only():
@@ -369,7 +369,7 @@ def test_fits_name_calibration_points_only():
 def test_as_many_points_as_unknowns():
     for _, fits in FITS.values():
         for fit in fits:
-            assert len(fit.unknowns) == len(fit.points)
+            assert len(fit.unknowns) == len(fit.point_ids)
 
 
 @pytest.mark.parametrize(
@@ -391,7 +391,7 @@ def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
     assert declared <= unknowns
     for fit in FITS[joint][1]:
         for name in fit.unknowns:
-            assert all(used in file.sources[name] for used in fit.points)
+            assert all(used in file.sources[name] for used in fit.point_ids)
 
 
 def refitted(monkeypatch, fits):

@@ -184,7 +184,7 @@ def check_shown(shown: Browser, text: str, folder: Path) -> None:
     for v in model.outputs:
         near = pytest.approx(expected[v.name], rel=COMPILED, abs=ROUND_OFF * v.nominal)
         assert outputs[v.name] == near, v.name
-    module = next(m for m in EVERY if (m.model.name, m.files[0].law) == (model.name, file.law))
+    module = next(m for m in EVERY if (m.model.name, m.parameter_files[0].law) == (model.name, file.law))
     instance = Instance(module, module.compile_module(), file)
     assert instance.start(exposed | inputs)
     assert instance.get() == outputs
@@ -222,8 +222,8 @@ def test_a_file_with_other_numbers_is_shown(
     rng = np.random.default_rng(seed)
     choose(shown, module.model.name)
     drawn = random_values(module, rng, False)
-    drawn |= {name: module.files[0].values_by_name[name] for name in BOUND & drawn.keys()}
-    changed = module.files[0].with_values(drawn, "user", "at random")
+    drawn |= {name: module.parameter_files[0].values_by_name[name] for name in BOUND & drawn.keys()}
+    changed = module.parameter_files[0].with_values(drawn, "user", "at random")
     inputs = CASES[module.model.name].numbers.state if seed else {}
     check_shown(shown, format_parameter_file(replace(changed, name=f"other {seed}", inputs=inputs)), tmp_path)
 
@@ -427,7 +427,7 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
 @pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.files[0].law}")
 def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: PageModule) -> None:
     """So the page may write it there."""
-    file = module.files[0]
+    file = module.parameter_files[0]
     given = split_parameters(module.model, file)
     for name in given.data_values.keys() & file.values_by_name.keys():
         value = 0.9 * file.values_by_name[name] or 1e-6

@@ -75,7 +75,7 @@ def test_all_models_and_parameter_files_are_there() -> None:
     assert {m.model.name for m in every} == set(MODELS)
     for kind in KINDS.values():
         stems = {path.stem for path in kind.default_file().parent.glob("*.toml")}
-        names = {file.name for m in every if m.model.joint == kind.name for file in m.files}
+        names = {file.name for m in every if m.model.joint == kind.name for file in m.parameter_files}
         shipped = {load_parameter_file(kind.default_file().with_name(f"{stem}.toml")).name for stem in stems}
         assert names == shipped
 
@@ -229,8 +229,10 @@ def test_a_chart_zooms_by_pointer_and_keys(shown: Browser) -> None:
 @needed
 def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path: Path) -> None:
     for module in list_modules():
-        name, first = module.model.name, module.files[0]
-        index = [f.name for m in list_modules() if m.model.name == name for f in m.files].index(first.name)
+        name, first = module.model.name, module.parameter_files[0]
+        index = [f.name for m in list_modules() if m.model.name == name for f in m.parameter_files].index(
+            first.name
+        )
         choose(shown, name, index)
         script = """laboratory.then((lab) => {
           for (const v of lab.about.variables) {

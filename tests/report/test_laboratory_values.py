@@ -25,7 +25,7 @@ needed = needs("Chromium")
 SETS, REFUSED, STEPS = 22, 2, 4
 """Parameter sets that are accepted but for the few whose law has no table, those that are not, and steps."""
 ACCEPTED = 20
-EVERY = {f"{m.model.name}, {m.files[0].law}": m for m in list_modules()}
+EVERY = {f"{m.model.name}, {m.parameter_files[0].law}": m for m in list_modules()}
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def module(request: pytest.FixtureRequest) -> PageModule:
 
 @pytest.fixture(scope="module")
 def fmu(module: PageModule, folder: Path) -> Iterator[Fmu]:
-    made = Fmu(native_fmu(module, folder / module.files[0].law))
+    made = Fmu(native_fmu(module, folder / module.parameter_files[0].law))
     yield made
     made.free_instance()
 
@@ -162,7 +162,7 @@ _RUN = """(async () => {{
 def test_chromium_gives_the_numbers_and_refusals(module: PageModule, cases: list[Case], shown: Any) -> None:
     """A refusal is that of the package, in the units of the sliders."""
     asked = json.dumps([{"values": c.values, "path": c.path, "refusal": c.refusal} for c in cases])
-    name, law = json.dumps(module.model.name), json.dumps(module.files[0].law)
+    name, law = json.dumps(module.model.name), json.dumps(module.parameter_files[0].law)
     for case, found in zip(cases, shown.run(_RUN.format(cases=asked, name=name, law=law)), strict=True):
         if case.refusal:
             said, meant = found

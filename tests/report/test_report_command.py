@@ -11,9 +11,9 @@ from conftest import refused_line
 from jointfmu_fmu_src.native.page import find_ramp_panels, make_documentation
 from jointfmu_fmu_src.proof.experiments import compute_experiments
 from jointfmu_tools import cli
-from jointfmu_tools.common.pressure import judge_file
-from jointfmu_tools.pages.report.course import LoadHistory
+from jointfmu_tools.common.pressure import judge_joint_stiffness
 from jointfmu_tools.pages.report.joint import VALIDITY_HEADINGS, write_joint_report
+from jointfmu_tools.pages.report.load_history import LoadHistory
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
@@ -42,7 +42,7 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
         (row,) = re.findall(rf"<tr><td><code>{re.escape(name)}</code></td>(.*?)</tr>", page)
         assert f"<td>{file.origins.get(name, 'user')}</td>" in row, name
         assert f">{file.sources.get(name, 'default choice')}</td>" in row, name
-    for line in judge_file(file).format_lines():
+    for line in judge_joint_stiffness(file).format_lines():
         assert line in page
     (opening,) = re.findall(r"<main[^>]*>\s*<p>(.*?)</p>", page)
     assert KINDS[joint].title in opening
@@ -91,10 +91,10 @@ def test_what_the_user_changed_is_there_with_his_words(
 @pytest.mark.parametrize("name", [name for name, model in MODELS.items() if model.load_cycle])
 def test_loops_lose_what_the_joint_says_it_lost(name: str) -> None:
     model = MODELS[name]
-    own = {n: v for n, v in model.load_cycle.settings.items() if n in model.parameter_fields()}
+    own = {n: v for n, v in model.load_cycle.variable_values.items() if n in model.parameter_fields()}
     file = load_default(model.joint).with_values(own, "user", "with memory")
     loops = LoadHistory(model, file).compute_loops()
-    for row in loops.compute_rows():
+    for row in loops.compute_loop_results():
         # trapezoids over 80 points of a cycle, a branch of which is about a parabola: 1/40^2 of it
         assert row["loss"] == pytest.approx(row["E_loss"], rel=2e-2)
         assert row["loss"] > 0.0

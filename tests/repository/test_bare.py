@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from jointfmu_fmu_src.native.build import build as native_build
+from jointfmu_fmu_src.native.build import build_native_fmu as native_build
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 
 from jointfmu.joints import KINDS

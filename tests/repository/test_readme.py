@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from clients import needs
 from conftest import here_alone
-from jointfmu_fmu_src.native.build import build as native_build
+from jointfmu_fmu_src.native.build import build_native_fmu as native_build
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.inputs.fields import nodal_result

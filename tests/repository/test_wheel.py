@@ -64,7 +64,7 @@ def built_wheel(out: Path) -> Path:
         copytree(ROOT / folder, tree / folder, ignore=ignored)
     for file in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
         (tree / file).write_bytes((ROOT / file).read_bytes())
-    every = compile_ahead.list_structures
+    every = compile_ahead.list_code_structures
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compile_ahead, "list_structures", lambda model: islice(every(model), 1))
         compile_ahead.compile_ahead([NAME], tree / "fmu_src" / "native" / "parts")

@@ -11,7 +11,13 @@ from scipy.integrate import quad
 from jointfmu.contact.laws.hu2023 import Hu2023
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.contact.laws.zhao2018 import Zhao2018
-from jointfmu.contact.surface import ArealSurface, ElasticConstants, FlankSurface, ProfileSurface, Spectrum
+from jointfmu.contact.surface import (
+    ArealSurface,
+    CommonFlankParameters,
+    ElasticConstants,
+    FlankSurface,
+    ProfileSurface,
+)
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 T = TypeVar("T")
@@ -48,7 +54,7 @@ HU = Hu2023(
 YU = Yu2022(
     surface1=FlankSurface(D=1.46, G=1e-10),
     surface2=FlankSurface(D=1.46, G=1e-10),
-    surface=Spectrum(gamma=1.5),
+    surface=CommonFlankParameters(gamma=1.5),
     e=0.2,
     lambda_=0.6,
     side1=ElasticConstants(E=2.06e11, nu=0.26),

@@ -24,7 +24,7 @@ from jointfmu.quantity import flatten_parameters
 
 def native_fmu(module: PageModule, folder: Path) -> Path:
     """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
-    name, file, here = module.model.name, module.files[0], fmpy.platform_tuple
+    name, file, here = module.model.name, module.parameter_files[0], fmpy.platform_tuple
     given = split_parameters(module.model, file)
     with here_alone("3"):
         part = get_compiled_model(module.model, file, given)
@@ -50,7 +50,9 @@ class Instance:
         compiled = wasmtime.Module(self.store.engine, binary)
         self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
         self("_initialize")
-        fixed = np.array([*split_parameters(module.model, file or module.files[0]).data_values.values()])
+        fixed = np.array(
+            [*split_parameters(module.model, file or module.parameter_files[0]).data_values.values()]
+        )
         self.exports["memory"].write(self.store, fixed.tobytes(), self("lab_hidden_parameters"))
         self.it = self("lab_create")
         model = module.model
@@ -96,7 +98,7 @@ class Instance:
 def random_values(module: PageModule, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
     """Parameters around those of the first file, inside their intervals and the limits that they set each
     other; Booleans too if `switched`."""
-    values = module.files[0].values
+    values = module.parameter_files[0].values
     while True:
         found = _drawn(module, rng, switched)
         with suppress(ValueError):
@@ -120,7 +122,7 @@ def _ends(item: Field[Any]) -> tuple[float, float]:
 
 def _drawn(module: PageModule, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    flat = module.files[0].values_by_name
+    flat = module.parameter_files[0].values_by_name
     for name, item in module.model.parameter_fields().items():
         value, (low, high) = flat[name], _ends(item)
         width = 0.02 * (high - low)

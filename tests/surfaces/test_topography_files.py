@@ -564,7 +564,7 @@ def test_signatures_are_those_of_the_installed_readers():
         for place, mark in getattr(reader, "_magic", None) or []:
             assert sift.has_signature(bytes(place) + mark), reader
         if reader.can_read(b"\x00\x01junk" * 100) != MagicMatch.NO:
-            assert not set(reader._file_extensions) & set(sift.SIGNED_SUFFIXES), reader
+            assert not set(reader._file_extensions) & set(sift.SUFFIXES_WITH_SIGNATURE), reader
 
 
 def test_roughness_and_level_are_printed(folder, capsys, area):

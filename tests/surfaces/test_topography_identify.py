@@ -95,7 +95,7 @@ def test_textured_is_the_sum_of_two_profiles():
 @pytest.mark.parametrize("G", [1e-12, 1e-8])
 def test_round_trip_of_isotropic_surfaces(D, G):
     for seed in (1, 2):
-        one = identify([synthesis.synthesize_isotropic(waves(512), D + 1, G, 20, seed)]).select_best()
+        one = identify([synthesis.synthesize_isotropic(waves(512), D + 1, G, 20, seed)]).select_best_result()
         assert one.areal.D_s.value == pytest.approx(D + 1, abs=0.03)  # the tolerance that is promised
         assert one.areal.G_s.low < G < one.areal.G_s.high
 
@@ -104,7 +104,7 @@ def test_round_trip_of_isotropic_surfaces(D, G):
 @pytest.mark.parametrize("G", [1e-12, 1e-8])
 def test_round_trip_of_profiles(D, G):
     for seed in (1, 2):
-        one = identify([synthesis.synthesize_profile(waves(4096), D, G, seed)]).select_best()
+        one = identify([synthesis.synthesize_profile(waves(4096), D, G, seed)]).select_best_result()
         assert one.profile.D.value == pytest.approx(D, abs=0.03)
         assert one.profile.G.low < G < one.profile.G.high
         assert one.areal.D_s.value == pytest.approx(one.profile.D.value + 1.0, rel=1e-12)
@@ -115,7 +115,7 @@ def test_textured_surfaces_are_told_by_direction():
     found = identify([made])
     assert found.is_textured
     assert any("textured" in text for text in found.warnings)
-    x, y = found.select_best("x"), found.select_best("y")
+    x, y = found.select_best_result("x"), found.select_best_result("y")
     assert x.profile.D.value == pytest.approx(1.3, abs=0.03)
     assert y.profile.D.value == pytest.approx(1.6, abs=0.03)
     assert x.profile.G.low < 1e-9 < x.profile.G.high
@@ -149,7 +149,7 @@ def test_range_ends_where_the_surface_rolls_off():
     noise = np.fft.rfft(np.random.default_rng(1).standard_normal(n))
     rolled = Profile(z=np.fft.irfft(noise * f ** (-0.5 - H)), dx=dx, name="rolled")
     z = rolled.with_heights(rolled.z * 1e-7 / rolled.z.std())
-    free = identify([z]).select_best(method="psd")
+    free = identify([z]).select_best_result(method="psd")
     assert free.fit.max_scale < 80e-6
     assert free.profile.D.value == pytest.approx(2.0 - H, abs=0.1)
     forced = identify([z], scale_range=(5e-6, 1e-3))
@@ -172,7 +172,7 @@ def smooth_profile(points):
 @pytest.mark.parametrize("points", [256, 512])
 def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
     found = identify([smooth_profile(points)])
-    best = found.select_best()
+    best = found.select_best_result()
     assert best.profile.D.value == pytest.approx(1.02, abs=1e-3)  # 2 less the bound of H in the fit
     for G in (best.profile.G, best.areal.G_s):
         assert not G.is_determined
@@ -232,10 +232,10 @@ def test_roughness_leaves_the_floating_point_numbers():
 def test_pair_adds_the_powers():
     """Two surfaces of equal finish: twice the power, so G^(2(D-1)) doubles; and sampling may differ."""
     one, other = (gaussian_profile(4096, 0.5, 1e-9, seed) for seed in (1, 2))
-    pair = identify([one, other]).select_best(method="psd")
+    pair = identify([one, other]).select_best_result(method="psd")
     assert pair.profile.G.low < 2e-9 < pair.profile.G.high  # D = 1.5: G doubles
     coarse = Profile(z=other.z[::2].copy(), dx=2 * other.dx, name="coarse")
-    again = identify([one, coarse]).select_best(method="structure")
+    again = identify([one, coarse]).select_best_result(method="structure")
     assert again.profile.D.value == pytest.approx(1.5, abs=0.1)
     far = Profile(z=other.z, dx=1e3 * other.dx, name="far")
     with pytest.raises(ValueError, match="share no scales"):
@@ -260,7 +260,7 @@ def test_range_without_values_is_refused():
 def test_joint_gets_its_own_dimension(joint, tmp_path):
     found = identify([synthesis.synthesize_isotropic(waves(256), 2.45, 1e-9, 20, 1)])
     values = {name: value for name, (value, _) in fractal_parameters(found, joint).items()}
-    best = found.select_best()
+    best = found.select_best_result()
     if joint == "harmonic_drive":
         assert values == {"surface.D": best.areal.D_s.value, "surface.G": best.areal.G_s.value}
     else:
@@ -290,7 +290,7 @@ def test_spacing_may_differ_along_x_and_y():
     oblong = ArealMap(z=square.z[::2].copy(), dx=square.dx, dy=2 * square.dy, name="oblong")
     found = identify([oblong])
     for method in ("structure", "psd"):
-        assert found.select_best(method=method).areal.D_s.value == pytest.approx(2.5, abs=0.06)
+        assert found.select_best_result(method=method).areal.D_s.value == pytest.approx(2.5, abs=0.06)
 
 
 def test_a_value_at_its_bound_is_never_chosen_over_a_free_one():
@@ -301,7 +301,7 @@ def test_a_value_at_its_bound_is_never_chosen_over_a_free_one():
         clipped = replace(found.results[0].fit, H=H, covariance=sure)
         results = (replace(found.results[0], fit=clipped), found.results[1])
         changed = replace(found, results=results)
-        assert changed.select_best() is found.results[1]
+        assert changed.select_best_result() is found.results[1]
         assert "(structure) lies at the end of 1 to 2" in changed.undetermined_reason()
     assert found.undetermined_reason() is None
 
@@ -316,7 +316,7 @@ def test_intervals_apart_leave_the_dimension_open():
     before = load_default("bolted_joint")
     assert with_surface(before, apart).values == before.values
     forced = with_surface(before, apart, force=True).values.surface
-    assert apart.select_best().profile.D.value == forced.D
+    assert apart.select_best_result().profile.D.value == forced.D
     crooked = replace(second, fit=replace(second.fit, deviation=1.0))
     assert replace(found, results=(first, crooked)).undetermined_reason() == "not self-affine (psd)"
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.exchange.robots.fitted import fit_spring
+from jointfmu_tools.exchange.robots.spring_fit import fit_spring
 from jointfmu_tools.exchange.robots.transmission import loop_area
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 

@@ -9,7 +9,7 @@ import fmpy
 import numpy as np
 import pytest
 from conftest import Fmu, here_alone, made_once, run_client, unpack
-from jointfmu_fmu_src.native.build import build
+from jointfmu_fmu_src.native.build import build_native_fmu
 from jointfmu_fmu_src.partners import load_partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
 from jointfmu_tools.systems.fmu.assembly import assemble_system
@@ -39,7 +39,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         with here_alone():
             for name in ("RotationalInertia", "TranslationalMass"):
                 for version in "23":
-                    build(name, load_partner_parameters(name), out / f"fmi{version}", version)
+                    build_native_fmu(name, load_partner_parameters(name), out / f"fmi{version}", version)
             build_system(assemble_system(load_system("robot_joint")), out, platforms=(fmpy.platform_tuple,))
 
     return made_once(tmp_path_factory, "set_states", make)

@@ -78,7 +78,7 @@ SCHEMAS = {
 @cache
 def bolted() -> BoltedJointSpring:
     """Not while tests are collected: its patches take a second."""
-    return BoltedJointSpring.of(load_default("bolted_joint").values)
+    return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="session")
@@ -307,7 +307,7 @@ def test_an_archive_is_complete_and_its_connections_fit(
     root = etree.fromstring(members["SystemStructure.ssd"])
     space = {"ssd": root.nsmap["ssd"], "ssc": root.nsmap["ssc"]}
     assert root.get("version") == version
-    assert master.doc in root.get("description")
+    assert master.lag_reason in root.get("description")
     fmus = ssp.find_fmu_names(found)
     units = {}
     for component in root.iterfind(".//ssd:Component", space):
@@ -359,7 +359,7 @@ def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Pa
             values = fromstring(archive.read("parameters/robot_joint.ssv")).iter()
             lags = [n for n in values if (n.get("name") or "").endswith(".lag_b")]
         assert [n.get("name") for n in lags] == ["motor.lag_b", "link.lag_b"]
-        assert {float(n[0].get("value") or "nan") for n in lags} == {master.lag}
+        assert {float(n[0].get("value") or "nan") for n in lags} == {master.force_lag}
 
 
 @ARCHIVES
@@ -638,7 +638,7 @@ def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Ar
     """Stiffness and friction of the sliders that touch at a preload, of all patches."""
     joint, patches = spring.joint, spring.patches
     approach = spring.curve.inverse(preload_pressure(joint, patches, preload, 0.0))
-    carried = spring.friction.foundation(approach).slider_properties(approach)
+    carried = spring.friction_law.foundation(approach).slider_properties(approach)
     area = joint.A_0 * patches.area_share[:, None]
     stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.friction_limit))
     some = stiffness > 0.0

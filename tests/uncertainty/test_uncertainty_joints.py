@@ -17,7 +17,7 @@ from scipy.integrate import quad
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
-from jointfmu.joints.bolted_joint.law import interface_alone, node_pressure
+from jointfmu.joints.bolted_joint.law import node_pressure, with_rigid_members
 from jointfmu.parameters import load_default
 from jointfmu.quantity import build_parameter_set, flat_fields, flatten_parameters
 
@@ -63,12 +63,14 @@ def test_approach_and_loss_factor_of_the_bolted_joint(law):
     """Against quadrature of the compliance of the patches and nodes, and the loop of the whole interface."""
     task = state_problem(load_default("bolted_joint", law), {"mu": "0.1..0.2", "H": "+-5%"}, None, 5)
     columns, joint = sample_of(task, propagate.sample_designs(task, 4, 5)[0], 0)
-    joint = replace(interface_alone(joint), embedding=0.0)
-    spring = BoltedJointSpring.of(joint)
+    joint = replace(with_rigid_members(joint), embedding=0.0)
+    spring = BoltedJointSpring.for_joint(joint)
     points = spring.points
 
     def rate(log):
-        pressure = node_pressure(joint, points.preload_shape, points.moment_shape, np.exp(log), 0.0)
+        pressure = node_pressure(
+            joint, points.preload_pressure_ratio, points.moment_pressure_ratio, np.exp(log), 0.0
+        )
         K = spring.curve.derivatives(spring.curve.inverse(pressure), 1)[1] @ points.area_share
         return joint.n_bolts * np.exp(log) / (joint.A_0 * K)
 
@@ -98,7 +100,7 @@ def test_pattern_of_the_bolts_may_be_uncertain():
     found = propagate.compute_bands(task, points)
     assert found.refusals.count == 0
     columns, joint = sample_of(task, points, 2)
-    exact = BoltedJointSpring.of(joint).evaluate(30e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    exact = BoltedJointSpring.for_joint(joint).evaluate(30e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert columns["K_zz"][-1] == pytest.approx(exact["K_zz"], rel=1e-8)
 
 

@@ -74,14 +74,14 @@ class TableDisplay(ABC):
     """Base class of objects that are displayed as a table."""
 
     @abstractmethod
-    def _table(self) -> Table: ...
+    def _build_table(self) -> Table: ...
 
     def __repr__(self) -> str:
-        return str(self._table())
+        return str(self._build_table())
 
     def _repr_html_(self) -> str:
         """HTML of the table for a notebook."""
-        return self._table()._repr_html_()
+        return self._build_table()._repr_html_()
 
 
 class Frame(TableDisplay, Mapping[str, Array]):
@@ -117,7 +117,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
     def __len__(self) -> int:
         return len(self._columns)
 
-    def _table(self) -> Table:
+    def _build_table(self) -> Table:
         count = next(iter(self._columns.values())).size
         shown = (
             [*range(count)]

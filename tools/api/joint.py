@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.files.outputs import HTML_PAGE, PARAMETER_FILE, check_output, write_parameter_text
+from jointfmu.files.outputs import HTML_FILE, PARAMETER_FILE, check_output, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, TabulatedJoint
 from jointfmu.parameters import ParameterFile, format_parameter_file
@@ -17,7 +17,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 from ..common import plots
 from ..common.judgement import find_rms_height
 from ..common.options import require_package
-from ..common.pressure import judge_file
+from ..common.pressure import judge_joint_stiffness
 from ..common.shown import format_quantity, list_entries
 from ..run.engine import JointEngine, open_joint
 from ..run.ramps.ramp import broadcast_columns
@@ -81,7 +81,7 @@ class Joint(TableDisplay):
     @property
     def warnings(self) -> list[str]:
         """Warnings about the parameters and the stiffness, one line each."""
-        return [*self.notes, *judge_file(self.file).warnings]
+        return [*self.notes, *judge_joint_stiffness(self.file).warnings]
 
     @property
     def parameters(self) -> Table:
@@ -96,7 +96,7 @@ class Joint(TableDisplay):
     def _title(self) -> str:
         return f"{self.name}: {KINDS[self.file.joint].title}, law {self.file.law}"
 
-    def _table(self) -> Table:
+    def _build_table(self) -> Table:
         """Printed table: facts and warnings, then the parameters without their meaning."""
         texts = (
             (name, " ".join(format_quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items()
@@ -154,7 +154,7 @@ class Joint(TableDisplay):
         >>> bool(frame["f_x"][1] < frame["f_x"][0] == 0.0)
         True
         """
-        return self._run(fmu, inputs, each_from_rest=True)
+        return self._evaluate_points(fmu, inputs, each_from_rest=True)
 
     def follow(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
         """Compute every output along a path of inputs from rest. Friction keeps its history along the path.
@@ -170,9 +170,11 @@ class Joint(TableDisplay):
         >>> bool(path["f_x"][2] > 0.0 and path["E_loss"][2] > 0.0)
         True
         """
-        return self._run(fmu, inputs, each_from_rest=False)
+        return self._evaluate_points(fmu, inputs, each_from_rest=False)
 
-    def _run(self, fmu: str | None, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool) -> Frame:
+    def _evaluate_points(
+        self, fmu: str | None, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool
+    ) -> Frame:
         """Evaluate the points one after the other, with inputs broadcast to the same length."""
         model = self.model(fmu)
         names = [v.name for v in model.inputs]
@@ -185,15 +187,15 @@ class Joint(TableDisplay):
             if outside:
                 allowed = f"{variable.interval} {variable.unit}"
                 raise ValueError(f"{model.name}: {variable.name} = {outside[0]:g} is outside {allowed}")
-        if model.name not in self._engines:
-            self._engines[model.name] = open_joint(model, self.file)
-        found = self._engines[model.name].follow(columns, each_from_rest=each_from_rest)
+        if model.name not in self._opened_joints:
+            self._opened_joints[model.name] = open_joint(model, self.file)
+        found = self._opened_joints[model.name].follow(columns, each_from_rest=each_from_rest)
         units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}
         shown = {n: found.columns[n] for n in units if n in columns or n not in names}
         return Frame(shown, units, found.warnings)
 
     @cached_property
-    def _engines(self) -> dict[str, JointEngine]:
+    def _opened_joints(self) -> dict[str, JointEngine]:
         """{FMU: opened joint}."""
         return {}
 
@@ -205,9 +207,9 @@ class Joint(TableDisplay):
     def plot(self, fmu: str | None = None) -> "Figure":
         """Draw the curves over the load, and hysteresis loops if the joint has any: a matplotlib figure."""
         with require_package("draw"):
-            from ..pages.report.course import LoadHistory
             from ..pages.report.figure import draw_panels
             from ..pages.report.joint import loop_figure, ramp_figure
+            from ..pages.report.load_history import LoadHistory
         course = LoadHistory(self.model(fmu), self.file)
         panels = list(ramp_figure(course).panels)
         loops = course.compute_loops() if course.model.load_cycle else None
@@ -255,7 +257,7 @@ class Joint(TableDisplay):
         with require_package("build"):
             from jointfmu_fmu_src import building
 
-            return building.build(names, flavours, self.file, Path(out), alias=name, force=force)
+            return building.build_fmus(names, flavours, self.file, Path(out), alias=name, force=force)
 
     def report(self, path: str | Path, fmu: str | None = None, *, force: bool = False) -> Path:
         """Write a page about the joint (HTML): curves, loops, sources of its numbers.
@@ -265,7 +267,7 @@ class Joint(TableDisplay):
 
         Raises ValueError if the file may not or cannot be written.
         """
-        check_output(path, HTML_PAGE, force)
+        check_output(path, HTML_FILE, force)
         with require_package("write a report"):
             from ..pages.report.joint import write_joint_report
         write_joint_report(Path(path), self.file, fmu)

@@ -45,7 +45,7 @@ class Law(TableDisplay):
         """Parameters of the law: {structured name: value [SI]}."""
         return flatten_parameters(self.parameters)
 
-    def _table(self) -> Table:
+    def _build_table(self) -> Table:
         fields = {name: item.metadata for name, item in flat_fields(type(self.parameters))}
         rows = [
             (name, *format_quantity(value, fields[name].get("unit")), fields[name]["doc"])
@@ -79,10 +79,10 @@ class Law(TableDisplay):
     def _array_parameters(self) -> dict[str, Array]:
         return {name: value for name, value in self.values.items() if isinstance(value, np.ndarray)}
 
-    def _to_column(self, name: str, values: ArrayLike) -> Array:
+    def _to_column(self, column_name: str, column_values: ArrayLike) -> Array:
         """Convert values to an array (n) or (1). Raises ValueError if parameters have another length."""
-        column = np.ravel(np.asarray(values, dtype=np.float64))
-        broadcast_columns({name: column, **self._array_parameters}, f"law {self.name}")
+        column = np.ravel(np.asarray(column_values, dtype=np.float64))
+        broadcast_columns({column_name: column, **self._array_parameters}, f"law {self.name}")
         return column
 
     def _build_frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:

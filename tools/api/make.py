@@ -23,7 +23,7 @@ from ..inputs.drawing.reading import parse_number
 from ..inputs.fitting.outcome import FitResult, draw_fit, figure_size, format_deviation
 from ..inputs.fitting.procedure import fit_procedures
 from ..joints.harmonic_drive.catalogue import list_drives
-from ..joints.harmonic_drive.new import NEW as NEW_DRIVE
+from ..joints.harmonic_drive.new import NEW_JOINT_COMMAND as NEW_DRIVE
 from .drive_joint import DriveJoint
 from .frame import Table, TableDisplay
 from .joint import Facts, Joint
@@ -46,10 +46,12 @@ _MAKER_DOCSTRING = """Make {}.
 _OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
 
 
-def create_joint(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
+def create_joint(
+    parameter_file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()
+) -> Joint:
     """Make the joint object of a parameter file."""
-    joint_class = DriveJoint if file.joint == "harmonic_drive" else Joint
-    return joint_class(file, facts or {}, tuple(notes))
+    joint_class = DriveJoint if parameter_file.joint == "harmonic_drive" else Joint
+    return joint_class(parameter_file, facts or {}, tuple(notes))
 
 
 def load(source: str | Path) -> Joint:
@@ -108,23 +110,23 @@ def _use_python_names() -> Iterator[None]:
         raise ValueError(_OPTION_PATTERN.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
 
 
-def _to_command_line_value(option: Option, value: Any) -> object:
+def _to_command_line_value(option: Option, option_value: Any) -> object:
     """Convert a value to its form on the command line: text, a list of texts, or a bool for a flag.
 
     A size becomes one text such as 200x100. Raises ValueError for too many values, or an unknown choice.
     """
     if option.is_flag:
-        return bool(value)
-    if value is None:
+        return bool(option_value)
+    if option_value is None:
         return None
-    values = value.tolist() if isinstance(value, np.ndarray) else value
+    values = option_value.tolist() if isinstance(option_value, np.ndarray) else option_value
     texts = [_format_value(v) for v in (values if isinstance(values, list | tuple) else [values])]
     if option.separator and not (
         option.is_list and any(sign in text for text in texts for sign in (",", option.separator))
     ):
         texts = [option.separator.join(texts)]
     if not texts or (len(texts) > 1 and not option.is_list):
-        raise ValueError(f"{option.name} = {value!r} are {len(texts)} values, expected one")
+        raise ValueError(f"{option.name} = {option_value!r} are {len(texts)} values, expected one")
     if option.is_list:
         return texts
     if option.choices and texts[0] not in option.choices:
@@ -139,8 +141,8 @@ def _format_value(value: Any) -> str:
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
-def create_maker(
-    name: str, kind: JointKind, example: str, first_option: str | None = None
+def create_joint_function(
+    function_name: str, kind: JointKind, doctest_example: str, first_option: str | None = None
 ) -> Callable[..., Joint]:
     """Create the public function that makes a joint from its drawing.
 
@@ -153,7 +155,7 @@ def create_maker(
     drawing: NewJointCommand = load_tool_module(kind, "new").NEW  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
-    def make(*args: object, **options: object) -> Joint:
+    def make_joint(*args: object, **options: object) -> Joint:
         arguments = signature.bind(*args, **options).arguments
         with _use_python_names():
             return make_from_drawing(drawing, arguments)
@@ -168,12 +170,14 @@ def create_maker(
         for option in ordered
     ]
     signature = inspect.Signature(parameters, return_annotation=Joint)
-    make.__name__ = make.__qualname__ = name
-    make.__module__ = "jointfmu"
-    make.__signature__ = signature  # type: ignore[attr-defined]
+    make_joint.__name__ = make_joint.__qualname__ = function_name
+    make_joint.__module__ = "jointfmu"
+    make_joint.__signature__ = signature  # type: ignore[attr-defined]
     meanings = "\n".join(f"    {option.name} : {_option_help(option)}" for option in ordered)
-    make.__doc__ = _MAKER_DOCSTRING.format(drawing.description, meanings, example.replace("\n", "\n    "))
-    return make
+    make_joint.__doc__ = _MAKER_DOCSTRING.format(
+        drawing.description, meanings, doctest_example.replace("\n", "\n    ")
+    )
+    return make_joint
 
 
 def _option_help(option: Option) -> str:
@@ -199,7 +203,7 @@ class Fit(TableDisplay):
         """The joint with the fitted parameters."""
         return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
 
-    def _table(self) -> Table:
+    def _build_table(self) -> Table:
         rows = [
             (
                 row["name"],
@@ -236,15 +240,15 @@ def _procedure_paths(
     return [Path(path) for path in file]
 
 
-def _to_procedure_value(option: Option, value: Any) -> object:
+def _to_procedure_value(option: Option, option_value: Any) -> object:
     """Convert an option to the form that the function of a procedure takes; numbers are in SI units."""
-    if value is None or not (option.is_number or option.default_unit):
-        return _to_command_line_value(option, value)
-    if option.default_unit and isinstance(value, str):
-        return parse_number(option.name, value, option.default_unit, option.default_unit, None)
-    if not isinstance(value, int | float | np.number):
-        raise ValueError(f"{option.name} = {value!r} is not a number: {option.help_text}")
-    return float(value)
+    if option_value is None or not (option.is_number or option.default_unit):
+        return _to_command_line_value(option, option_value)
+    if option.default_unit and isinstance(option_value, str):
+        return parse_number(option.name, option_value, option.default_unit, option.default_unit, None)
+    if not isinstance(option_value, int | float | np.number):
+        raise ValueError(f"{option.name} = {option_value!r} is not a number: {option.help_text}")
+    return float(option_value)
 
 
 def fit(
@@ -298,4 +302,4 @@ def fit(
         values = {
             n: _to_procedure_value(option, options.get(n, option.default)) for n, option in declared.items()
         }
-        return Fit(chosen.run(*data, start and start.file, names, **values))
+        return Fit(chosen.run_fit(*data, start and start.file, names, **values))

@@ -41,7 +41,7 @@ def _is_interrupted(error: BaseException | None) -> bool:
     return error is not None
 
 
-def _run_command(args: Any, name: str) -> int:
+def _run_command(args: Any, command_name: str) -> int:
     """Run a parsed command; returns the exit status. Errors of the command are printed on one line."""
     from jointfmu.progress import show_status
     from jointfmu.quantity.refusal import InputRefusal
@@ -50,15 +50,17 @@ def _run_command(args: Any, name: str) -> int:
     from .command import option_of_setting
 
     try:
-        with show_status(name):
+        with show_status(command_name):
             outputs.check_command_outputs(args.outputs, args)
             status = int(args.run(args).print_result(args.json))
         print(end="", flush=True)
         return status
     except (ValueError, RuntimeError) as error:
         hint = [f"({option_of_setting(args, error.setting)})"] if isinstance(error, InputRefusal) else []
-        print(f"{name}:", *str(error).splitlines(), *hint, file=sys.stderr)
+        print(f"{command_name}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except OverflowError:
-        print(f"{name}: a parameter is so large that results of the law exceed 1.8e308", file=sys.stderr)
+        print(
+            f"{command_name}: a parameter is so large that results of the law exceed 1.8e308", file=sys.stderr
+        )
         return 2

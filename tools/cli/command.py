@@ -106,7 +106,7 @@ _METAVAR_BY_TYPE: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str
 
 def declare_argument(
     parser: "argparse._ActionsContainer",
-    name: str,
+    argument_name: str,
     value_type: type,
     help_text: str,
     metavar: str = "",
@@ -120,17 +120,19 @@ def declare_argument(
     if "default" in options:
         default = options["default"]
         help_text += f" (default: {f'{default:g}' if value_type is float else default})"
-    names = [name, alias] if alias else [name]
+    names = [argument_name, alias] if alias else [argument_name]
     parser.add_argument(
         *names, type=value_type, metavar=metavar or _METAVAR_BY_TYPE[value_type], help=help_text, **options
     )
 
 
 def declare_command(
-    commands: SubParsers, name: str, command_function: CommandFunction, help_text: str
+    command_parsers: SubParsers, command_name: str, command_function: CommandFunction, help_text: str
 ) -> Parser:
     """Declare a command that has the option `--json`."""
-    sub: Parser = commands.add_parser(name, help=help_text, description=format_sentence(help_text))
+    sub: Parser = command_parsers.add_parser(
+        command_name, help=help_text, description=format_sentence(help_text)
+    )
     sub.set_defaults(run=command_function, outputs=sub.outputs)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub

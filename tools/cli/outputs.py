@@ -6,7 +6,7 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from jointfmu.files.outputs import FOLDER, PICTURE, FileKind, check_output, is_same_file
+from jointfmu.files.outputs import OUTPUT_FOLDER, PICTURE_FILE, FileKind, check_output, is_same_file
 from jointfmu.files.writing import is_standard_output
 
 from ..common import plots
@@ -16,16 +16,22 @@ FORCE_HELP = "replace files that jointfmu did not write, or that were edited"
 
 
 def declare_output(
-    parser: Parser, name: str, kind: FileKind, help_text: str, *, allow_force: bool = True, **options: Any
+    parser: Parser,
+    argument_name: str,
+    file_kind: FileKind,
+    help_text: str,
+    *,
+    allow_force: bool = True,
+    **options: Any,
 ) -> None:
     """Declare an option that names a file or folder to write, and the option `--force`.
 
     allow_force : whether to declare `--force`; False: a foreign file is never replaced
     options     : keyword arguments of `declare_argument`
     """
-    metavar = "DIR" if kind is FOLDER else "FILE"
-    declare_argument(parser, name, Path, help_text, metavar, **options)
-    parser.outputs[name.lstrip("-")] = kind
+    metavar = "DIR" if file_kind is OUTPUT_FOLDER else "FILE"
+    declare_argument(parser, argument_name, Path, help_text, metavar, **options)
+    parser.outputs[argument_name.lstrip("-")] = file_kind
     if allow_force and "--force" not in parser._option_string_actions:
         parser.add_argument("--force", action="store_true", help=FORCE_HELP)
 
@@ -36,7 +42,7 @@ def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namesp
     outputs : {argument: kind of file} as declared
     """
     stated = {name: getattr(args, name) for name in outputs if getattr(args, name) is not None}
-    files = {f"--{name}": path for name, path in stated.items() if outputs[name] is not FOLDER}
+    files = {f"--{name}": path for name, path in stated.items() if outputs[name] is not OUTPUT_FOLDER}
     check_input_overwrite(files.values(), args, outputs)
     for (option, path), (other_option, other_path) in combinations(files.items(), 2):
         if is_same_file(path, other_path) and not path.is_char_device():
@@ -44,7 +50,7 @@ def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namesp
     for name, path in stated.items():
         if args.json and is_standard_output(path):
             raise ValueError(f"--{name} {path}: --json writes to the same place; state another file")
-        if outputs[name] is PICTURE:
+        if outputs[name] is PICTURE_FILE:
             plots.check_picture(path)
         check_output(path, outputs[name], getattr(args, "force", False))
 
@@ -61,13 +67,13 @@ def check_input_overwrite(files: Iterable[Path], args: argparse.Namespace, outpu
             raise ValueError(f"{path}: is also an input of this command; state another file")
 
 
-def _iterate_named_files(value: object) -> Iterator[Path]:
+def _iterate_named_files(argument_value: object) -> Iterator[Path]:
     """Yield the existing files that a value of the command line names, also as NAME=FILE."""
-    if isinstance(value, list | tuple):
-        for item in value:
+    if isinstance(argument_value, list | tuple):
+        for item in argument_value:
             yield from _iterate_named_files(item)
-    elif isinstance(value, str | Path):
-        text = str(value)
+    elif isinstance(argument_value, str | Path):
+        text = str(argument_value)
         for word in {text, text.partition("=")[2]} - {""}:
             path = Path(word)
             if "\0" not in word and path.exists() and not path.is_dir():

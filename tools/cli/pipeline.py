@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import MODELS
@@ -30,7 +30,7 @@ from ..studies.checks import (
 from ..studies.published import validation
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay
-from ..systems.ringing import FreeVibration, simulate_examples
+from ..systems.ringing import FreeVibration, simulate_example_vibrations
 from ..systems.ssp import build_systems
 from ..systems.system import System
 
@@ -76,7 +76,7 @@ class JobResult:
         lines = list(self.problems)
         lines += [f"{report_name(proof.fmu)}: {text}" for proof in self.proofs for text in proof.failures]
         lines += [
-            f"{c.fmu}: {c.name}: {c.deviation:.2g}, allowed {c.tolerance:.0e}"
+            f"{c.fmu}: {c.compared_quantity}: {c.deviation:.2g}, allowed {c.tolerance:.0e}"
             for c in self.checks
             if not c.is_passed
         ]
@@ -106,12 +106,12 @@ def run_job(out_folder: Path) -> JobResult:
     folder = out_folder / "fmi2"
     outcome = JobResult(folder)
     with worker_processes() as pool:
-        outcome.fmu_paths = build([], list(FLAVOURS), None, out_folder, pool=pool)
+        outcome.fmu_paths = build_fmus([], list(FLAVOUR_BUILDERS), None, out_folder, pool=pool)
         outcome.system_files = build_systems(out_folder, build_joints=False, pool=pool)
         components = [path for path in outcome.system_files if path.suffix == ".fmu"]
         arms = pool.submit(cosimulation.simulate_arms, folder)
-        ringdowns = pool.submit(decays.simulate_examples, folder)
-        ringing = pool.submit(simulate_examples, folder)
+        ringdowns = pool.submit(decays.simulate_example_decays, folder)
+        ringing = pool.submit(simulate_example_vibrations, folder)
         page = pool.submit(write_laboratory, out_folder / "report" / "laboratory.html")
         paths = [*outcome.fmu_paths, *components]
         examined = pool.map(_validate_and_prove, paths)
@@ -136,21 +136,25 @@ def _validate_and_prove(path: Path) -> tuple[list[str], Proof]:
     return [f"{report_name(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
 
-def _compare_ramps(outcome: JobResult, out: Path) -> None:
+def _compare_ramps(job_result: JobResult, out_folder: Path) -> None:
     """Run and check the ramps of all FMUs, and compare with the published numbers."""
     for name in track_progress(MODELS, "ramp", len(MODELS)):
-        result = run_default_ramp(name, outcome.fmi2_folder)
-        outcome.ramps[name] = result
-        outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
-        write_text(out / "report" / f"{name}.csv", result.format_csv())
-        outcome.checks += check_ramp(name, outcome.fmi2_folder, result)
-        other_folders = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmi2_folder]
-        outcome.checks += [compare_flavour(name, folder, result) for folder in other_folders]
+        result = run_default_ramp(name, job_result.fmi2_folder)
+        job_result.ramps[name] = result
+        job_result.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
+        write_text(out_folder / "report" / f"{name}.csv", result.format_csv())
+        job_result.checks += check_ramp(name, job_result.fmi2_folder, result)
+        other_folders = [
+            out_folder / flavour
+            for flavour in FLAVOUR_BUILDERS
+            if out_folder / flavour != job_result.fmi2_folder
+        ]
+        job_result.checks += [compare_flavour(name, folder, result) for folder in other_folders]
     for step in track_progress(("package", "FMUs"), "compare", 2):
         if step == "package":
-            outcome.validated_points = validation.validate()
+            job_result.validated_points = validation.validate()
         else:
-            outcome.fmu_validated_points = compute_published_points(outcome.fmi2_folder)
+            job_result.fmu_validated_points = compute_published_points(job_result.fmi2_folder)
 
 
 def main(out_folder: Path) -> int:
@@ -164,7 +168,7 @@ def main(out_folder: Path) -> int:
         print("build_fmus.py: interrupted", file=sys.stderr)
         return 130
     misses = outcome.failures
-    folders = ", ".join(str(out_folder / flavour) for flavour in FLAVOURS)
+    folders = ", ".join(str(out_folder / flavour) for flavour in FLAVOUR_BUILDERS)
     print(f"built: {len(outcome.fmu_paths)} FMUs in {folders}: {', '.join(MODELS)}")
     print(
         f"systems: {', '.join(p.name for p in outcome.system_files if p.suffix == '.ssp')} in "
@@ -172,7 +176,7 @@ def main(out_folder: Path) -> int:
     )
     partners = [path for path in outcome.system_files if path.suffix == ".fmu"]
     print(f"validated with fmpy: {len(outcome.fmu_paths) + len(partners)}; ramps run: {len(outcome.ramps)}")
-    worst = max((proof.worst.error_ratio for proof in outcome.proofs if proof.worst), default=0.0)
+    worst = max((proof.worst_point.error_ratio for proof in outcome.proofs if proof.worst_point), default=0.0)
     runs = sum(proof.run_count for proof in outcome.proofs)
     print(
         f"proved in fmpy: {len(outcome.proofs)} FMUs by {runs} runs of their experiments, "

@@ -19,7 +19,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files.outputs import MESH, FileKind
+from jointfmu.files.outputs import MESH_FILE, FileKind
 from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import UnitSizes, unit_size_in
@@ -56,13 +56,13 @@ class Columns:
     line_numbers: Sequence[int] = ()
     units: Mapping[str, str] = field(default_factory=dict)
 
-    def require_column(self, name: str, allowed_units: Mapping[str, UnitSizes]) -> Array:
+    def require_column(self, column_name: str, allowed_units: Mapping[str, UnitSizes]) -> Array:
         """Return a column. Raises ValueError if the file does not have the column."""
-        if name not in self.columns:
+        if column_name not in self.columns:
             raise ValueError(
-                f"{self.path}: has no column {name!r}; expected {format_heading({name: allowed_units[name]})}"
+                f"{self.path}: has no column {column_name!r}; expected {format_heading({column_name: allowed_units[column_name]})}"
             )
-        return self.columns[name]
+        return self.columns[column_name]
 
     def check_positive(self, names: Iterable[str], allowed_units: Mapping[str, UnitSizes]) -> "Columns":
         """Return self; raise ValueError with the line if a number of the named columns is not positive."""
@@ -83,7 +83,9 @@ def is_table(path: Path) -> bool:
 
 
 TABLE_FILE_KIND = FileKind("table", (".csv",), is_table)
-FIELD_FILE_KIND = FileKind("field", (".csv", ".vtu"), lambda path: is_table(path) or MESH.is_own(path))
+FIELD_FILE_KIND = FileKind(
+    "field", (".csv", ".vtu"), lambda path: is_table(path) or MESH_FILE.is_program_file(path)
+)
 
 
 def format_heading(allowed_units: Mapping[str, UnitSizes]) -> str:
@@ -190,10 +192,10 @@ def split_cells(line: str, delimiter: str | None) -> list[str]:
     return next(csv.reader([line], delimiter=delimiter or ","))
 
 
-def check_cell_count(path: Path, line_number: int, cells: Sequence[str], count: int) -> None:
+def check_cell_count(path: Path, line_number: int, cells: Sequence[str], expected_count: int) -> None:
     """Raise ValueError with the line number if a row does not have `expected_count` cells."""
-    if len(cells) != count:
-        raise ValueError(f"{path}: line {line_number} has {len(cells)} columns, expected {count}")
+    if len(cells) != expected_count:
+        raise ValueError(f"{path}: line {line_number} has {len(cells)} columns, expected {expected_count}")
 
 
 def parse_number(cell: str) -> float | None:
@@ -300,12 +302,12 @@ def _resolve_alias(
     return word
 
 
-def _parse_column(path: Path, name: str, line_numbers: Sequence[int], cells: Sequence[str]) -> Array:
+def _parse_column(path: Path, column_name: str, line_numbers: Sequence[int], cells: Sequence[str]) -> Array:
     values = np.array([np.nan if (value := parse_number(cell)) is None else value for cell in cells])
     if np.any(wrong := ~np.isfinite(values)):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{path}: line {line_numbers[first]}: {name} = {cells[first].strip()!r} is not a finite number "
+            f"{path}: line {line_numbers[first]}: {column_name} = {cells[first].strip()!r} is not a finite number "
             "with a "
             "decimal point"
         )

@@ -57,15 +57,17 @@ class ToolParts:
     def folder(self) -> Path:
         return Path(str(import_module(self.package).__file__)).parent
 
-    def load(self, tool: str) -> ModuleType | None:
+    def load(self, tool_name: str) -> ModuleType | None:
         """Import the module for a tool; None if the joint has no such module."""
-        return import_module(f"{self.package}.{self.modules[tool]}") if tool in self.modules else None
+        return (
+            import_module(f"{self.package}.{self.modules[tool_name]}") if tool_name in self.modules else None
+        )
 
 
 PARTS: dict[str, ToolParts] = {}
 """{name of a joint: its tool modules}. `jointfmu_tools.joints` fills it; other packages add their joints."""
 
 
-def load_tool_module(kind: "JointKind", tool: str) -> ModuleType | None:
+def load_tool_module(kind: "JointKind", tool_name: str) -> ModuleType | None:
     """Import the module of a joint for a tool; None if the joint has no such module."""
-    return PARTS[kind.name].load(tool) if kind.name in PARTS else None
+    return PARTS[kind.name].load(tool_name) if kind.name in PARTS else None

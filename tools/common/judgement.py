@@ -29,14 +29,14 @@ class StiffnessComparison:
     stiffness  : (n) [N/m3] stiffness per area of the law, times the scale of the joint
     """
 
-    h: float
+    rms_height: float
     pressure: Array
     stiffness: Array
 
     @property
     def ratio(self) -> Array:
         """Ratio (n) [1] of the stiffness to p/(GAMMA h)."""
-        return np.asarray(self.stiffness / predicted_stiffness(self.pressure, self.h))
+        return np.asarray(self.stiffness / predicted_stiffness(self.pressure, self.rms_height))
 
     @property
     def is_doubtful(self) -> bool:
@@ -44,7 +44,7 @@ class StiffnessComparison:
         return bool(np.any((self.ratio > MAX_STIFFNESS_RATIO) | (self.ratio < 1.0 / MAX_STIFFNESS_RATIO)))
 
     def __str__(self) -> str:
-        at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.h:.3g} um"
+        at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.rms_height:.3g} um"
         return (
             f"stiffness by the law: {_format_range(self.ratio)} times the roughness "
             f"estimate p/({PERSSON_GAMMA:g} h) {at}"
@@ -52,10 +52,15 @@ class StiffnessComparison:
 
     def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object."""
-        columns = (self.pressure, self.stiffness, predicted_stiffness(self.pressure, self.h), self.ratio)
+        columns = (
+            self.pressure,
+            self.stiffness,
+            predicted_stiffness(self.pressure, self.rms_height),
+            self.ratio,
+        )
         names = ("pressure", "stiffness", "expected", "ratio")
         points = [dict(zip(names, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
-        return {"h": self.h, "gamma": PERSSON_GAMMA, "points": points}
+        return {"h": self.rms_height, "gamma": PERSSON_GAMMA, "points": points}
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,19 +87,19 @@ class Plausibility:
         return {"level": self.comparison and self.comparison.to_json(), "warnings": list(self.warnings)}
 
 
-def find_rms_height(file: ParameterFile) -> float | None:
+def find_rms_height(parameter_file: ParameterFile) -> float | None:
     """Combined rms height h [m] of both surfaces, from the law or else from the surface data of the file.
 
     None if the file has neither.
     """
-    h = law_rms_height(KINDS[file.joint].extract_law(file.values))
-    return combined_height(file.roughness) if h is None else h
+    h = law_rms_height(KINDS[parameter_file.joint].extract_law(parameter_file.values))
+    return combined_height(parameter_file.roughness) if h is None else h
 
 
 def assess_law(
     law: InterfaceLaw,
     pressures: Sequence[float],
-    h: float | None,
+    rms_height: float | None,
     peak_pressure: float = 0.0,
     stiffness_ratio: Sequence[float] | float = 1.0,
     check_limits: bool = True,
@@ -110,19 +115,20 @@ def assess_law(
     in_contact = (nominal > 0.0) & (nominal < np.inf)
     p, factor = nominal[in_contact], np.broadcast_to(stiffness_ratio, nominal.shape)[in_contact]
     comparison = None
-    if h is not None and p.size:
-        comparison = StiffnessComparison(h, p, factor * stiffness_curve(law, p)[0])
+    if rms_height is not None and p.size:
+        comparison = StiffnessComparison(rms_height, p, factor * stiffness_curve(law, p)[0])
     highest = float(np.max(p, initial=peak_pressure))
     lowest = float(np.min(p, initial=highest))
     warnings = find_validity_violations(law, highest, lowest) if check_limits and highest > 0.0 else []
-    if h is not None and h > 2.0 * MAX_HEIGHT:
+    if rms_height is not None and rms_height > 2.0 * MAX_HEIGHT:
         warnings.insert(
-            0, f"h = {h:.3g} m is not a roughness: faces that are joined have up to {MAX_HEIGHT:g} m each"
+            0,
+            f"h = {rms_height:.3g} m is not a roughness: faces that are joined have up to {MAX_HEIGHT:g} m each",
         )
     if comparison is not None and comparison.is_doubtful:
         warnings.append(
             f"stiffness by the law: {_format_range(comparison.ratio)} times the roughness estimate K/A_0 = "
-            f"p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um, allowed is a factor of "
+            f"p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.rms_height:.3g} um, allowed is a factor of "
             f"{MAX_STIFFNESS_RATIO:g}: measure the joint, or use the roughness estimate (docs/validity.md)"
         )
     return Plausibility(comparison, tuple(warnings))

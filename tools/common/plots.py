@@ -51,7 +51,7 @@ def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
 
 
 @contextmanager
-def open_figure(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
+def open_figure(path: str | Path, figure_size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
     """Create a figure of a size [inch] in the common style; it is saved at the end of the `with` block.
 
     with plots.open_figure("ramp.png") as figure:
@@ -61,7 +61,7 @@ def open_figure(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Ite
     from matplotlib.figure import Figure
 
     with apply_style():
-        figure = Figure(figsize=size, layout="constrained")
+        figure = Figure(figsize=figure_size, layout="constrained")
         yield figure
         save_figure(figure, path)
 
@@ -86,11 +86,11 @@ def _load_style_context() -> Callable[..., AbstractContextManager[None, bool | N
     return rc_context
 
 
-def create_figure(size: tuple[float, float]) -> "Figure":
+def create_figure(figure_size: tuple[float, float]) -> "Figure":
     """Create an empty figure of a size [inch] that `pyplot.show` and notebooks display."""
     from matplotlib import get_backend, pyplot
 
-    canvas = pyplot.figure(figsize=size, layout="constrained")
+    canvas = pyplot.figure(figsize=figure_size, layout="constrained")
     if "inline" in get_backend():
         pyplot.close(canvas)  # a notebook would show the figure twice: as result of the cell and as open
     return canvas

@@ -57,50 +57,56 @@ def nominal_pressure(kind: JointKind) -> NominalPressure | None:
     return module.PRESSURE if module else None
 
 
-def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Plausibility:
+def judge_joint_stiffness(
+    parameter_file: ParameterFile, loads: Sequence[float] | None = None
+) -> Plausibility:
     """Judge the stiffness of a joint under loads.
 
     loads : values of `NominalPressure.load_variable` [SI]; None: the start value in the file, or, if it is
             zero, the default load. At the default load the stiffness is only compared with the estimate from
             roughness
     """
-    kind = KINDS[file.joint]
+    kind = KINDS[parameter_file.joint]
     nominal = nominal_pressure(kind)
-    if nominal is None or kind.extract_law(file.values) is None:
+    if nominal is None or kind.extract_law(parameter_file.values) is None:
         return Plausibility(None, ())
-    if loads is None and file.start_value(nominal.load_variable) > 0.0:
-        loads = [file.start_value(nominal.load_variable)]
-    law, h, limits = kind.extract_law(file.values), find_rms_height(file), loads is not None
+    if loads is None and parameter_file.start_value(nominal.load_variable) > 0.0:
+        loads = [parameter_file.start_value(nominal.load_variable)]
+    law, h, limits = (
+        kind.extract_law(parameter_file.values),
+        find_rms_height(parameter_file),
+        loads is not None,
+    )
     if loads is None:
-        loads = [nominal.default_load(file.values)]
+        loads = [nominal.default_load(parameter_file.values)]
     loads = [load for load in loads if load > 0.0]
     judgement = assess_law(
         law,
-        [nominal.mean_pressure(file.values, load) for load in loads],
+        [nominal.mean_pressure(parameter_file.values, load) for load in loads],
         h,
-        max((nominal.peak_pressure(file.values, load) for load in loads), default=0.0),
-        [nominal.stiffness_ratio(file.values, load) for load in loads],
+        max((nominal.peak_pressure(parameter_file.values, load) for load in loads), default=0.0),
+        [nominal.stiffness_ratio(parameter_file.values, load) for load in loads],
         limits,
     )
-    capacity = nominal.load_capacity(file.values)
+    capacity = nominal.load_capacity(parameter_file.values)
     return judgement.with_warnings(warn_overload(nominal.load_variable, max(loads, default=0.0), capacity))
 
 
-def warn_missing_members(file: ParameterFile) -> list[str]:
+def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
     """Warning that the written file has only the interface of a joint with elastic members; else empty."""
-    if not getattr(file.values, "elastic", False):
+    if not getattr(parameter_file.values, "elastic", False):
         return []
     return [
-        f"{file.name!r} is a complete joint (sides = elastic), but this file has the interface only: between "
+        f"{parameter_file.name!r} is a complete joint (sides = elastic), but this file has the interface only: between "
         "rigid bodies it is far too stiff, because the members are missing; the FMU has them"
     ]
 
 
-def warn_overload(name: str, load: float, capacity: tuple[float, str] | None) -> list[str]:
+def warn_overload(load_name: str, load: float, load_capacity: tuple[float, str] | None) -> list[str]:
     """Warning if a load [N] is above the load capacity; else empty.
 
     load_capacity : (largest load [N], name of this limit), or None if not known
     """
-    if capacity is None or load <= capacity[0]:
+    if load_capacity is None or load <= load_capacity[0]:
         return []
-    return [f"{name} = {load:g} N is above {capacity[0]:.4g} N, {capacity[1]}"]
+    return [f"{load_name} = {load:g} N is above {load_capacity[0]:.4g} N, {load_capacity[1]}"]

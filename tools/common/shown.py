@@ -16,9 +16,9 @@ STIFFNESS_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
 """{SI unit: display unit on all pages} of stiffnesses. Other display units depend on the value."""
 
 
-def choose_display_unit(unit: str, typical: float) -> str:
+def choose_display_unit(unit: str, typical_value: float) -> str:
     """Choose the display unit of a variable by its typical value."""
-    return STIFFNESS_UNITS.get(unit) or display_unit(unit, typical)
+    return STIFFNESS_UNITS.get(unit) or display_unit(unit, typical_value)
 
 
 def format_unit(unit: str) -> str:
@@ -50,17 +50,17 @@ def align_columns(rows: Sequence[Sequence[str]], word_columns: int | None = None
     return [pattern.format(*row).rstrip() for row in rows]
 
 
-def format_facts(facts: Mapping[str, tuple[float, str, str]]) -> list[str]:
+def format_facts(facts_by_name: Mapping[str, tuple[float, str, str]]) -> list[str]:
     """Format {name: (value, unit, meaning)} as lines."""
     return [
         f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
-        for name, (value, unit, text) in facts.items()
+        for name, (value, unit, text) in facts_by_name.items()
     ]
 
 
-def fact_document(facts: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
+def fact_document(facts_by_name: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
     """JSON object of {name: (value, unit, meaning)}."""
-    return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts.items()}
+    return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts_by_name.items()}
 
 
 class FileEntry(NamedTuple):
@@ -78,32 +78,34 @@ class FileEntry(NamedTuple):
     source: str
 
 
-def _format_source(file: ParameterFile, name: str) -> str:
+def _format_source(parameter_file: ParameterFile, parameter_name: str) -> str:
     """Format the source of a number, with the range that the file states for it."""
-    text = file.sources.get(name, "default choice")
-    low, high = file.ranges.get(name, (0.0, 0.0))
+    text = parameter_file.sources.get(parameter_name, "default choice")
+    low, high = parameter_file.ranges.get(parameter_name, (0.0, 0.0))
     return f"{low:g} to {high:g}; {text}" if high > low else text
 
 
-def list_entries(file: ParameterFile) -> list[FileEntry]:
+def list_entries(parameter_file: ParameterFile) -> list[FileEntry]:
     """List all entries of a parameter file: parameters, start values of inputs, roughnesses."""
     fields: dict[str, Mapping[str, Any]] = {
-        name: item.metadata for name, item in flat_fields(type(file.values))
+        name: item.metadata for name, item in flat_fields(type(parameter_file.values))
     }
-    fields |= {file.heights_prefix + name: item.metadata for name, item in HEIGHT_FIELDS.items()}
-    inputs = (v for model in KINDS[file.joint].models for v in model.inputs)
+    fields |= {parameter_file.heights_prefix + name: item.metadata for name, item in HEIGHT_FIELDS.items()}
+    inputs = (v for model in KINDS[parameter_file.joint].models for v in model.inputs)
     fields |= {f"inputs.{v.name}": {"unit": v.unit, "doc": v.doc} for v in inputs}
-    values = dict(file.values_by_name)
-    values |= {f"inputs.{name}": value for name, value in file.inputs.items()}
-    values |= {file.heights_prefix + name: value for name, value in file.roughness.items()}
+    values = dict(parameter_file.values_by_name)
+    values |= {f"inputs.{name}": value for name, value in parameter_file.inputs.items()}
+    values |= {
+        parameter_file.heights_prefix + name: value for name, value in parameter_file.roughness.items()
+    }
     return [
         FileEntry(
             name,
             value,
             fields[name].get("unit"),
             fields[name]["doc"],
-            file.origins.get(name, "user"),
-            _format_source(file, name),
+            parameter_file.origins.get(name, "user"),
+            _format_source(parameter_file, name),
         )
         for name, value in values.items()
     ]

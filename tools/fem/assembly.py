@@ -22,7 +22,11 @@ from .geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
 
 BODY_TYPES: dict[str, type[object]] = {"plate": Plate, "box": BoxSection}
 BOLT_LAYOUTS: dict[str, type[object]] = {"grid": BoltGrid, "list": BoltList}
-SECTIONS = {"side1": ("body", BODY_TYPES), "side2": ("body", BODY_TYPES), "bolts": ("layout", BOLT_LAYOUTS)}
+ASSEMBLY_SECTIONS = {
+    "side1": ("body", BODY_TYPES),
+    "side2": ("body", BODY_TYPES),
+    "bolts": ("layout", BOLT_LAYOUTS),
+}
 
 
 def read_assembly(path: str | Path) -> Assembly:
@@ -35,24 +39,26 @@ def read_assembly(path: str | Path) -> Assembly:
     if document.get("assembly") != "bolted":
         joint = f"; it is of a {document['joint']}" if "joint" in document else ""
         raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'{joint}")
-    if unknown := sorted(set(document) - {"schema", "assembly", "name", *SECTIONS}):
-        raise ValueError(f"{path}: unknown entry {unknown[0]!r}, allowed are name, {', '.join(SECTIONS)}")
-    sections = {name: _read_section(path, document, name) for name in SECTIONS}
+    if unknown := sorted(set(document) - {"schema", "assembly", "name", *ASSEMBLY_SECTIONS}):
+        raise ValueError(
+            f"{path}: unknown entry {unknown[0]!r}, allowed are name, {', '.join(ASSEMBLY_SECTIONS)}"
+        )
+    sections = {name: _read_section(path, document, name) for name in ASSEMBLY_SECTIONS}
     try:
         return Assembly(str(document.get("name", path.stem)), **sections)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
 
-def _read_section(path: Path, document: Mapping[str, Any], section: str) -> Any:
+def _read_section(path: Path, toml_document: Mapping[str, Any], section_name: str) -> Any:
     """Read one section of an assembly file: a body, or the layout of the bolts."""
-    type_key, classes = SECTIONS[section]
-    table = document.get(section)
+    type_key, classes = ASSEMBLY_SECTIONS[section_name]
+    table = toml_document.get(section_name)
     if not isinstance(table, Mapping):
-        raise ValueError(f"{path}: the section [{section}] is missing")
+        raise ValueError(f"{path}: the section [{section_name}] is missing")
     shape = table.get(type_key)
     if not isinstance(shape, str) or shape not in classes:
-        raise ValueError(f"{path}: {section}.{type_key} = {shape!r}, allowed are {', '.join(classes)}")
+        raise ValueError(f"{path}: {section_name}.{type_key} = {shape!r}, allowed are {', '.join(classes)}")
     dimensions = {k: v for k, v in table.items() if k != type_key}
     values, _, _ = read_entries(path, dict(flat_fields(classes[shape])), dimensions)
     try:
@@ -60,4 +66,4 @@ def _read_section(path: Path, document: Mapping[str, Any], section: str) -> Any:
             classes[shape], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}
         )
     except ValueError as error:
-        raise ValueError(f"{path}: [{section}] {error}") from None
+        raise ValueError(f"{path}: [{section_name}] {error}") from None

@@ -10,9 +10,9 @@ from jointfmu.quantity import Array
 
 from ..inputs.fields.joint_parameters import insert_field
 from ..inputs.fields.nodal_result import ContactField
-from .contact import ContactModel, ContactSolution, Interface, PressureLaw
+from .contact import ContactInterface, ContactModel, ContactSolution, PressureLaw
 from .elasticity import ElasticBody
-from .geometry import Assembly, Body
+from .geometry import Assembly, BodyGeometry
 from .mesh import PlanMesh, body_mesh, contact_mesh, find_contact_cells, mesh_plan
 
 
@@ -25,9 +25,9 @@ class BoltedContact:
     """
 
     assembly: Assembly
-    plan: PlanMesh
+    plan_mesh: PlanMesh
     bodies: tuple[ElasticBody, ...]
-    interface: Interface
+    contact_interface: ContactInterface
     bolt_head_loads: tuple[Array, ...]
 
     @classmethod
@@ -44,15 +44,17 @@ class BoltedContact:
         for side in sides:
             body = elastic_body(plan, assembly, side, refinement)
             bodies.append(body)
-            heads.append(head_loads(body, assembly))
-        interface = Interface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
+            heads.append(compute_bolt_head_loads(body, assembly))
+        interface = ContactInterface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 
     def solve(self, pressure_law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under a preload [N] per bolt and a moment [N.m] about x."""
-        return self._solve(ContactModel(self.bodies, self.interface, pressure_law), preload, moment)
+        return self._solve_equilibrium(
+            ContactModel(self.bodies, self.contact_interface, pressure_law), preload, moment
+        )
 
-    def _solve(
+    def _solve_equilibrium(
         self,
         model: ContactModel,
         preload: float,
@@ -63,17 +65,17 @@ class BoltedContact:
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.bolt_head_loads, strict=True)]
-        mean = float(force.sum() / self.interface.quadrature_area.sum())
+        mean = float(force.sum() / self.contact_interface.quadrature_area.sum())
         return JointSolution(self, force, model.solve(loads, mean, initial_solution))
 
 
-def elastic_body(plan: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
+def elastic_body(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
     """Elastic body on side 1 or 2 of an assembly, extruded from a plan mesh."""
-    body: Body = assembly.side1 if side == 1 else assembly.side2
-    return ElasticBody(body_mesh(plan, assembly, side, refinement), body.E, body.nu, body.density)
+    body: BodyGeometry = assembly.side1 if side == 1 else assembly.side2
+    return ElasticBody(body_mesh(plan_mesh, assembly, side, refinement), body.E, body.nu, body.density)
 
 
-def head_loads(body: ElasticBody, assembly: Assembly) -> Array:
+def compute_bolt_head_loads(body: ElasticBody, assembly: Assembly) -> Array:
     """Nodal load (n, bolts) [N/N] on a body for a unit force of each bolt along +z."""
     boundaries, count = body.mesh.boundaries, len(assembly.bolts.positions)
     return np.stack([body.uniform_load(boundaries[f"head{i + 1}"]) for i in range(count)], axis=1)
@@ -87,47 +89,49 @@ class JointSolution:
     contact_solution : pressure and displacement
     """
 
-    joint: BoltedContact
+    bolted_contact: BoltedContact
     bolt_force: Array
-    contact: ContactSolution
+    contact_solution: ContactSolution
 
     def solve_load_case(self, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under another preload [N] per bolt and moment [N.m] about x.
 
         Newton's method starts from this solution.
         """
-        return self.joint._solve(self.contact.model, preload, moment, self.contact)
+        return self.bolted_contact._solve_equilibrium(
+            self.contact_solution.model, preload, moment, self.contact_solution
+        )
 
     @property
-    def field(self) -> ContactField:
+    def contact_field(self) -> ContactField:
         """Contact pressure at the quadrature points, with area and total force of the finite elements."""
-        interface = self.joint.interface
+        interface = self.bolted_contact.contact_interface
         return ContactField(
             area=interface.quadrature_area,
             position=interface.quadrature_position,
-            pressure=self.contact.pressure,
+            pressure=self.contact_solution.pressure,
         )
 
     @property
     def peak_pressure(self) -> float:
         """Largest nodal pressure [Pa], usually on the edge of a hole."""
-        return float(self.contact.node_pressure.max())
+        return float(self.contact_solution.node_pressure.max())
 
     @property
     def pressure_between_bolts(self) -> tuple[Array, Array]:
         """Pressure (k) [Pa] midway between neighbouring bolts, after its positions (k, 2) [m]."""
-        positions = bolt_midpoints(self.joint.assembly.bolts.positions)
-        sides = (self.joint.assembly.side1, self.joint.assembly.side2)
+        positions = bolt_midpoints(self.bolted_contact.assembly.bolts.positions)
+        sides = (self.bolted_contact.assembly.side1, self.bolted_contact.assembly.side2)
         solid = [side.layers()[0].is_solid(*positions.T) for side in sides]
         positions = positions[solid[0] & solid[1]]
-        return positions, self.contact.pressure_at(positions) if len(positions) else np.zeros(0)
+        return positions, self.contact_solution.pressure_at(positions) if len(positions) else np.zeros(0)
 
     @property
     def stiffness(self) -> dict[str, float]:
         """Normal stiffness K_N [N/m] of the interface, bending stiffness K_rx, K_ry [N.m/rad] about x and y
         through its centroid."""
-        field = self.field
-        k = field.area * self.contact.stiffness
+        field = self.contact_field
+        k = field.area * self.contact_solution.stiffness
         x, y = (field.position - field.centroid).T
         return {"K_N": float(k.sum()), "K_rx": float(k @ y**2), "K_ry": float(k @ x**2)}
 
@@ -155,7 +159,7 @@ DEFAULT_MOMENT_RATIO = 1.0 / 3.0
 
 
 def insert_contact_field(
-    file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
+    parameter_file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
 ) -> tuple[ParameterFile, PressureDistribution]:
     """Insert the computed pressure field into the parameters of a joint.
 
@@ -165,16 +169,20 @@ def insert_contact_field(
 
     solution : equilibrium at this preload [N] per bolt and moment [N.m]; the other field is solved from it
     """
-    joint = solution.joint
+    joint = solution.bolted_contact
     tilting = moment or DEFAULT_MOMENT_RATIO * joint.assembly.max_moment(preload)
-    equal = solution.solve_load_case(preload).field if moment else solution.field
+    equal = solution.solve_load_case(preload).contact_field if moment else solution.contact_field
     tilted = (
-        solution.field if moment else solution.solve_load_case(preload, tilting).field if tilting else None
+        solution.contact_field
+        if moment
+        else solution.solve_load_case(preload, tilting).contact_field
+        if tilting
+        else None
     )
     source = f"finite elements of the assembly {joint.assembly.name}"
     bolts = joint.assembly.bolts.positions
     second = tilting or None
-    file, reduction = insert_field(
-        file, equal, preload, source, moment_field=tilted, moment=second, bolt_positions=bolts
+    parameter_file, reduction = insert_field(
+        parameter_file, equal, preload, source, moment_field=tilted, moment=second, bolt_positions=bolts
     )
-    return replace(file, name=f"{file.name}, computed field"), reduction.full_shape
+    return replace(parameter_file, name=f"{parameter_file.name}, computed field"), reduction.full_distribution

@@ -41,7 +41,7 @@ class PressureLaw(Protocol):
 
 
 @dataclass(frozen=True)
-class Interface:
+class ContactInterface:
     """Plane contact area of two bodies: finite-element basis and quadrature points.
 
     basis                : finite-element basis of scikit-fem on a plane mesh [m]
@@ -68,7 +68,7 @@ class Interface:
         return self.quadrature_position - self.centroid
 
     @classmethod
-    def from_mesh(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
+    def from_mesh(cls, mesh: MeshQuad, element: Element | None = None) -> "ContactInterface":
         """Basis and quadrature points on a plane mesh of the contact area.
 
         element : restriction of the bodies' element to the contact plane; None: quadratic, of ElementHexS2
@@ -99,9 +99,9 @@ class ContactModel:
     """
 
     bodies: tuple[ElasticBody, ...]
-    interface: Interface
+    contact_interface: ContactInterface
     pressure_law: PressureLaw
-    gap: Callable[[Array, Array], Array] | None = None
+    initial_gap: Callable[[Array, Array], Array] | None = None
     fixed_unknowns: tuple[IndexArray, ...] | None = None
 
     @property
@@ -113,13 +113,13 @@ class ContactModel:
         """Matrices (contact nodes, n) [1] of each body: approach at the contact nodes per displacement."""
         signs = (-2.0,) if self.is_mirrored else (1.0, -1.0)
         return [
-            s * nodal_displacement_matrix(body, self.interface)
+            s * nodal_displacement_matrix(body, self.contact_interface)
             for s, body in zip(signs, self.bodies, strict=True)
         ]
 
     def unloaded_gap(self, x: Array, y: Array) -> Array:
         """Distance [m] of the unloaded faces at positions x, y (...) [m]."""
-        return np.zeros(np.shape(x)) if self.gap is None else self.gap(x, y)
+        return np.zeros(np.shape(x)) if self.initial_gap is None else self.initial_gap(x, y)
 
     def supported_unknowns(self) -> tuple[IndexArray, ...]:
         """Unknowns of each body that stay zero."""
@@ -146,10 +146,10 @@ class ContactModel:
             trace[:, free] for trace, free in zip(self.approach_matrices(), self._free_unknowns, strict=True)
         ]
         return ContactEnergy(
-            stiffness=blocks[0] if self.is_mirrored else sp.block_diag(blocks, format="csr"),
-            load=np.zeros(sum(free.size for free in self._free_unknowns)),
-            approach_matrix=(self.interface.interpolation_matrix @ sp.hstack(traces)).tocsr(),
-            quadrature_area=self.interface.quadrature_area * (0.5 if self.is_mirrored else 1.0),
+            stiffness_matrix=blocks[0] if self.is_mirrored else sp.block_diag(blocks, format="csr"),
+            load_vector=np.zeros(sum(free.size for free in self._free_unknowns)),
+            approach_matrix=(self.contact_interface.interpolation_matrix @ sp.hstack(traces)).tocsr(),
+            quadrature_area=self.contact_interface.quadrature_area * (0.5 if self.is_mirrored else 1.0),
             pressure_law=self.pressure_law.derivatives,
         )
 
@@ -170,7 +170,7 @@ class ContactModel:
         """
         balance = self.rigid_balance(loads)
         balance.check_loads()
-        gap = self.unloaded_gap(*self.interface.quadrature_position.T)
+        gap = self.unloaded_gap(*self.contact_interface.quadrature_position.T)
         offset = (
             float(self.pressure_law.inverse(np.asarray(initial_pressure))) + float(gap.max())
             if initial_solution is None
@@ -181,7 +181,7 @@ class ContactModel:
         )
         energy = replace(self._unloaded_energy, load=free_load)
         minimum = energy.minimise(
-            offset - gap, None if initial_solution is None else initial_solution.minimum
+            offset - gap, None if initial_solution is None else initial_solution.energy_minimum
         )
         balance.check_contact(energy.quadrature_area * self.pressure_law.derivatives(minimum.approach, 1)[0])
         return ContactSolution(
@@ -198,7 +198,7 @@ class ContactModel:
 
     def rigid_balance(self, loads: Sequence[Array]) -> RigidBalance:
         """Balance of loads (n) [N] and contact on the rigid-body motions of the bodies."""
-        interface = self.interface
+        interface = self.contact_interface
         return RigidBalance.from_loads(
             self.bodies,
             [interface.interpolation_matrix @ trace for trace in self.approach_matrices()],
@@ -223,17 +223,17 @@ class ContactSolution:
     loads: tuple[Array, ...]
     displacement: tuple[Array, ...]
     approach_offset: float
-    minimum: EnergyMinimum
+    energy_minimum: EnergyMinimum
 
     @property
     def approach(self) -> Array:
         """Approach (q) [m] at the quadrature points."""
-        return self.minimum.approach
+        return self.energy_minimum.approach
 
     @property
     def newton_steps(self) -> int:
         """Number of steps of Newton's method."""
-        return self.minimum.newton_steps
+        return self.energy_minimum.newton_steps
 
     @property
     def pressure(self) -> Array:
@@ -248,7 +248,7 @@ class ContactSolution:
     @cached_property
     def node_approach(self) -> Array:
         """Approach (contact nodes) [m] at the nodes of the contact."""
-        nodes = self.model.interface.nodes
+        nodes = self.model.contact_interface.nodes
         pairs = zip(self.model.approach_matrices(), self.displacement, strict=True)
         elastic_approach = sum((trace @ u for trace, u in pairs), start=np.zeros(nodes.shape[1]))
         return np.asarray(self.approach_offset - self.model.unloaded_gap(*nodes) + elastic_approach)
@@ -260,21 +260,29 @@ class ContactSolution:
 
     def pressure_at(self, positions: Array) -> Array:
         """Pressure (k) [Pa] at positions (k, 2) [m] in the contact."""
-        approach = self.model.interface.basis.interpolator(self.node_approach)(np.asarray(positions).T)
+        approach = self.model.contact_interface.basis.interpolator(self.node_approach)(
+            np.asarray(positions).T
+        )
         return self.model.pressure_law.derivatives(approach, 1)[0]
 
 
-def displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
+def displacement_matrix(
+    body: ElasticBody, contact_interface: ContactInterface, axis: int = 2
+) -> sp.csr_matrix:
     """Matrix (q, n) [1]: displacement along an axis at the quadrature points per unknown of a body."""
-    return (interface.interpolation_matrix @ nodal_displacement_matrix(body, interface, axis)).tocsr()
+    return (
+        contact_interface.interpolation_matrix @ nodal_displacement_matrix(body, contact_interface, axis)
+    ).tocsr()
 
 
-def nodal_displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
+def nodal_displacement_matrix(
+    body: ElasticBody, contact_interface: ContactInterface, axis: int = 2
+) -> sp.csr_matrix:
     """Matrix (contact nodes, n) [1]: displacement along an axis at the contact nodes per unknown of a body.
 
     Raises RuntimeError if a node of the contact is not a node of the body.
     """
-    contact_nodes = np.vstack([interface.nodes, np.zeros((1, interface.nodes.shape[1]))])
+    contact_nodes = np.vstack([contact_interface.nodes, np.zeros((1, contact_interface.nodes.shape[1]))])
     distance, node = cKDTree(body.nodes.T).query(contact_nodes.T)
     if distance.max() > 1e-9:
         raise RuntimeError(f"a node of the contact lies {distance.max():g} m away from the nodes of the body")

@@ -84,10 +84,10 @@ def summarize_solution(solution: JointSolution, refinement: float) -> MeshResult
     """Size of the mesh and compared results of a solution."""
     between = solution.pressure_between_bolts[1]
     values = {"peak": solution.peak_pressure, "between": float(between.mean()) if between.size else math.nan}
-    joint = solution.joint
+    joint = solution.bolted_contact
     return MeshResult(
         refinement=refinement,
-        element_count=int(joint.interface.basis.mesh.nelements),
+        element_count=int(joint.contact_interface.basis.mesh.nelements),
         unknown_count=sum(body.unknown_count for body in joint.bodies),
         result_values=values | solution.stiffness,
     )
@@ -141,16 +141,16 @@ def first_equivalent_bolts(bolt_positions: Array, has_moment: bool) -> NDArray[n
     return first
 
 
-def check_bolt_symmetry(field: ContactField, bolt_positions: Array, has_moment: bool) -> list[str]:
+def check_bolt_symmetry(contact_field: ContactField, bolt_positions: Array, has_moment: bool) -> list[str]:
     """Warning if the peak pressures around equivalent bolts differ by more than MAX_PEAK_DIFFERENCE.
 
     Returns a list of one message, or an empty list.
     """
     if not len(bolt_positions):
         return []
-    nearest_bolt = np.hypot(*(field.position[:, None] - bolt_positions[None]).T).argmin(axis=0)
+    nearest_bolt = np.hypot(*(contact_field.position[:, None] - bolt_positions[None]).T).argmin(axis=0)
     peak = np.array(
-        [np.max(field.pressure[nearest_bolt == i], initial=0.0) for i in range(len(bolt_positions))]
+        [np.max(contact_field.pressure[nearest_bolt == i], initial=0.0) for i in range(len(bolt_positions))]
     )
     group = first_equivalent_bolts(bolt_positions, has_moment)
     ratio = peak / np.array([np.min(peak[group == first]) for first in group]).clip(1e-9)

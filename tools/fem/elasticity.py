@@ -131,16 +131,18 @@ class ElasticBody:
             ],
         )
 
-    def _element_matrices(self, elements: slice, lame: float, shear: float) -> Array:
+    def _element_matrices(self, element_slice: slice, lame_lambda: float, shear_modulus: float) -> Array:
         """Stiffness matrices (m, 20, 20, 3, 3) [N/m] of the selected elements."""
         functions = range(self.basis.Nbfun)
-        gradient = np.stack([self.basis.basis[i][0].grad[:, elements] for i in functions])
+        gradient = np.stack([self.basis.basis[i][0].grad[:, element_slice] for i in functions])
         n, _, m, _ = gradient.shape
         rows = np.ascontiguousarray(gradient.transpose(2, 0, 1, 3)).reshape(m, 3 * n, -1)
-        product = ((rows * self.basis.dx[elements, None, :]) @ rows.transpose(0, 2, 1)).reshape(m, n, 3, n, 3)
+        product = ((rows * self.basis.dx[element_slice, None, :]) @ rows.transpose(0, 2, 1)).reshape(
+            m, n, 3, n, 3
+        )
         product = product.transpose(0, 1, 3, 2, 4)
-        matrix = lame * product + shear * product.transpose(0, 1, 2, 4, 3)
-        trace = shear * np.trace(product, axis1=3, axis2=4)
+        matrix = lame_lambda * product + shear_modulus * product.transpose(0, 1, 2, 4, 3)
+        trace = shear_modulus * np.trace(product, axis1=3, axis2=4)
         for k in range(3):
             matrix[..., k, k] += trace
         return np.asarray(matrix)
@@ -168,12 +170,12 @@ class ElasticBody:
         load[2::3] = share / share.sum()
         return load
 
-    def rigid_motions(self, centre: tuple[float, float] = (0.0, 0.0)) -> Array:
+    def rigid_motions(self, rotation_centre: tuple[float, float] = (0.0, 0.0)) -> Array:
         """Displacements (n, 6) of unit translations [m/m] along, and unit rotations [m/rad] about, x, y, z.
 
         rotation_centre : (x, y) [m] of the centre of rotation, which lies in the plane z = 0
         """
-        x, y, z = self.nodes - np.array([[*centre, 0.0]]).T
+        x, y, z = self.nodes - np.array([[*rotation_centre, 0.0]]).T
         unit, zero = np.ones_like(x), np.zeros_like(x)
         motions = [
             (unit, zero, zero),

@@ -72,7 +72,7 @@ class BoltList:
         return np.stack([self.x, self.y], axis=1).astype(np.float64)
 
 
-Bolts = BoltGrid | BoltList
+BoltArrangement = BoltGrid | BoltList
 
 
 def _equidistant_coordinates(count: int) -> Array:
@@ -200,7 +200,7 @@ class BoxSection:
         return 0.5 * self.length - inset, 0.5 * self.width - inset
 
 
-Body = Plate | TappedPlate | BoxSection
+BodyGeometry = Plate | TappedPlate | BoxSection
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,9 +208,9 @@ class Assembly:
     """Two bodies and their bolts. Raises ValueError if the bolts do not fit on the bodies."""
 
     name: str
-    side1: Body
-    side2: Body
-    bolts: Bolts
+    side1: BodyGeometry
+    side2: BodyGeometry
+    bolts: BoltArrangement
 
     def __post_init__(self) -> None:
         check_bolts(self)
@@ -305,7 +305,7 @@ def check_thickness(assembly: Assembly) -> None:
             )
 
 
-def _find_obstacle(body: Body, x: float, y: float, head_radius: float) -> str | None:
+def _find_obstacle(body: BodyGeometry, x: float, y: float, head_radius: float) -> str | None:
     """Reason why a bolt head (a disc) does not lie flat on a body; None if it does."""
     flange, *rest = body.layers()
     if isinstance(body, TappedPlate):

@@ -13,7 +13,7 @@ from skfem import MeshHex, MeshQuad
 from jointfmu.quantity import Array
 
 from .elasticity import IndexArray
-from .geometry import Assembly, Body, Layer, TappedPlate, layer_rectangles
+from .geometry import Assembly, BodyGeometry, Layer, TappedPlate, layer_rectangles
 
 RELATIVE_ELEMENT_SIZE_AT_HOLES = 1.0 / 10.0
 """Edge length of an element at a hole over the circumference of the hole [1], at refinement 1."""
@@ -44,16 +44,18 @@ class PlanMesh:
         return layer.is_solid(x, y) & ~(self.in_bolt_hole & layer.has_bolt_holes)
 
 
-def find_contact_cells(plan: PlanMesh, assembly: Assembly) -> NDArray[np.bool_]:
+def find_contact_cells(plan_mesh: PlanMesh, assembly: Assembly) -> NDArray[np.bool_]:
     """Whether the two bodies touch in each cell (m) of the plan."""
-    cells1, cells2 = (plan.is_solid(body.layers()[0]) for body in (assembly.side1, assembly.side2))
+    cells1, cells2 = (plan_mesh.is_solid(body.layers()[0]) for body in (assembly.side1, assembly.side2))
     return cells1 & cells2
 
 
-def contact_mesh(plan: PlanMesh, in_contact: NDArray[np.bool_]) -> MeshQuad:
+def contact_mesh(plan_mesh: PlanMesh, in_contact: NDArray[np.bool_]) -> MeshQuad:
     """Plane mesh of the contact area: the cells of the plan that are in contact."""
-    used, cells = np.unique(plan.cells[:, in_contact], return_inverse=True)
-    return MeshQuad(np.ascontiguousarray(plan.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1)))
+    used, cells = np.unique(plan_mesh.cells[:, in_contact], return_inverse=True)
+    return MeshQuad(
+        np.ascontiguousarray(plan_mesh.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1))
+    )
 
 
 def element_sizes(assembly: Assembly, refinement: float) -> tuple[float, float]:
@@ -63,7 +65,7 @@ def element_sizes(assembly: Assembly, refinement: float) -> tuple[float, float]:
     return at_holes / refinement, max(min(strips) / ELEMENTS_ACROSS_NARROWEST_STRIP, at_holes) / refinement
 
 
-def _narrowest_strip(body: Body) -> float:
+def _narrowest_strip(body: BodyGeometry) -> float:
     """Width [m] of the narrowest strip of the contact face of a body."""
     contact = body.layers()[0]
     widths = [o - i for o, i in zip(contact.outline_half_lengths, contact.opening_half_lengths, strict=True)]
@@ -168,7 +170,7 @@ def _read_quadrilaterals(gmsh_model: object) -> tuple[Array, IndexArray]:
     return points, cells if area > 0 else cells[::-1]
 
 
-def body_mesh(plan: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
+def body_mesh(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
     """Extrude the plan mesh to the mesh of one body: side 1 towards -z, side 2 towards +z.
 
     Named boundaries: `contact` is the whole face at z = 0; `head1`, `head2`, ... are the faces under the bolt
@@ -176,22 +178,22 @@ def body_mesh(plan: PlanMesh, assembly: Assembly, side: int, refinement: float =
     """
     body = assembly.side1 if side == 1 else assembly.side2
     heights, owner = extrusion_levels(body, refinement, 2.0 * element_sizes(assembly, refinement)[1])
-    count, layers = plan.points.shape[1], body.layers()
+    count, layers = plan_mesh.points.shape[1], body.layers()
     lower, upper = [], []
     for k, layer_index in enumerate(owner):
-        cells = plan.cells[:, plan.is_solid(layers[layer_index])]
+        cells = plan_mesh.cells[:, plan_mesh.is_solid(layers[layer_index])]
         lower.append(cells + k * count)
         upper.append(cells + (k + 1) * count)
     if side == 1:
         heights, lower, upper = -heights, upper, lower
     corners = _hexahedra(np.concatenate(lower, axis=1), np.concatenate(upper, axis=1))
     used, cells = np.unique(corners, return_inverse=True)
-    points = np.concatenate([np.tile(plan.points, heights.size), np.repeat(heights, count)[None]])
+    points = np.concatenate([np.tile(plan_mesh.points, heights.size), np.repeat(heights, count)[None]])
     mesh = MeshHex(np.ascontiguousarray(points[:, used]), np.ascontiguousarray(cells.reshape(8, -1)))
     return mesh.with_boundaries(_find_named_boundaries(mesh, assembly, side))
 
 
-def extrusion_levels(body: Body, refinement: float, max_height: float) -> tuple[Array, list[int]]:
+def extrusion_levels(body: BodyGeometry, refinement: float, max_height: float) -> tuple[Array, list[int]]:
     """Subdivision of a body along z: k rows of elements between k + 1 levels.
 
     Returns the distances (k + 1) [m] of the levels from the contact, and for each row the index of its layer.

@@ -15,7 +15,7 @@ from jointfmu.quantity import Array
 
 from ..inputs.fields.bolted_interface import BoltedInterface
 from .bolted_contact import BoltedContact, JointSolution
-from .contact import Interface, PressureLaw, displacement_matrix
+from .contact import ContactInterface, PressureLaw, displacement_matrix
 from .elasticity import Cholesky, ElasticBody
 from .geometry import Assembly
 
@@ -45,7 +45,7 @@ class NaturalModes:
 
 def compute_modes(
     bodies: tuple[ElasticBody, ...],
-    interface: Interface,
+    contact_interface: ContactInterface,
     normal_stiffness: Array,
     tangential_stiffness: Array,
     mode_count: int = 6,
@@ -61,7 +61,7 @@ def compute_modes(
     """
     if len(bodies) == 2:
         springs = _interface_stiffness(
-            bodies, interface, {0: tangential_stiffness, 1: tangential_stiffness, 2: normal_stiffness}
+            bodies, contact_interface, {0: tangential_stiffness, 1: tangential_stiffness, 2: normal_stiffness}
         )
         motions = _lowest_modes(bodies, springs, RIGID_MODE_COUNT + mode_count)
     else:
@@ -72,10 +72,10 @@ def compute_modes(
         ):
             half = _lowest_modes(
                 bodies,
-                2.0 * _interface_stiffness(bodies, interface, stiffness),
+                2.0 * _interface_stiffness(bodies, contact_interface, stiffness),
                 RIGID_MODE_COUNT // 2 + mode_count,
             )
-            motions += [(f, _mirror_shape(shape[0], sign)) for f, shape in half]
+            motions += [(f, _mirror_mode_shape(shape[0], sign)) for f, shape in half]
         motions.sort(key=lambda motion: motion[0])
     frequency = np.array([motion[0] for motion in motions])
     if frequency[RIGID_MODE_COUNT] < MIN_ELASTIC_FREQUENCY:
@@ -91,7 +91,9 @@ def compute_modes(
 
 
 def _interface_stiffness(
-    bodies: tuple[ElasticBody, ...], interface: Interface, stiffness_per_area: Mapping[int, Array]
+    bodies: tuple[ElasticBody, ...],
+    contact_interface: ContactInterface,
+    stiffness_per_area: Mapping[int, Array],
 ) -> sp.csr_matrix:
     """Stiffness matrix (n, n) [N/m] of the interface.
 
@@ -101,9 +103,12 @@ def _interface_stiffness(
     total: sp.csr_matrix | float = 0.0
     for axis, density in stiffness_per_area.items():
         opening = sp.hstack(
-            [s * displacement_matrix(body, interface, axis) for s, body in zip(signs, bodies, strict=True)]
+            [
+                s * displacement_matrix(body, contact_interface, axis)
+                for s, body in zip(signs, bodies, strict=True)
+            ]
         )
-        total = total + opening.T @ sp.diags(interface.quadrature_area * density) @ opening
+        total = total + opening.T @ sp.diags(contact_interface.quadrature_area * density) @ opening
     return sp.csr_matrix(total)
 
 
@@ -128,7 +133,7 @@ def _lowest_modes(
     return list(zip(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), by_body, strict=True))
 
 
-def _mirror_shape(side2_shape: Array, mirror_sign: float) -> tuple[Array, Array]:
+def _mirror_mode_shape(side2_shape: Array, mirror_sign: float) -> tuple[Array, Array]:
     """Mode shapes (n, 3) of both bodies, of modal mass 1 kg, from the shape of side 2.
 
     Side 1 is the mirror image of side 2 in the plane z = 0, times `mirror_sign` (1 or -1).
@@ -151,12 +156,12 @@ def preloaded_modes(
     mode_count : number of modes
     """
     return _modes_with_stiffness(
-        solution.joint, solution.contact.stiffness, tangential_stiffness_ratio, mode_count
+        solution.bolted_contact, solution.contact_solution.stiffness, tangential_stiffness_ratio, mode_count
     )
 
 
 def uniform_pressure_modes(
-    joint: BoltedContact,
+    bolted_contact: BoltedContact,
     pressure_law: PressureLaw,
     total_bolt_force: float,
     tangential_stiffness_ratio: float,
@@ -167,11 +172,11 @@ def uniform_pressure_modes(
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
     mode_count : number of modes
     """
-    area = joint.interface.quadrature_area
+    area = bolted_contact.contact_interface.quadrature_area
     approach = pressure_law.inverse(np.asarray(total_bolt_force / area.sum()))
     stiffness = float(pressure_law.derivatives(approach, 1)[1])
     return _modes_with_stiffness(
-        joint, np.full(area.shape, stiffness), tangential_stiffness_ratio, mode_count
+        bolted_contact, np.full(area.shape, stiffness), tangential_stiffness_ratio, mode_count
     )
 
 
@@ -210,12 +215,12 @@ def compute_frequencies(
 
 
 def _modes_with_stiffness(
-    joint: BoltedContact, normal_stiffness: Array, tangential_stiffness_ratio: float, mode_count: int
+    bolted_contact: BoltedContact, normal_stiffness: Array, tangential_stiffness_ratio: float, mode_count: int
 ) -> NaturalModes:
     """Natural modes for a normal stiffness per area (q) [N/m3] and the tangential stiffness ratio [1]."""
     return compute_modes(
-        joint.bodies,
-        joint.interface,
+        bolted_contact.bodies,
+        bolted_contact.contact_interface,
         normal_stiffness,
         tangential_stiffness_ratio * normal_stiffness,
         mode_count,

@@ -50,8 +50,8 @@ class ContactEnergy:
     pressure_law     : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
     """
 
-    stiffness: sp.csr_matrix
-    load: Array
+    stiffness_matrix: sp.csr_matrix
+    load_vector: Array
     approach_matrix: sp.csr_matrix
     quadrature_area: Array
     pressure_law: Callable[[Array], list[Array]]
@@ -67,16 +67,16 @@ class ContactEnergy:
 
         Raises RuntimeError if there is no equilibrium.
         """
-        K, T = self.stiffness, self.approach_matrix
-        u = np.zeros(self.load.size) if initial_minimum is None else initial_minimum.displacement
+        K, T = self.stiffness_matrix, self.approach_matrix
+        u = np.zeros(self.load_vector.size) if initial_minimum is None else initial_minimum.displacement
         inner, approach = K @ u, approach_offset + T @ u
-        total_load = float(np.abs(self.load).sum())
+        total_load = float(np.abs(self.load_vector).sum())
         factor = None if initial_minimum is None else initial_minimum.tangent_factor
         slow = False
         last_residual = np.inf
         for step in track_progress(range(MAX_NEWTON_STEPS), "contact"):
             p, k = self.pressure_law(approach)[:2]
-            residual = self.load - inner - T.T @ (self.quadrature_area * p)
+            residual = self.load_vector - inner - T.T @ (self.quadrature_area * p)
             size = float(np.abs(residual).sum()) / total_load
             if size <= RELATIVE_TOLERANCE or (
                 size <= 1e3 * RELATIVE_TOLERANCE and size > 0.5 * last_residual
@@ -91,7 +91,7 @@ class ContactEnergy:
             move, count = _solve_cg(tangent, residual, factor, accuracy)
             slow = count > MAX_CG_ITERATIONS
             change, load_change = T @ move, K @ move
-            linear, quadratic = float(move @ (inner - self.load)), float(move @ load_change)
+            linear, quadratic = float(move @ (inner - self.load_vector)), float(move @ load_change)
             length = self._step_length(approach, change, linear, quadratic)
             u, inner, approach = u + length * move, inner + length * load_change, approach + length * change
         raise RuntimeError(
@@ -103,7 +103,7 @@ class ContactEnergy:
     def _apply_tangent(self, contact_stiffness: Array, displacement: Array) -> Array:
         """Tangent times displacement u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
         return np.asarray(
-            self.stiffness @ displacement
+            self.stiffness_matrix @ displacement
             + self.approach_matrix.T @ (contact_stiffness * (self.approach_matrix @ displacement))
         )
 

@@ -48,7 +48,7 @@ def write_field(solution: JointSolution, path: str | Path) -> None:
     """Write the pressure field: as .csv the quadrature points with their areas, as .vtu the mesh nodes."""
     check_field_path(path)
     if Path(path).suffix.lower() == ".csv":
-        write_text(path, nodal_result.csv_text(solution.field))
+        write_text(path, nodal_result.csv_text(solution.contact_field))
     else:
         write_bytes(path, contact_vtu(solution))
 
@@ -58,7 +58,7 @@ def divide_elements(solution: JointSolution) -> tuple[Array, IndexArray, Array]:
 
     The points are the nodes of the contact and the centres of its elements.
     """
-    interface, nodal = solution.joint.interface, solution.contact.node_approach
+    interface, nodal = solution.bolted_contact.contact_interface, solution.contact_solution.node_approach
     dofs = np.asarray(interface.basis.element_dofs)
     weight = np.repeat([-0.25, 0.5], 4)  # shape functions of 4 corner and 4 edge nodes at the centre
     centres = interface.nodes.shape[1] + np.arange(dofs.shape[1])
@@ -73,7 +73,10 @@ def divide_elements(solution: JointSolution) -> tuple[Array, IndexArray, Array]:
 def contact_vtu(solution: JointSolution) -> bytes:
     """Content of a VTU file of the contact: quadrilaterals with nodal pressure [Pa] and approach [m]."""
     positions, cells, approach = divide_elements(solution)
-    data = {"pressure": solution.contact.model.pressure_law.derivatives(approach, 1)[0], "approach": approach}
+    data = {
+        "pressure": solution.contact_solution.model.pressure_law.derivatives(approach, 1)[0],
+        "approach": approach,
+    }
     points = np.column_stack([positions, np.zeros(len(positions))])
     return vtu_content(points, "quad", cells, data)
 
@@ -82,7 +85,7 @@ def draw_pressure(solution: JointSolution, path: str | Path) -> None:
     """Plot the contact pressure, with its peak and the values midway between neighbouring bolts."""
     from matplotlib.tri import Triangulation
 
-    contact = solution.contact
+    contact = solution.contact_solution
     points, cells, approach = divide_elements(solution)
     width, height = np.ptp(points, axis=0)
     scale = 6.4 / max(width, height)
@@ -95,7 +98,7 @@ def draw_pressure(solution: JointSolution, path: str | Path) -> None:
         colours = axes.tripcolor(triangulation, pressure, shading="gouraud", cmap="viridis")
         figure.colorbar(colours, label="contact pressure in MPa", shrink=0.8)
         peak = int(np.argmax(contact.node_pressure))
-        x, y = solution.joint.interface.nodes[:, peak]
+        x, y = solution.bolted_contact.contact_interface.nodes[:, peak]
         axes.plot(x, y, "o", color=plots.RED, fillstyle="none")
         axes.annotate(
             f"{solution.peak_pressure / 1e6:.2f}",
@@ -109,7 +112,7 @@ def draw_pressure(solution: JointSolution, path: str | Path) -> None:
         axes.set(xlabel="x in m", ylabel="y in m", aspect="equal")
         force = solution.bolt_force / 1e3
         bolts = f"{force.min():g}" if np.ptp(force) == 0.0 else f"{force.min():g} to {force.max():g}"
-        axes.set_title(f"{solution.joint.assembly.name}, {bolts} kN per bolt", size=10)
+        axes.set_title(f"{solution.bolted_contact.assembly.name}, {bolts} kN per bolt", size=10)
 
 
 def modes_vtu(bodies: tuple[ElasticBody, ...], modes: NaturalModes) -> bytes:

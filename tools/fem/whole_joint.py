@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.quantity import Array
 
-from .bolted_contact import elastic_body, head_loads
-from .contact import Interface, displacement_matrix
+from .bolted_contact import compute_bolt_head_loads, elastic_body
+from .contact import ContactInterface, displacement_matrix
 from .elasticity import Cholesky, ElasticBody, IndexArray
 from .geometry import Assembly
 from .mesh import contact_mesh, find_contact_cells, mesh_plan
 
-AXES = (0, 1, 2)
+COORDINATE_AXES = (0, 1, 2)
 MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
 """Factors of x, y, z for the mirror image in the contact plane."""
 FACE_TOLERANCE = 1e-6
@@ -49,9 +49,9 @@ def _is_under_head(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     return under_head
 
 
-def _is_close(coordinate: Array, value: float) -> NDArray[np.bool_]:
+def _is_close(coordinate: Array, face_coordinate: float) -> NDArray[np.bool_]:
     """Whether each coordinate [m] equals a value [m] within FACE_TOLERANCE."""
-    return np.asarray(np.abs(coordinate - value) < FACE_TOLERANCE * abs(value))
+    return np.asarray(np.abs(coordinate - face_coordinate) < FACE_TOLERANCE * abs(face_coordinate))
 
 
 ATTACHMENT_NODES: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
@@ -77,7 +77,7 @@ class JointFiniteElements:
 
     bodies: tuple[ElasticBody, ElasticBody]
     attachment_unknowns: tuple[IndexArray, IndexArray]
-    interface: Interface
+    contact_interface: ContactInterface
     bolt_head_loads: tuple[Array, Array]
     bolt_positions: Array
 
@@ -96,8 +96,8 @@ class JointFiniteElements:
         for side, body in enumerate((first, second), start=1):
             nodes = np.flatnonzero(ATTACHMENT_NODES[attachment](body, side))
             attachments.append((3 * nodes[:, None] + np.arange(3)).ravel())
-            heads.append(head_loads(body, assembly))
-        interface = Interface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
+            heads.append(compute_bolt_head_loads(body, assembly))
+        interface = ContactInterface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
         bolts = assembly.bolts.positions
         return cls((first, second), (attachments[0], attachments[1]), interface, (heads[0], heads[1]), bolts)
 
@@ -132,7 +132,7 @@ class JointFiniteElements:
         """
         return sp.hstack(
             [
-                s * displacement_matrix(b, self.interface, axis)
+                s * displacement_matrix(b, self.contact_interface, axis)
                 for s, b in zip((-1.0, 1.0), self.bodies, strict=True)
             ]
         ).tocsr()
@@ -160,8 +160,11 @@ class JointFiniteElements:
         Raises RuntimeError if a body can move freely.
         """
         bodies = sp.block_diag(self.stiffness_matrices, format="csr")
-        opening = [self.relative_displacement_matrix(axis) for axis in AXES]
-        weights = [sp.diags(self.interface.quadrature_area * interface_stiffness[:, axis]) for axis in AXES]
+        opening = [self.relative_displacement_matrix(axis) for axis in COORDINATE_AXES]
+        weights = [
+            sp.diags(self.contact_interface.quadrature_area * interface_stiffness[:, axis])
+            for axis in COORDINATE_AXES
+        ]
         contact = sum(b.T @ w @ b for b, w in zip(opening, weights, strict=True))
         shanks = (
             bolt_stiffness * sp.csr_matrix(self.elongation_matrix) @ sp.csr_matrix(self.elongation_matrix.T)
@@ -184,7 +187,7 @@ class JointFiniteElements:
         free unknowns, and the factorisation of their stiffness matrix.
         """
         first, second = self.bodies
-        x, y = self.interface.centroid
+        x, y = self.contact_interface.centroid
         rigid = np.concatenate(
             [np.zeros((first.unknown_count, 6)), second.rigid_motions((float(x), float(y)))]
         )
@@ -243,7 +246,7 @@ class LinearJoint:
     stiffness_factor : factorisation of the stiffness matrix of the free unknowns
     """
 
-    joint: JointFiniteElements
+    joint_model: JointFiniteElements
     body_matrix: sp.csr_matrix
     contact_matrix: sp.csr_matrix
     bolt_matrix: sp.csr_matrix
@@ -281,7 +284,7 @@ class LinearJoint:
         )
         bolt_force = (
             self.bolt_stiffness
-            * (self.joint.elongation_matrix.T @ self.unit_motion_displacement)
+            * (self.joint_model.elongation_matrix.T @ self.unit_motion_displacement)
             @ np.linalg.inv(self.stiffness)
         )
         return Compliances(stored / total**2, 1.0 / contact, bolts, bolt_force)

@@ -32,7 +32,7 @@ LAW_COLUMN_UNITS = {
 """{output of a law: SI unit}."""
 
 
-def build_law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
+def build_law_parameters(law: str, parameter_file: ParameterFile | None, settings: dict[str, Any]) -> Any:
     """Build the parameter set of a law from a joint's parameter file and settings.
 
     parameter_file : parameter file of any joint that has the law; None: the default file of
@@ -40,19 +40,21 @@ def build_law_parameters(law: str, file: ParameterFile | None, settings: dict[st
 
     If the file has another law, its values are used as far as the law has them, else default values.
     """
-    file = file or load_default(default_joint(law), law)
+    parameter_file = parameter_file or load_default(default_joint(law), law)
     names = {name for name, _ in flat_fields(LAWS[law])}
-    law_of = KINDS[file.joint].extract_law
-    file_law, differs = law_of(file.values), file.law != law
+    law_of = KINDS[parameter_file.joint].extract_law
+    file_law, differs = law_of(parameter_file.values), parameter_file.law != law
     known = flatten_parameters(file_law)
     if differs:
         known = (
-            flatten_parameters(law_of(load_default(file.joint, law).values))
+            flatten_parameters(law_of(load_default(parameter_file.joint, law).values))
             | known
             | {"H": float(file_law.hardness)}
         )
     if law == ROUGHNESS_LAW:
-        fractal, stated = (flatten_parameters(file_law), find_rms_height(file)) if differs else ({}, None)
+        fractal, stated = (
+            (flatten_parameters(file_law), find_rms_height(parameter_file)) if differs else ({}, None)
+        )
         settings = roughness_settings(fractal, stated, known["longest_wave"], settings)
     return build_parameter_set(LAWS[law], {k: v for k, v in known.items() if k in names} | settings)
 
@@ -98,7 +100,7 @@ def roughness_settings(
 
 
 def known_surface_height(
-    law: str, parameters: Any, file: ParameterFile | None, settings: Iterable[str]
+    law: str, parameters: Any, parameter_file: ParameterFile | None, settings: Iterable[str]
 ) -> Number | None:
     """Rms height h [m] of both surfaces together, for the parameter set of a law; None if it is not known.
 
@@ -108,8 +110,8 @@ def known_surface_height(
     the settings change the surfaces.
     """
     h = law_rms_height(parameters)
-    if h is None and (file or not any(name.startswith("surface") for name in settings)):
-        return find_rms_height(file or load_default(default_joint(law), law))
+    if h is None and (parameter_file or not any(name.startswith("surface") for name in settings)):
+        return find_rms_height(parameter_file or load_default(default_joint(law), law))
     return h
 
 

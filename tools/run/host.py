@@ -46,7 +46,7 @@ class Instance:
         self,
         folder: str,
         description: "ModelDescription",
-        name: str,
+        instance_name: str,
         model_exchange: bool,
         log_lines: list[str] | None = None,
     ) -> None:
@@ -68,7 +68,7 @@ class Instance:
                 guid=description.guid,
                 unzipDirectory=folder,
                 modelIdentifier=interface.modelIdentifier,
-                instanceName=name,
+                instanceName=instance_name,
             )
 
     def instantiate(self, logging: bool = True) -> None:
@@ -108,13 +108,15 @@ class Instance:
         for name, value in values.items():
             getattr(self.fmu, f"set{self._fmi_type(name)}")([self.variables[name].valueReference], [value])
 
-    def get_value(self, name: str) -> Any:
+    def get_value(self, variable_name: str) -> Any:
         """Read the value of a variable of any type."""
-        return getattr(self.fmu, f"get{self._fmi_type(name)}")([self.variables[name].valueReference])[0]
+        return getattr(self.fmu, f"get{self._fmi_type(variable_name)}")(
+            [self.variables[variable_name].valueReference]
+        )[0]
 
-    def _fmi_type(self, name: str) -> str:
+    def _fmi_type(self, variable_name: str) -> str:
         """FMI type by which a variable is set and read. Values of an enumeration are whole numbers."""
-        declared = str(self.variables[name].type)
+        declared = str(self.variables[variable_name].type)
         return declared if declared != "Enumeration" else "Integer" if self.version == 2 else "Int64"
 
     def group_reals(self, names: Sequence[str]) -> "RealVariables":
@@ -216,7 +218,7 @@ def _read_cached_description(fmu: str, file_version: tuple[int, ...]) -> "ModelD
     from fmpy import read_model_description
 
     with archives.open_archive(fmu) as archive:
-        text = archives.read_member(archive, archives.DESCRIPTION_NAME)
+        text = archives.read_member(archive, archives.MODEL_DESCRIPTION_NAME)
     try:  # fmpy fails on descriptions of FMI 1.0, which lack some attributes
         version = ElementTree.fromstring(text).get("fmiVersion", "none")
         if version.startswith(("2.", "3.")):
@@ -271,13 +273,13 @@ def _check_interface(model_description: "ModelDescription", fmu_path: Path, mode
         )
 
 
-def _check_python_flavour(resources: Path, fmu_path: Path) -> None:
+def _check_python_flavour(resources_folder: Path, fmu_path: Path) -> None:
     """Raise ValueError if files of a pythonfmu FMU are missing; its library would crash without them."""
-    if not (resources / "pythonfmu").is_dir():
+    if not (resources_folder / "pythonfmu").is_dir():
         return
-    entry = resources / "slavemodule.txt"
+    entry = resources_folder / "slavemodule.txt"
     if not entry.is_file():
         raise ValueError(f"{fmu_path}: is not a complete FMU; resources/slavemodule.txt is missing")
-    script = resources / f"{entry.read_text(encoding='utf-8').strip()}.py"
+    script = resources_folder / f"{entry.read_text(encoding='utf-8').strip()}.py"
     if not script.is_file():
         raise ValueError(f"{fmu_path}: is not a complete FMU; resources/{script.name} is missing")

@@ -45,7 +45,7 @@ class Check:
     """
 
     fmu: str
-    name: str
+    compared_quantity: str
     deviation: float
     tolerance: float
 
@@ -55,37 +55,37 @@ class Check:
         return bool(self.deviation <= self.tolerance)
 
 
-def run_default_ramp(name: str, folder: Path, step_factor: float = 1.0) -> ramp.RampResult:
+def run_default_ramp(fmu_name: str, folder: Path, step_factor: float = 1.0) -> ramp.RampResult:
     """Run the default load ramp of an FMU, with its step times a factor."""
-    r = MODELS[name].ramp
-    return ramp.run_ramp(folder / f"{name}.fmu", r.input_name, r.end_value, r.value_step * step_factor)
+    r = MODELS[fmu_name].ramp
+    return ramp.run_ramp(folder / f"{fmu_name}.fmu", r.input_name, r.end_value, r.value_step * step_factor)
 
 
-def check_ramp(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
+def check_ramp(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> list[Check]:
     """Check the ramp of an FMU: repeat it with larger steps, then run the check of RAMP_CHECKS."""
-    worst = _coarse_ramp_deviation(name, folder, result)
+    worst = _coarse_ramp_deviation(fmu_name, folder, ramp_result)
     checks = [
-        Check(name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
+        Check(fmu_name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
     ]
-    module = load_tool_module(KINDS[MODELS[name].joint], "checks")
-    if module and name in module.RAMPS:
-        compared, largest = module.RAMPS[name](folder, result)
-        checks.append(Check(name, compared, largest, INTEGRATION_TOLERANCE))
+    module = load_tool_module(KINDS[MODELS[fmu_name].joint], "checks")
+    if module and fmu_name in module.RAMPS:
+        compared, largest = module.RAMPS[fmu_name](folder, ramp_result)
+        checks.append(Check(fmu_name, compared, largest, INTEGRATION_TOLERANCE))
     return checks
 
 
-def compare_flavour(name: str, folder: Path, expected: ramp.RampResult) -> Check:
+def compare_flavour(fmu_name: str, folder: Path, expected_ramp: ramp.RampResult) -> Check:
     """Compare the ramp of another build of an FMU, with ten times larger steps, with `expected_ramp`."""
-    worst = _coarse_ramp_deviation(name, folder, expected)
-    return Check(name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
+    worst = _coarse_ramp_deviation(fmu_name, folder, expected_ramp)
+    return Check(fmu_name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
 
 
-def _coarse_ramp_deviation(name: str, folder: Path, result: ramp.RampResult) -> float:
+def _coarse_ramp_deviation(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> float:
     """Largest deviation [1] of any column between the ramp with ten times larger steps and `ramp_result`."""
-    coarse = run_default_ramp(name, folder, _COARSE_STEP_FACTOR).columns
+    coarse = run_default_ramp(fmu_name, folder, _COARSE_STEP_FACTOR).columns
     return max(
         relative_deviation(coarse[column], fine[:: int(_COARSE_STEP_FACTOR)])
-        for column, fine in result.columns.items()
+        for column, fine in ramp_result.columns.items()
     )
 
 
@@ -113,7 +113,7 @@ def check_decays(decays: Mapping[str, Sequence[Decay]]) -> list[Check]:
     return checks
 
 
-def integrate_logarithmically(rate: Callable[[Array], Array], interval_ends: Iterable[float]) -> Array:
+def integrate_logarithmically(integrand: Callable[[Array], Array], interval_ends: Iterable[float]) -> Array:
     """Integrals of `integrand` between neighbouring ends > 0, by Simpson's rule over the logarithm.
 
     Within 1e-8 of an adaptive rule, also for a law with a kink.
@@ -121,13 +121,13 @@ def integrate_logarithmically(rate: Callable[[Array], Array], interval_ends: Ite
     values = []
     for pair in pairwise(interval_ends):
         points = np.geomspace(*pair, _SIMPSON_INTERVALS + 1)
-        values.append(simpson(points * rate(points), dx=np.log(pair[1] / pair[0]) / _SIMPSON_INTERVALS))
+        values.append(simpson(points * integrand(points), dx=np.log(pair[1] / pair[0]) / _SIMPSON_INTERVALS))
     return np.array(values)
 
 
-def relative_deviation(value: object, expected: object) -> float:
+def relative_deviation(value: object, expected_value: object) -> float:
     """Largest difference over the largest expected value [1]; largest |value| if all expected are zero."""
-    a, b = np.asarray(value), np.asarray(expected)
+    a, b = np.asarray(value), np.asarray(expected_value)
     scale = float(np.max(np.abs(b)))
     return float(np.max(np.abs(a - b))) / scale if scale > 0.0 else float(np.max(np.abs(a)))
 

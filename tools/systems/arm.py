@@ -170,11 +170,11 @@ _MOTION_ENTRIES = {
     "start": quantity_field("s", "start time of the motion", ge=0.0),
     "duration": quantity_field("s", "duration of the motion", gt=0.0),
 }
-Sections = dict[str, dict[str, object]]
+ComponentSections = dict[str, dict[str, object]]
 """{component: its section, as in a system file}."""
 
 
-def read_arm(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[str, str]]]:
+def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[tuple[str, str]]]:
     """Read the section [arm]: the arm, and sections and connections of its components.
 
     The components of an axis NAME are `NAME_motor`, `NAME_drive`, `NAME_link` and `NAME_load`.
@@ -211,7 +211,7 @@ def read_arm(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[str
         times["start"],
         times["duration"],
     )
-    sections: Sections = {}
+    sections: ComponentSections = {}
     wires: list[tuple[str, str]] = []
     for name, drive in drives.items():
         ratio = _find_ratio(path, name, drive)
@@ -238,7 +238,7 @@ def _find_ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
     return float(file.values_by_name["ratio"])
 
 
-def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sections:
+def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> ComponentSections:
     """Sections of the components of one axis."""
     k = arm.axis_names.index(name)
     link = arm.links[k]
@@ -247,7 +247,7 @@ def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio:
     phase = np.linspace(0.0, 1.0, 201)
     q, speed, acceleration = arm.compute_motion(arm.start + arm.duration * phase)
     load = inertia * acceleration[:, k] - arm.inverse_dynamics(q, speed, acceleration)[:, k]
-    points = TorqueCurve.fit_points(phase, load)  # digits beyond 1e-8 N.m depend on the processor
+    points = TorqueCurve.fit_control_points(phase, load)  # digits beyond 1e-8 N.m depend on the processor
     times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
     return {
         f"{name}_motor": _make_section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),

@@ -45,7 +45,7 @@ def simulate(
         slaves: dict[str, Slave] = {}
         for name, component in system.components.items():
             start = {key: entry.value for key, entry in list_values(component).items()}
-            start |= dict.fromkeys(lag_parameters.get(name, ()), master.lag)
+            start |= dict.fromkeys(lag_parameters.get(name, ()), master.force_lag)
             path = folder / f"{names[name]}.fmu"
             input_names = [w.input for w in inputs[name]]
             slaves[name] = stack.enter_context(Slave(path, start, input_names, outputs_read[name]))

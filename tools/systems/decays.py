@@ -22,7 +22,7 @@ PERIOD_COUNT = 60
 """Number of periods of a simulated decay [1]."""
 FINAL_PERIODS = 10
 """Number of last periods [1], whose mean is the final position; friction shifts it from the working point."""
-MAX_LOGARITHM_RATIO = 2.0
+MAX_HALF_CYCLE_DECREMENT_RATIO = 2.0
 """Upper bound of ln(amplitude at the start of a half cycle / its mean amplitude) over the damping ratio [1].
 
 pi/2 for small damping, here with a margin.
@@ -67,7 +67,7 @@ class Decay:
     messages: tuple[str, ...]
 
 
-def simulate_examples(folder: Path) -> dict[str, list[Decay]]:
+def simulate_example_decays(folder: Path) -> dict[str, list[Decay]]:
     """Simulate decays with slip for all shipped systems of one vibrating joint, {system: decays}.
 
     folder : folder of the FMUs (FMI 2.0)
@@ -139,7 +139,7 @@ def _simulate_decay(
     points = decay.analyse_decay(time, signal, f"load = {load:g}: ")
     is_resolved = points.amplitude > MIN_AMPLITUDE_RATIO * initial_deflection
     amplitude = points.amplitude[is_resolved]
-    loop_amplitudes = amplitude * np.exp(MAX_LOGARITHM_RATIO * points.damping_ratio[is_resolved])
+    loop_amplitudes = amplitude * np.exp(MAX_HALF_CYCLE_DECREMENT_RATIO * points.damping_ratio[is_resolved])
     settled = rest._replace(
         position=rest.position + float(np.mean(signal[-FINAL_PERIODS * STEPS_PER_PERIOD :]))
     )
@@ -152,7 +152,7 @@ def _simulate_decay(
 
 
 def _evaluate_loops(
-    path: Path,
+    fmu_path: Path,
     settings: Mapping[str, object],
     vibration_test: VibrationTest,
     working_point: WorkingPoint,
@@ -167,7 +167,7 @@ def _evaluate_loops(
     """
     swing = loops.CyclicPath(centre=working_point.position, shape="sine", cycles=1)
     run = loops.run_loops(
-        path,
+        fmu_path,
         vibration_test.motion_inputs[0],
         loop_amplitudes.tolist(),
         swing,
@@ -175,7 +175,7 @@ def _evaluate_loops(
         settings,
     )
     results = [
-        fit_masing_law(loop, working_point.damping).decay(np.array([a]), inertia)
+        fit_masing_law(loop, working_point.damping).free_decay(np.array([a]), inertia)
         for loop, a in zip(run.loops, amplitudes, strict=True)
     ]
     frequency, decrement = np.array(results)[:, :, 0].T

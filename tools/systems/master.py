@@ -73,7 +73,7 @@ class Slave:
 
 
 def simulate_motion(
-    joint: Slave, body: Slave, load: float, step: float, step_count: int, has_late_force: bool = False
+    joint: Slave, body: Slave, load: float, step: float, step_count: int, is_force_delayed: bool = False
 ) -> Array:
     """Simulate position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
 
@@ -90,12 +90,12 @@ def simulate_motion(
     for k in range(step_count):
         body.set_inputs(load, force)
         body.do_step(k * step, step)
-        if has_late_force:
+        if is_force_delayed:
             (force,) = joint.get_outputs()
         states[k + 1] = body.get_outputs()
         joint.set_inputs(*states[k + 1])
         joint.do_step(k * step, step)
-        if not has_late_force:
+        if not is_force_delayed:
             (force,) = joint.get_outputs()
     return states
 

@@ -100,7 +100,7 @@ class PlotAxis(NamedTuple):
 
     name: str
     unit: str
-    factor: float
+    display_factor: float
 
     @property
     def label(self) -> str:
@@ -149,7 +149,7 @@ class VibrationTest:
     release_force: float
     load_axis: PlotAxis
     deflection_axis: PlotAxis
-    doc: str
+    support_description: str
     stiffness_output: str
     slip_deflection: SlipDeflection
     frictionless_parameters: Mapping[str, float] = field(default_factory=dict)
@@ -244,7 +244,7 @@ def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJ
     return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)
 
 
-def simulate_examples(folder: Path) -> dict[str, list[FreeVibration]]:
+def simulate_example_vibrations(folder: Path) -> dict[str, list[FreeVibration]]:
     """Simulate all shipped systems of one vibrating joint, {system: results}; `folder` has FMI 2.0 FMUs."""
     return {name: simulate_vibrations(joint, folder) for name, joint in find_vibrating_joints().items()}
 

@@ -10,14 +10,14 @@ from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu_fmu_src.archive import staging_folder, write_archive
 from jointfmu_fmu_src.licence import find_copyright_line
-from jointfmu_fmu_src.native.build import build
+from jointfmu_fmu_src.native.build import build_native_fmu
 from jointfmu_fmu_src.native.compiled.compiled_models import FMI_VERSIONS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_fmu_src.ssv import REAL_ELEMENT, SSP_NAMESPACE, ParameterValue, add_units, format_parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialize_xml
 
-from jointfmu.files.outputs import ARCHIVE, check_outputs
-from jointfmu.files.timestamp import fixed_time
+from jointfmu.files.outputs import ARCHIVE_FILE, check_outputs
+from jointfmu.files.timestamp import source_date
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import map_jobs
 from jointfmu.version import __version__
@@ -40,8 +40,8 @@ class Master(NamedTuple):
     """
 
     suffix: str
-    lag: float
-    doc: str
+    force_lag: float
+    lag_reason: str
     is_sequential: bool = False
 
 
@@ -72,7 +72,7 @@ def format_structure(
     spaces = {"xmlns:ssd": f"{SSP_NAMESPACE}Description", "xmlns:ssc": f"{SSP_NAMESPACE}Common"}
     head = {**spaces, "version": version, "name": system.name, **file_attributes()}
     root = Element("ssd:SystemStructureDescription", head)
-    description = f"{system.description}. {master.doc}"
+    description = f"{system.description}. {master.lag_reason}"
     root.set("description", description)
     system_node = SubElement(root, "ssd:System", name=system.name, description=description)
     _add_parameter_binding(system_node, system.name)
@@ -115,7 +115,7 @@ def file_attributes() -> dict[str, str]:
         "license": "MIT",
         "generationTool": f"jointfmu {__version__}",
     }
-    if when := fixed_time():
+    if when := source_date():
         attributes["generationDateAndTime"] = when.strftime("%Y-%m-%dT%H:%M:%SZ")
     return attributes
 
@@ -185,7 +185,7 @@ def build_systems(
     archives = [
         _archive_path(system, out, *kind) for system in chosen for kind in product(ARCHIVE_FOLDERS, MASTERS)
     ]
-    check_outputs([*fmus_out, *archives], ARCHIVE, force)
+    check_outputs([*fmus_out, *archives], ARCHIVE_FILE, force)
     build_versions = partial(_build_versions, out, variability)
     fmu_paths = map_jobs(
         pool, build_versions, "build FMUs of systems", [*built_components], [*built_components.values()]
@@ -201,7 +201,7 @@ def _build_versions(out: Path, variability: str, fmu_name: str, component: Compo
     )
     alias = "" if fmu_name == component.model_name else fmu_name
     return [
-        build(component.model_name, file, out / f"fmi{version}", version, variability, alias)
+        build_native_fmu(component.model_name, file, out / f"fmi{version}", version, variability, alias)
         for version in FMI_VERSIONS
     ]
 
@@ -230,7 +230,8 @@ def _write_archive(system: System, out: Path, version: str, master: Master) -> P
     system_values: dict[str, ParameterValue] = {}
     for name, component in system.components.items():
         lag_values = {
-            lag: ParameterValue(master.lag, "1", master.doc) for lag in lag_parameters.get(name, ())
+            lag: ParameterValue(master.force_lag, "1", master.lag_reason)
+            for lag in lag_parameters.get(name, ())
         }
         component_values = list_values(component) | lag_values
         system_values |= {f"{name}.{variable}": value for variable, value in component_values.items()}

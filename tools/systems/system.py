@@ -21,7 +21,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jointfmu_fmu_src.naming import NAME_RULE, is_identifier
+from jointfmu_fmu_src.naming import FMU_NAME_RULE, is_identifier
 from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS
@@ -29,7 +29,7 @@ from jointfmu.parameters import ParameterFile, load_default, read_document, read
 from jointfmu.quantity import find_problem, flat_fields, quantity_field
 
 from .arm import read_arm
-from .system_joint import FILE_KEYS, load_joint_file
+from .system_joint import PARAMETER_FILE_KEYS, load_joint_file
 
 GROUND = "ground"
 """Name of the ground in connections; it fixes a flange of a joint."""
@@ -174,7 +174,7 @@ def read_system(path: Path) -> System:
     """
     document = read_document(path, "a system's file")
     if not is_identifier(path.stem):
-        raise ValueError(f"{path}: the file name is the name of the system; allowed are {NAME_RULE}")
+        raise ValueError(f"{path}: the file name is the name of the system; allowed are {FMU_NAME_RULE}")
     try:
         return _make_system(path, document)
     except ValueError as error:
@@ -234,14 +234,14 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
     if not isinstance(section, Mapping):
         raise ValueError(f"{name} = {section!r}, expected a section [{name}] with its model")
     if not is_identifier(name) or name == GROUND:
-        raise ValueError(f"component {name!r}: allowed are {NAME_RULE}, and not {GROUND!r}")
+        raise ValueError(f"component {name!r}: allowed are {FMU_NAME_RULE}, and not {GROUND!r}")
     model = section.get("model")
     if not isinstance(model, str) or model not in models:
         raise ValueError(f"{name}.model = {model!r}, allowed are {', '.join(models)}")
-    body = {key: value for key, value in section.items() if key not in ("model", *FILE_KEYS)}
+    body = {key: value for key, value in section.items() if key not in ("model", *PARAMETER_FILE_KEYS)}
     joint_parameters = None
     if model in PARTNERS:
-        for key in FILE_KEYS:
+        for key in PARAMETER_FILE_KEYS:
             if key in section:
                 raise ValueError(
                     f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"

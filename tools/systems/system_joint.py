@@ -10,7 +10,7 @@ from jointfmu.parameters import ParameterFile, load_parameter_file
 
 from ..common.joint_parts import load_tool_module
 
-FILE_KEYS = {"parameters", "catalogue"}
+PARAMETER_FILE_KEYS = {"parameters", "catalogue"}
 """Entries that select a parameter file: a path relative to the system file, or a name in the catalogue."""
 
 
@@ -22,7 +22,7 @@ def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, A
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
-    entries = {key: value for key, value in section.items() if key in FILE_KEYS}
+    entries = {key: value for key, value in section.items() if key in PARAMETER_FILE_KEYS}
     if len(entries) > 1:
         raise ValueError(f"{name} has {' and '.join(sorted(entries))}, state one of them")
     for key, value in entries.items():

@@ -32,7 +32,7 @@ class ConnectionEnd(NamedTuple):
     label: str
     component: Component | None
     flange: Terminal | None
-    members: Mapping[str, str]
+    variables_by_member: Mapping[str, str]
 
     @property
     def is_joint(self) -> bool:
@@ -80,7 +80,7 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
                 raise ValueError(f"{end} is connected to {partners[end]} and to {other}; state one of them")
             partners[end] = other
         pair.sort(key=lambda end: (end.component is None, not end.is_load, not end.is_joint))
-        _check_pair(*pair)
+        _check_end_compatibility(*pair)
         pairs.append((pair[0], pair[1]))
     for component in system.components.values():
         flanges = [f"{component.name}.{flange.name}" for flange in find_terminals(find_model(component))]
@@ -90,8 +90,8 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
             )
         if not partners.keys() & {component.name, *flanges}:
             raise ValueError(f"{component.name} is not connected; connect it to a flange of a body or joint")
-    _check_loops(pairs)
-    _check_moved_joints(system, pairs)
+    _check_kinematic_loops(pairs)
+    _check_ungrounded_joints(system, pairs)
     return pairs
 
 
@@ -102,14 +102,16 @@ def find_signals(system: System) -> list[Signal]:
         if first.component is None or second.component is None:
             continue
         first_name, second_name = first.component.name, second.component.name
-        driving_members = [*first.members] if first.is_load else [first.flow_member]
+        driving_members = [*first.variables_by_member] if first.is_load else [first.flow_member]
         signals += [
-            Signal(first_name, first.members[m], second_name, second.members[m]) for m in driving_members
+            Signal(first_name, first.variables_by_member[m], second_name, second.variables_by_member[m])
+            for m in driving_members
         ]
         if first.is_joint:
-            motion_members = [m for m in first.members if m not in driving_members]
+            motion_members = [m for m in first.variables_by_member if m not in driving_members]
             signals += [
-                Signal(second_name, second.members[m], first_name, first.members[m]) for m in motion_members
+                Signal(second_name, second.variables_by_member[m], first_name, first.variables_by_member[m])
+                for m in motion_members
             ]
     return signals
 
@@ -123,11 +125,11 @@ def find_lag_parameters(system: System) -> dict[str, list[str]]:
     return lag_parameters
 
 
-def _parse_end(system: System, text: str) -> ConnectionEnd:
+def _parse_end(system: System, end_text: str) -> ConnectionEnd:
     """Parse an end of a connection: `COMPONENT.FLANGE`, the name of a load, or "ground"."""
-    name, _, flange = text.partition(".")
-    if text == GROUND:
-        return ConnectionEnd(text, None, None, {})
+    name, _, flange = end_text.partition(".")
+    if end_text == GROUND:
+        return ConnectionEnd(end_text, None, None, {})
     if name not in system.components:
         raise ValueError(
             f"connect: unknown component {name!r}, allowed are {', '.join(system.components)}, {GROUND}"
@@ -137,11 +139,11 @@ def _parse_end(system: System, text: str) -> ConnectionEnd:
     known = {terminal.name: terminal for terminal in find_terminals(model)}
     if not known and component.parameter_file is None:
         if flange:
-            raise ValueError(f"connect: {text!r}: a {model.name} has no flange, allowed is {name}")
-        return ConnectionEnd(text, component, None, {v.name: v.name for v in model.outputs})
+            raise ValueError(f"connect: {end_text!r}: a {model.name} has no flange, allowed is {name}")
+        return ConnectionEnd(end_text, component, None, {v.name: v.name for v in model.outputs})
     if flange not in known:
         allowed = ", ".join(f"{name}.{known_flange}" for known_flange in known) or "none"
-        raise ValueError(f"connect: unknown flange {text!r} of a {model.name}, allowed are {allowed}")
+        raise ValueError(f"connect: unknown flange {end_text!r} of a {model.name}, allowed are {allowed}")
     members = known[flange].members
     if component.parameter_file and "inflow" in {kind for _, kind in members.values()}:
         raise ValueError(
@@ -149,11 +151,11 @@ def _parse_end(system: System, text: str) -> ConnectionEnd:
             "input is the motion of bodies"
         )
     return ConnectionEnd(
-        text, component, known[flange], {key: variable for key, (variable, _) in members.items()}
+        end_text, component, known[flange], {key: variable for key, (variable, _) in members.items()}
     )
 
 
-def _check_pair(first: ConnectionEnd, second: ConnectionEnd) -> None:
+def _check_end_compatibility(first: ConnectionEnd, second: ConnectionEnd) -> None:
     """Raise ValueError if two ends are incompatible."""
     prefix = f"{first.label} and {second.label} do not fit"
     if second.component is None:
@@ -163,19 +165,21 @@ def _check_pair(first: ConnectionEnd, second: ConnectionEnd) -> None:
         expected_members = (
             {second.flow_member}
             if second.is_body
-            else {*second.members} - ({second.flow_member} if second.flange else set())
+            else {*second.variables_by_member} - ({second.flow_member} if second.flange else set())
         )
-        if second.is_load or {*first.members} != expected_members:
+        if second.is_load or {*first.variables_by_member} != expected_members:
             raise ValueError(
                 f"{prefix}; allowed are a force or torque on a body's flange, an angle on a joint's flange"
             )
     elif first.is_joint == second.is_joint:
         raise ValueError(f"{prefix}; allowed is a joint's flange on a body's")
-    elif first.members.keys() != second.members.keys():
+    elif first.variables_by_member.keys() != second.variables_by_member.keys():
         raise ValueError(f"{prefix}; allowed are two rotational or two translational flanges")
 
 
-def _check_moved_joints(system: System, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]) -> None:
+def _check_ungrounded_joints(
+    system: System, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]
+) -> None:
     """Raise ValueError if all flanges of a joint are on the ground."""
     moved_joints = {
         first.component.name
@@ -192,7 +196,7 @@ def _check_moved_joints(system: System, connections: Sequence[tuple[ConnectionEn
             )
 
 
-def _check_loops(connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]) -> None:
+def _check_kinematic_loops(connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]) -> None:
     """Raise ValueError if bodies and joints form a closed loop."""
     parents: dict[str, str] = {}
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ..quantity import Array, Number
 from .powerlaw import SpotDistribution
 
-LOAD_TOLERANCE = 1e-13
+RELATIVE_LOAD_TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
 RATIO_QUANTITIES = ("eta_n", "eta_t", "elastic_fraction")
 """Names of the contact quantities that are ratios [1]; all others are sums over the nominal area."""
@@ -29,7 +29,7 @@ _NOT_REPRESENTABLE_TEXT = (
     "the parameters give a critical spot area of {} m2 or a load that is not representable; "
     "check D (close to the end of its interval?) and extreme values of G, h and others"
 )
-_BLOCK_SIZE = 16384
+_INVERSION_BLOCK_SIZE = 16384
 
 
 class InterfaceLaw(Protocol):
@@ -46,7 +46,7 @@ class InterfaceLaw(Protocol):
     def spots(self) -> SpotDistribution:
         """Contact spots: size distribution; load, stiffness and area of a spot as functions of its size."""
 
-    def state(self, largest_log_area: Number) -> dict[str, Number]:
+    def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities {symbol: value}: load, stiffness, area, ...
 
         largest_log_area : u = ln(area of the largest spot/reference area) [1]
@@ -62,7 +62,7 @@ class ValidatedLaw(Protocol):
 
 
 def newton_step(
-    spots: SpotDistribution, largest_log_area: Number, log_load: Number
+    spot_distribution: SpotDistribution, largest_log_area: Number, log_load: Number
 ) -> tuple[Number, Number, Number, Number]:
     """One safeguarded Newton step for the largest spot that carries a load F: ln F(u) = log_load.
 
@@ -71,9 +71,9 @@ def newton_step(
     Returns step, lower and upper bound of the root (all relative to u), and residual [1]. The slope of ln F
     over u lies between MIN_LOAD_SLOPE m and MAX_LOAD_SLOPE, so every evaluation brackets the root.
     """
-    value, slope = spots.log_total("load", largest_log_area)
+    value, slope = spot_distribution.log_sum_over_spots("load", largest_log_area)
     residual = log_load - value
-    a, b = residual / (MIN_LOAD_SLOPE * spots.size_exponent), residual / MAX_LOAD_SLOPE
+    a, b = residual / (MIN_LOAD_SLOPE * spot_distribution.size_exponent), residual / MAX_LOAD_SLOPE
     lower, upper = np.minimum(a, b), np.maximum(a, b)
     step = np.minimum(np.maximum(residual / slope, lower), upper)
     return step, lower, upper, residual
@@ -103,7 +103,7 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
         raise ValueError(
             f"pressure = {p[invalid].flat[0]:g} Pa is outside [0, inf): nominal contact pressure"
         )
-    spots, (min_load, _, max_load) = _check_spots(law)
+    spots, (min_load, _, max_load) = _check_distribution_loads(law)
     load = np.where(p < MIN_PRESSURE, 0.0, p) * law.A_0
     if np.any(invalid := (load > max_load) | ((load > 0.0) & (load < min_load))):
         raise ValueError(
@@ -113,22 +113,25 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
         )
     parameters = np.shape(min_load)
     shape = np.broadcast_shapes(load.shape, parameters)
-    if load.size > _BLOCK_SIZE and parameters == ():
+    if load.size > _INVERSION_BLOCK_SIZE and parameters == ():
         flat = load.ravel()
-        blocks = [_solve_log_area(spots, flat[i : i + _BLOCK_SIZE]) for i in range(0, flat.size, _BLOCK_SIZE)]
+        blocks = [
+            _solve_log_area(spots, flat[i : i + _INVERSION_BLOCK_SIZE])
+            for i in range(0, flat.size, _INVERSION_BLOCK_SIZE)
+        ]
         return np.concatenate(blocks).reshape(shape)
     return _solve_log_area(spots, np.broadcast_to(load, shape))
 
 
-def find_checked_spots(law: InterfaceLaw) -> SpotDistribution:
+def get_checked_distribution(law: InterfaceLaw) -> SpotDistribution:
     """Size distribution of the contact spots of a law, after a check of its range.
 
     Raises ValueError if its reference area or its load over- or underflows (D near 1).
     """
-    return _check_spots(law)[0]
+    return _check_distribution_loads(law)[0]
 
 
-def _check_spots(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
+def _check_distribution_loads(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
     """Size distribution of a law, and its loads [N] at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
     ends = (MIN_LOG_AREA, 0.0, MAX_LOG_AREA)
     with np.errstate(all="ignore"):
@@ -136,7 +139,7 @@ def _check_spots(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
             spots = law.spots()
         except (OverflowError, ZeroDivisionError):
             raise ValueError(_NOT_REPRESENTABLE_TEXT.format("inf")) from None
-        logs = [spots.log_total("load", u) for u in ends]
+        logs = [spots.log_sum_over_spots("load", u) for u in ends]
         loads = [np.exp(log) for log, _ in logs]
         values = [*loads, *(x for log in logs for x in log), *(np.exp(spots.size_exponent * u) for u in ends)]
         representable = np.all([np.all(np.isfinite(x)) for x in values])
@@ -146,14 +149,14 @@ def _check_spots(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
     return spots, loads
 
 
-def _solve_log_area(spots: SpotDistribution, load: Array) -> Array:
+def _solve_log_area(spot_distribution: SpotDistribution, load: Array) -> Array:
     empty = load <= 0.0
     target = np.log(np.where(empty, 1.0, load))
     u = np.zeros_like(target)
     low, high = np.full_like(target, -np.inf), np.full_like(target, np.inf)
     for _ in range(MAX_ITERATIONS):
-        step, lower, upper, residual = newton_step(spots, u, target)
-        if np.max(np.abs(residual), initial=0.0) <= LOAD_TOLERANCE:
+        step, lower, upper, residual = newton_step(spot_distribution, u, target)
+        if np.max(np.abs(residual), initial=0.0) <= RELATIVE_LOAD_TOLERANCE:
             break
         low, high = np.maximum(low, u + lower), np.minimum(high, u + upper)
         u = np.minimum(np.maximum(u + step, low), high)
@@ -165,14 +168,14 @@ def _solve_log_area(spots: SpotDistribution, load: Array) -> Array:
     return np.where(empty, -np.inf, u)
 
 
-def evaluate(law: InterfaceLaw, largest_log_area: Number) -> dict[str, Number]:
+def evaluate_at_log_area(law: InterfaceLaw, largest_log_area: Number) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at the log-area u [1] of the largest spot.
 
     Contains `largest_spot` [m2], `pressure` [Pa] and the quantities of the law. At zero load (u minus
     infinity) sums are zero and ratios have their limit.
     """
     empty = np.isneginf(largest_log_area)
-    state = law.state(np.where(empty, MIN_LOG_AREA, largest_log_area))
+    state = law.contact_quantities(np.where(empty, MIN_LOG_AREA, largest_log_area))
     zero = np.where(empty, 0.0, 1.0)
     state = {name: value if name in RATIO_QUANTITIES else zero * value for name, value in state.items()}
     spots = law.spots()
@@ -187,18 +190,18 @@ def evaluate_at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Nu
 
     See `evaluate_at_log_area`.
     """
-    return evaluate(law, solve_largest_spot(law, pressure))
+    return evaluate_at_log_area(law, solve_largest_spot(law, pressure))
 
 
-def evaluate_at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
+def evaluate_at_largest_spot(law: InterfaceLaw, spot_area: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 for a largest spot with the area (...) [m2].
 
     See `evaluate_at_log_area`. The area is that of the paper: truncated for Zhao 2018, real for Hu 2023 and
     Yu 2022. Raises ValueError for a law without spot areas, and for an area that is not positive, or outside
     the representable range.
     """
-    a = np.asarray(area, dtype=np.float64)
-    spots = find_checked_spots(law)
+    a = np.asarray(spot_area, dtype=np.float64)
+    spots = get_checked_distribution(law)
     if not spots.has_spot_area:
         raise ValueError("the law has no largest spot; state a pressure instead")
     bad = ~(np.isfinite(a) & (a > 0.0))
@@ -211,7 +214,7 @@ def evaluate_at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Nu
             f"the critical area {np.max(spots.reference_area):g} m2, allowed are 260 decades below to "
             "130 above"
         )
-    return evaluate(law, u)
+    return evaluate_at_log_area(law, u)
 
 
 def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, direction: str = "normal") -> tuple[Array, Array]:
@@ -223,8 +226,8 @@ def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, direction: str = "no
     """
     spots = law.spots()
     u = solve_largest_spot(law, pressure)
-    k = spots.total(direction, u) / law.A_0
-    return k, spots.total_derivative(direction, u) / spots.total_derivative("load", u)
+    k = spots.sum_over_spots(direction, u) / law.A_0
+    return k, spots.sum_derivative(direction, u) / spots.sum_derivative("load", u)
 
 
 def find_validity_violations(

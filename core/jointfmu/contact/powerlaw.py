@@ -20,7 +20,7 @@ import numpy as np
 from ..quantity import Number
 
 _GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(32)
-_MAX_BATCH_SIZE = 1024
+_MAX_BATCHED_ARRAY_SIZE = 1024
 """Array size [1] up to which all quadrature nodes are evaluated at once, within the cache."""
 
 
@@ -49,7 +49,7 @@ def integrate_gauss(function: Callable[[Number], Number], lower: Number, upper: 
     """
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
     total = _GAUSS_WEIGHTS[0] * function(middle + half * _GAUSS_NODES[0])
-    if isinstance(total, float | np.ndarray) and np.size(total) <= _MAX_BATCH_SIZE:
+    if isinstance(total, float | np.ndarray) and np.size(total) <= _MAX_BATCHED_ARRAY_SIZE:
         column = (-1, *(1 for _ in np.shape(total)))
         rest = _GAUSS_WEIGHTS[1:].reshape(column) * function(middle + half * _GAUSS_NODES[1:].reshape(column))
         return half * (total + np.sum(rest, axis=0))
@@ -65,11 +65,11 @@ class RegimeTerm(Protocol):
     """
 
     @property
-    def lower(self) -> Number:
+    def lower_log_area(self) -> Number:
         """Log-area [1] at which the regime begins; None: minus infinity."""
 
     @property
-    def upper(self) -> Number:
+    def upper_log_area(self) -> Number:
         """Log-area [1] at which the regime ends; None: infinity."""
 
     def spot_value(self, log_area: Number) -> Number:
@@ -91,19 +91,19 @@ class PowerTerm:
 
     coefficient: Number
     exponent: Number
-    lower: Number = None
-    upper: Number = None
+    lower_log_area: Number = None
+    upper_log_area: Number = None
 
     def spot_value(self, log_area: Number) -> Number:
         return (
-            regime_indicator(log_area, self.lower, self.upper)
+            regime_indicator(log_area, self.lower_log_area, self.upper_log_area)
             * self.coefficient
             * np.exp(self.exponent * log_area)
         )
 
     def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
-        lower = clip_limit(self.lower, largest_log_area)
-        upper = clip_limit(self.upper, largest_log_area, open_end=largest_log_area)
+        lower = clip_regime_bound(self.lower_log_area, largest_log_area)
+        upper = clip_regime_bound(self.upper_log_area, largest_log_area, value_if_infinite=largest_log_area)
         return self.coefficient * exp_integral(self.exponent - size_exponent, lower, upper)
 
 
@@ -114,26 +114,30 @@ class SmoothTerm:
     It is 0 outside `[lower_log_area, upper_log_area]`.
     """
 
-    function: Callable[[Number], Number]
-    lower: Number
-    upper: Number
+    spot_function: Callable[[Number], Number]
+    lower_log_area: Number
+    upper_log_area: Number
 
     def spot_value(self, log_area: Number) -> Number:
-        inside = np.minimum(np.maximum(log_area, self.lower), self.upper)
-        return regime_indicator(log_area, self.lower, self.upper) * self.function(inside)
+        inside = np.minimum(np.maximum(log_area, self.lower_log_area), self.upper_log_area)
+        return regime_indicator(log_area, self.lower_log_area, self.upper_log_area) * self.spot_function(
+            inside
+        )
 
     def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
         def integrand(t: Number) -> Number:
-            return self.function(np.maximum(t, self.lower)) * np.exp(-size_exponent * t)
+            return self.spot_function(np.maximum(t, self.lower_log_area)) * np.exp(-size_exponent * t)
 
         if (
             isinstance(largest_log_area, np.ndarray)
-            and isinstance(self.upper, float)
-            and np.all(largest_log_area >= self.upper)
+            and isinstance(self.upper_log_area, float)
+            and np.all(largest_log_area >= self.upper_log_area)
         ):
-            largest_log_area = self.upper  # the integral is the same for all points
+            largest_log_area = self.upper_log_area  # the integral is the same for all points
         return integrate_gauss(
-            integrand, clip_limit(self.lower, largest_log_area), clip_limit(self.upper, largest_log_area)
+            integrand,
+            clip_regime_bound(self.lower_log_area, largest_log_area),
+            clip_regime_bound(self.upper_log_area, largest_log_area),
         )
 
 
@@ -151,13 +155,13 @@ class SlipTerm:
     exponent: Number
     slip_coefficient: Number
     slip_exponent: Number
-    lower: Number
-    upper: Number
+    lower_log_area: Number
+    upper_log_area: Number
 
     def spot_value(self, log_area: Number) -> Number:
         stick = np.maximum(1.0 - self.slip_coefficient * np.exp(-self.slip_exponent * log_area), 0.0)
         return (
-            regime_indicator(log_area, self.lower, self.upper)
+            regime_indicator(log_area, self.lower_log_area, self.upper_log_area)
             * self.coefficient
             * np.exp(self.exponent * log_area)
             * stick ** (1.0 / 3.0)
@@ -166,10 +170,10 @@ class SlipTerm:
     def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
         onset = np.log(self.slip_coefficient) / self.slip_exponent
         lower = np.maximum(
-            clip_limit(self.lower, largest_log_area),
-            np.minimum(onset, clip_limit(self.upper, largest_log_area)),
+            clip_regime_bound(self.lower_log_area, largest_log_area),
+            np.minimum(onset, clip_regime_bound(self.upper_log_area, largest_log_area)),
         )
-        upper = np.maximum(clip_limit(self.upper, largest_log_area), lower)
+        upper = np.maximum(clip_regime_bound(self.upper_log_area, largest_log_area), lower)
 
         def integrand(r: Number) -> Number:
             t = onset + r**3
@@ -181,18 +185,20 @@ class SlipTerm:
         return self.coefficient * integrate_gauss(integrand, start, end)
 
 
-def clip_limit(regime_bound: Number, largest_log_area: Number, open_end: Number = None) -> Number:
+def clip_regime_bound(
+    regime_bound: Number, largest_log_area: Number, value_if_infinite: Number = None
+) -> Number:
     """Integration limit: smaller of the bound of a regime and the log-area u of the largest spot.
 
     `value_if_infinite` replaces a bound None (infinite).
     """
-    return open_end if regime_bound is None else np.minimum(regime_bound, largest_log_area)
+    return value_if_infinite if regime_bound is None else np.minimum(regime_bound, largest_log_area)
 
 
-def regime_indicator(log_area: Number, lower: Number, upper: Number) -> Number:
+def regime_indicator(log_area: Number, lower_log_area: Number, upper_log_area: Number) -> Number:
     """Indicator of a regime [1]: 1 for log-areas t in (lower, upper], else 0."""
-    is_above = 1.0 if lower is None else np.where(log_area > lower, 1.0, 0.0)
-    is_below = 1.0 if upper is None else np.where(log_area <= upper, 1.0, 0.0)
+    is_above = 1.0 if lower_log_area is None else np.where(log_area > lower_log_area, 1.0, 0.0)
+    is_below = 1.0 if upper_log_area is None else np.where(log_area <= upper_log_area, 1.0, 0.0)
     return is_above * is_below
 
 
@@ -215,20 +221,20 @@ class SpotDistribution:
     onset_log_area: Number = None
     has_spot_area: bool = True
 
-    def total(self, quantity: str, largest_log_area: Number) -> Number:
+    def sum_over_spots(self, quantity: str, largest_log_area: Number) -> Number:
         """Sum Q(u) of a quantity over all spots; u is the log-area of the largest spot."""
         return (
             self.size_exponent
             * self.size_prefactor
             * np.exp(self.size_exponent * largest_log_area)
-            * self._integral(quantity, largest_log_area)
+            * self._integrate_spots(quantity, largest_log_area)
         )
 
-    def total_derivative(self, quantity: str, largest_log_area: Number) -> Number:
+    def sum_derivative(self, quantity: str, largest_log_area: Number) -> Number:
         """Derivative of `total` with respect to u: m Q + m w q(a_L)."""
         largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
         return (
-            self.size_exponent * self.total(quantity, largest_log_area)
+            self.size_exponent * self.sum_over_spots(quantity, largest_log_area)
             + self.size_exponent * self.size_prefactor * largest
         )
 
@@ -237,7 +243,7 @@ class SpotDistribution:
         """Log-area [1] of the largest spot up to which all spots are plastic and the stiffness is zero."""
         if self.onset_log_area is not None:
             return self.onset_log_area
-        return reduce(np.minimum, (term.lower for term in self.regime_terms["normal"]))
+        return reduce(np.minimum, (term.lower_log_area for term in self.regime_terms["normal"]))
 
     @property
     def sorted_regime_end_log_areas(self) -> list[float]:
@@ -248,20 +254,23 @@ class SpotDistribution:
     def regime_end_log_areas(self) -> list[Number]:
         """Log-areas [1] of the ends of the stiffness regimes: numbers or symbols, unsorted, repeated."""
         ends = [
-            end for term in self.regime_terms["normal"] for end in (term.lower, term.upper) if end is not None
+            end
+            for term in self.regime_terms["normal"]
+            for end in (term.lower_log_area, term.upper_log_area)
+            if end is not None
         ]
         return ends if self.onset_log_area is None else [*ends, self.onset_log_area]
 
-    def log_total(self, quantity: str, largest_log_area: Number) -> tuple[Number, Number]:
+    def log_sum_over_spots(self, quantity: str, largest_log_area: Number) -> tuple[Number, Number]:
         """Logarithm ln Q(u) of the sum over all spots, and its derivative with respect to u."""
-        integral = self._integral(quantity, largest_log_area)
+        integral = self._integrate_spots(quantity, largest_log_area)
         largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
         growth = largest * np.exp(-self.size_exponent * largest_log_area) / integral
         return np.log(
             self.size_exponent * self.size_prefactor * integral
         ) + self.size_exponent * largest_log_area, self.size_exponent + growth
 
-    def _integral(self, quantity: str, largest_log_area: Number) -> Number:
+    def _integrate_spots(self, quantity: str, largest_log_area: Number) -> Number:
         return sum(
             term.integral(self.size_exponent, largest_log_area) for term in self.regime_terms[quantity]
         )

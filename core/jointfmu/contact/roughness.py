@@ -60,14 +60,14 @@ def predicted_stiffness(pressure: Number, h: Number) -> Number:
     return pressure / (PERSSON_GAMMA * h)
 
 
-def conflicting_heights(name: str) -> tuple[str, ...]:
+def conflicting_heights(height_name: str) -> tuple[str, ...]:
     """Names of the heights that must not be stated beside a height: others of the same surface, and `h`."""
-    if name == "h":
+    if height_name == "h":
         return tuple(other for other in HEIGHT_FIELDS if other != "h")
-    return ({"a": "Rq", "q": "Ra"}[name[1]] + name[2], "h")
+    return ({"a": "Rq", "q": "Ra"}[height_name[1]] + height_name[2], "h")
 
 
-def check_heights(heights: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
+def check_heights(heights: Mapping[str, Any], name_prefix: str = "") -> dict[str, Number]:
     """Check heights {name: height [m]}, floats or arrays, and return them with floats.
 
     name_prefix : precedes the names in errors
@@ -75,13 +75,13 @@ def check_heights(heights: Mapping[str, Any], prefix: str = "") -> dict[str, Num
     Raises ValueError, one line, for an unknown name, a value that is not a number or outside its interval, or
     two heights of one surface.
     """
-    declared = {prefix + name: item for name, item in HEIGHT_FIELDS.items()}
-    texts = find_problems({prefix + name: value for name, value in heights.items()}, declared)
+    declared = {name_prefix + name: item for name, item in HEIGHT_FIELDS.items()}
+    texts = find_problems({name_prefix + name: value for name, value in heights.items()}, declared)
     for name in (name for name in heights if name in HEIGHT_FIELDS):
         conflicts = [other for other in conflicting_heights(name) if other in heights]
         if conflicts:
-            others = ", ".join(prefix + other for other in conflicts)
-            texts.append(f"{prefix}{name} beside {others}: state one height for each side, or only h")
+            others = ", ".join(name_prefix + other for other in conflicts)
+            texts.append(f"{name_prefix}{name} beside {others}: state one height for each side, or only h")
             break
     if texts:
         raise ValueError("; ".join(texts))

@@ -34,7 +34,7 @@ class ArealSurface(CheckedParameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spectrum(CheckedParameters):
+class CommonFlankParameters(CheckedParameters):
     """Parameter of the Weierstrass-Mandelbrot function common to both flanks."""
 
     gamma: float = quantity_field("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
@@ -107,7 +107,7 @@ def domain_extension_fit(D: Number) -> Number:
     return 5.454 * np.exp((1.0 - D) / 0.628) + 1.499
 
 
-def complete_elliptic(e: Number) -> tuple[Number, Number]:
+def complete_elliptic_integrals(e: Number) -> tuple[Number, Number]:
     """Complete elliptic integrals K(e) and E(e) [1] of the modulus e, 0 <= e < 1 (Yu 2022, Eqs. 19-20).
 
     Computed by the arithmetic-geometric mean; eight steps reach round-off for e <= 1 - 1e-12.

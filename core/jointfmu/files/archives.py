@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from .reading import check_regular
+from .reading import check_regular_file
 
-DESCRIPTION_NAME = "modelDescription.xml"
+MODEL_DESCRIPTION_NAME = "modelDescription.xml"
 """Name of the member that every FMU has."""
 MAX_MEMBERS = 20_000
 """Largest number of members of an archive [1]."""
@@ -49,14 +49,16 @@ def open_archive(path: str | Path) -> Iterator[zipfile.ZipFile]:
     Raises ValueError, one line, if the file does not exist, is a pipe or device, is no zip file or a corrupt
     one, has no model description, or fails `check_members`.
     """
-    expected = f"a zip with {DESCRIPTION_NAME}"
+    expected = f"a zip with {MODEL_DESCRIPTION_NAME}"
     if not os.path.exists(path):
         raise ValueError(f"{path}: there is no such file; expected an FMU")
-    check_regular(path, "an FMU")
+    check_regular_file(path, "an FMU")
     try:
         with zipfile.ZipFile(path) as archive:
-            if DESCRIPTION_NAME not in archive.namelist():
-                raise ValueError(f"{path}: is not an FMU (it has no {DESCRIPTION_NAME}); expected {expected}")
+            if MODEL_DESCRIPTION_NAME not in archive.namelist():
+                raise ValueError(
+                    f"{path}: is not an FMU (it has no {MODEL_DESCRIPTION_NAME}); expected {expected}"
+                )
             check_members(path, archive)
             yield archive
     except OSError as error:
@@ -101,9 +103,9 @@ def check_zip(path: str | Path) -> None:
         check_members(path, archive)
 
 
-def read_member(archive: zipfile.ZipFile, name: str) -> bytes:
+def read_member(archive: zipfile.ZipFile, member_name: str) -> bytes:
     """Read a member of an archive. Raises KeyError if it does not exist, ValueError if it is too large."""
-    member = archive.getinfo(name)
+    member = archive.getinfo(member_name)
     _check_text_size(str(archive.filename), member)
     with archive.open(member) as stream:
         return stream.read(member.file_size)
@@ -154,6 +156,6 @@ def _check_text_size(path: str | Path, member: zipfile.ZipInfo) -> None:
         )
 
 
-def extract_members(archive: zipfile.ZipFile, folder: str | Path, include: Callable[[str], bool]) -> None:
+def extract_members(archive: zipfile.ZipFile, folder: str | Path, is_included: Callable[[str], bool]) -> None:
     """Unpack those members of a checked archive whose names the function `is_included` accepts."""
-    archive.extractall(folder, [name for name in archive.namelist() if include(name)])
+    archive.extractall(folder, [name for name in archive.namelist() if is_included(name)])

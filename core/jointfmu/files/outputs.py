@@ -23,23 +23,23 @@ _MARK_PATTERN = re.compile(
 )
 _MARK_SEARCH_SIZE = 65536
 """Number of bytes [1] at the start of a file in which the mark is searched."""
-_DESCRIPTION_PATTERN = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
+_DESCRIPTION_NAME_PATTERN = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
 _CHECKSUM_PATTERN = re.compile(rf"# {PROGRAM_MARK}; checksum ([0-9a-f]{{8}})\n")
-_FOREIGN_ENDINGS = re.compile(
+_FOREIGN_ENDING_PATTERN = re.compile(
     r"\.(7z|bat|c|cpp|dll|docx|dylib|exe|frd|gz|h|ipynb|jpg|json|jsonl|m|mat|md|npy|npz|odb|pdf"
     r"|ps1|py|pyi|rst|sh|so|ssd|ssv|tar|vtk|xls|xlsx|yaml|yml|zip)"
 )
 """File name endings of kinds that no command writes to a path chosen by the user."""
 
 
-def _is_marked(path: Path) -> bool:
+def _has_program_mark(path: Path) -> bool:
     """Whether the head of a file, or of the description in an FMU or SSP archive, contains PROGRAM_MARK."""
     with path.open("rb") as file:
         head = file.read(_MARK_SEARCH_SIZE)
     if head.startswith(b"PK"):
         try:
             with zipfile.ZipFile(path) as archive:
-                member = next(filter(_DESCRIPTION_PATTERN.fullmatch, archive.namelist()))
+                member = next(filter(_DESCRIPTION_NAME_PATTERN.fullmatch, archive.namelist()))
                 with archive.open(member) as text:
                     head = text.read(_MARK_SEARCH_SIZE)
         except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, StopIteration):
@@ -56,9 +56,9 @@ class FileKind:
     is_program_file  : function, path -> whether the program wrote this file
     """
 
-    noun: str
+    name_in_messages: str
     endings: tuple[str, ...]
-    is_own: Callable[[Path], bool] = _is_marked
+    is_program_file: Callable[[Path], bool] = _has_program_mark
 
 
 def _is_unedited(path: Path) -> bool:
@@ -73,16 +73,18 @@ def _checksum(text: str) -> str:
 
 
 PARAMETER_FILE = FileKind("parameter file", (".toml",), _is_unedited)
-HTML_PAGE = FileKind("page", (".html", ".htm"))
-PICTURE = FileKind("picture", (".png", ".svg"))
-ARCHIVE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
-EXCHANGE_TEXT = FileKind(
+HTML_FILE = FileKind("page", (".html", ".htm"))
+PICTURE_FILE = FileKind("picture", (".png", ".svg"))
+ARCHIVE_FILE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
+EXCHANGE_FILE = FileKind(
     "text for another tool", (".cdb", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml")
 )
-MESH = FileKind("mesh", (".vtu",))
-FOLDER = FileKind("folder", ())
+MESH_FILE = FileKind("mesh", (".vtu",))
+OUTPUT_FOLDER = FileKind("folder", ())
 _PROGRAM_ENDINGS = {
-    end for kind in (PARAMETER_FILE, HTML_PAGE, PICTURE, ARCHIVE, EXCHANGE_TEXT, MESH) for end in kind.endings
+    end
+    for kind in (PARAMETER_FILE, HTML_FILE, PICTURE_FILE, ARCHIVE_FILE, EXCHANGE_FILE, MESH_FILE)
+    for end in kind.endings
 }
 
 
@@ -94,7 +96,7 @@ def write_parameter_text(path: str | Path, text: str) -> None:
     write_text(path, f"# {PROGRAM_MARK}; checksum {_checksum(text)}\n{text}")
 
 
-def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
+def check_output(path: str | Path, file_kind: FileKind, force: bool = False) -> None:
     """Raise ValueError, which names the path, if a file of this kind may not or cannot be written there.
 
     Errors are a folder, the ending of another kind of file, a write-protected file, a location that cannot be
@@ -102,7 +104,7 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
     or pipe only has to be writable. Call it before long work; it leaves no file behind.
     """
     path = Path(path)
-    if kind is FOLDER:
+    if file_kind is OUTPUT_FOLDER:
         check_writable(path, path)
         return
     if path.is_dir():
@@ -113,17 +115,17 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
         return
     target = Path(os.path.realpath(path))
     for ending in (path.suffix.lower(), target.suffix.lower()):
-        known = ending in _PROGRAM_ENDINGS or _FOREIGN_ENDINGS.fullmatch(ending)
-        if known and ending not in kind.endings:
-            allowed = " or ".join(kind.endings)
+        known = ending in _PROGRAM_ENDINGS or _FOREIGN_ENDING_PATTERN.fullmatch(ending)
+        if known and ending not in file_kind.endings:
+            allowed = " or ".join(file_kind.endings)
             raise ValueError(f"{path}: {ending} is the suffix of another kind of file; expected {allowed}")
     try:
         if target.exists():
             if not os.access(target, os.W_OK):
                 raise ValueError(f"{path}: is write-protected; expected another file")
-            if not force and target.stat().st_size and not kind.is_own(target):
+            if not force and target.stat().st_size and not file_kind.is_program_file(target):
                 raise InputRefusal(
-                    f"{path}: exists, and is not a {kind.noun} written by jointfmu, or was edited; "
+                    f"{path}: exists, and is not a {file_kind.name_in_messages} written by jointfmu, or was edited; "
                     "state another file, or force to replace it",
                     "force",
                 )
@@ -132,10 +134,10 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
     check_writable(path, target.parent)
 
 
-def check_outputs(paths: Iterable[Path], kind: FileKind, force: bool = False) -> None:
+def check_outputs(paths: Iterable[Path], file_kind: FileKind, force: bool = False) -> None:
     """Apply `check_output` to several files of one kind."""
     for path in paths:
-        check_output(path, kind, force)
+        check_output(path, file_kind, force)
 
 
 def is_same_file(path1: Path, path2: Path) -> bool:

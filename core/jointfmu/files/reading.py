@@ -5,7 +5,7 @@ import stat
 from pathlib import Path
 
 
-def check_regular(path: str | Path, expected_content: str) -> None:
+def check_regular_file(path: str | Path, expected_content: str) -> None:
     """Raise ValueError if a path leads to a pipe, a device or a socket; a missing file is no error here.
 
     expected_content : what the file should be, for the error
@@ -27,7 +27,7 @@ def read_bytes(path: str | Path, expected_content: str) -> bytes:
 
     Raises ValueError, one line, if the file does not exist, cannot be read or is not a regular file.
     """
-    check_regular(path, expected_content)
+    check_regular_file(path, expected_content)
     try:
         return Path(path).read_bytes()
     except OSError as error:

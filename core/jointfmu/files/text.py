@@ -12,16 +12,16 @@ _FORBIDDEN_CHARACTERS = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u206
 """Control characters, line separators, marks of the writing direction, and characters invalid in XML."""
 
 
-def check_text(subject: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
+def check_text(text_role: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
     """Raise ValueError, one line, if a text is too long or has a control character.
 
     text_role : what the text is, for the error
     """
     if len(text) > max_length:
-        raise ValueError(f"{subject} has {len(text)} characters; allowed are at most {max_length}")
+        raise ValueError(f"{text_role} has {len(text)} characters; allowed are at most {max_length}")
     if found := _FORBIDDEN_CHARACTERS.search(text):
         raise ValueError(
-            f"{subject} has the control character U+{ord(found[0]):04X} at position {found.start() + 1}; "
+            f"{text_role} has the control character U+{ord(found[0]):04X} at position {found.start() + 1}; "
             "expected one line of printable text"
         )
 
@@ -45,15 +45,15 @@ def format_toml_string(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _walk_items(value: object, table_name: str) -> Iterator[tuple[str, str, object]]:
+def _walk_items(document_value: object, table_name: str) -> Iterator[tuple[str, str, object]]:
     """(name of the table, key, value) of every item of a document; items of a list have its key."""
-    if isinstance(value, Mapping):
-        for key, item in value.items():
+    if isinstance(document_value, Mapping):
+        for key, item in document_value.items():
             yield table_name, key, item
             yield from _walk_items(item, f"{table_name}.{key}" if table_name else key)
-    elif isinstance(value, list):
+    elif isinstance(document_value, list):
         head, _, key = table_name.rpartition(".")
-        for item in value:
+        for item in document_value:
             if isinstance(item, str):
                 yield head, key, item
             elif isinstance(item, Mapping | list):

@@ -6,10 +6,10 @@ from os import environ
 
 def build_time() -> datetime:
     """Date for written files: SOURCE_DATE_EPOCH if it is set, for reproducible files, else now."""
-    return fixed_time() or datetime.now(UTC)
+    return source_date() or datetime.now(UTC)
 
 
-def fixed_time() -> datetime | None:
+def source_date() -> datetime | None:
     """Date in the variable SOURCE_DATE_EPOCH (seconds since 1970); None if it is not set.
 
     Raises ValueError if the variable is no such number.

@@ -63,11 +63,11 @@ def is_standard_output(path: str | Path) -> bool:
         return False
 
 
-def _output_descriptor(status: os.stat_result) -> int | None:
+def _output_descriptor(file_status: os.stat_result) -> int | None:
     """Descriptor, 1 or 2, of the output of this process that is the file with a status; None: neither."""
     for descriptor in (1, 2):
         with suppress(OSError):  # this process has closed it
-            if os.path.samestat(status, os.fstat(descriptor)):
+            if os.path.samestat(file_status, os.fstat(descriptor)):
                 return descriptor
     return None
 
@@ -155,14 +155,14 @@ def check_writable(path: Path, folder: Path) -> None:
         ) from None
 
 
-def _create_temporary_file(path: str | Path, target: Path) -> Path:
+def _create_temporary_file(path: str | Path, target_path: Path) -> Path:
     """Create an empty temporary file in the folder of `target_path`, and this folder if necessary.
 
     Raises ValueError, which names `path`.
     """
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+        target_path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=target_path.parent, prefix=f".{target_path.name}.")
     except OSError as error:
         raise _write_error(path, error) from None
     os.close(handle)

@@ -74,14 +74,14 @@ class JointKind:
         """Name of the law of a parameter set, a key of `laws`."""
         return next(name for name, cls in self.laws.items() if type(parameters) is cls)
 
-    def find_model(self, name: str | None = None) -> Model:
+    def find_model(self, fmu_name: str | None = None) -> Model:
         """Model with the name of an FMU; None: the first model. Raises ValueError if there is none."""
         models = {model.name: model for model in self.models}
-        if name is not None and name not in models:
+        if fmu_name is not None and fmu_name not in models:
             raise ValueError(
-                f"fmu = {name!r} is not a model of a {self.name}, allowed are {', '.join(models)}"
+                f"fmu = {fmu_name!r} is not a model of a {self.name}, allowed are {', '.join(models)}"
             )
-        return models[name or next(iter(models))]
+        return models[fmu_name or next(iter(models))]
 
     @property
     def variables(self) -> dict[str, Variable]:
@@ -97,11 +97,15 @@ class JointKind:
         """Joint with the tables computed from a parameter set, see `TabulatedJoint`."""
         return self.models[0].tabulate(parameters)
 
-    def default_file(self, law: str | None = None) -> Path:
+    def default_file(self, law_name: str | None = None) -> Path:
         """Path of the default parameter file: models/NAME/DEFAULT.toml, or DEFAULT_LAW.toml for another law.
 
         A joint of another package has its files in the folder models/ of that package.
         """
-        stem = self.default_stem if law in (None, next(iter(self.laws))) else f"{self.default_stem}_{law}"
+        stem = (
+            self.default_stem
+            if law_name in (None, next(iter(self.laws)))
+            else f"{self.default_stem}_{law_name}"
+        )
         folder = files("jointfmu_models") / self.name if self.is_builtin else files(self.package) / "models"
         return Path(str(folder / f"{stem}.toml"))

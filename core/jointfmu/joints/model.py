@@ -22,7 +22,7 @@ class TabulatedLaw(Protocol):
     """Load-displacement curve of a joint, tabulated up to a largest displacement."""
 
     @property
-    def end(self) -> tuple[float, float]:
+    def end_point(self) -> tuple[float, float]:
         """Displacement and load at the last point of the table."""
 
 
@@ -80,7 +80,7 @@ class LoadRamp:
     end_value: float
     value_step: float
     step_duration: float = 1.0
-    settings: Mapping[str, float] = field(default_factory=dict)
+    parameter_values: Mapping[str, float] = field(default_factory=dict)
     find_range: Callable[..., tuple[float, float]] | None = None
     onset_value: float = 0.0
 
@@ -102,7 +102,7 @@ class LoadCycle:
 
     input_name: str
     amplitude: float
-    settings: Mapping[str, float | bool]
+    variable_values: Mapping[str, float | bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,24 +201,26 @@ class Model:
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
 
-    def with_parameters(self, joint: str, parameters: object) -> "Model":
+    def with_parameters(self, joint_name: str, parameters: object) -> "Model":
         """Model for a parameter set, which may have another law, and additional outputs.
 
         joint_name : joint of the parameter set; raises ValueError if the model is of another joint
         """
-        if joint != self.joint:
-            raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
+        if joint_name != self.joint:
+            raise ValueError(
+                f"{self.name}: the parameter file is of a {joint_name!r}, expected a {self.joint!r}"
+            )
         model = replace(self, parameters=type(parameters))
         return (
             replace(self.make_variant(model, parameters), make_variant=None) if self.make_variant else model
         )
 
-    def with_load_range(self, spring: TabulatedJoint, start_values: VariableValues) -> "Model":
+    def with_load_range(self, tabulated_joint: TabulatedJoint, start_values: VariableValues) -> "Model":
         """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""
         ramp, loop = self.ramp, self.load_cycle
         if ramp.find_range is None:
             return self
-        onset, end = (float(x) for x in ramp.find_range(spring, start_values))
+        onset, end = (float(x) for x in ramp.find_range(tabulated_joint, start_values))
         end = max(end, start_values[ramp.input_name])
         scale = end / ramp.end_value
         if loop and loop.input_name == ramp.input_name:
@@ -226,23 +228,28 @@ class Model:
         ramp = replace(ramp, onset_value=max(onset, 0.0), end_value=end, value_step=scale * ramp.value_step)
         return replace(self, ramp=ramp, load_cycle=loop)
 
-    def find_warnings(self, spring: TabulatedJoint, variable_values: VariableValues) -> dict[int, str]:
+    def find_warnings(
+        self, tabulated_joint: TabulatedJoint, variable_values: VariableValues
+    ) -> dict[int, str]:
         """{index of the validity limit: warning} for values of inputs and outputs outside their intervals."""
         units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}
         messages = {}
         for i, o in enumerate(self.validity_limits):
             value, unit = variable_values[o.variable_name], units[o.variable_name]
             low, high = (
-                float(end) for end in o.find_interval(spring.joint, spring.curve.end, variable_values)
+                float(end)
+                for end in o.find_interval(
+                    tabulated_joint.joint, tabulated_joint.curve.end_point, variable_values
+                )
             )
             inside = Interval.from_bounds(ge=low, le=high)
             if not inside.contains(value):
                 messages[i] = f"{o.variable_name} = {value:.6g}{unit} is outside {inside}{unit}: {o.doc}"
         return messages
 
-    def list_dependencies(self, output: str) -> Sequence[str]:
+    def list_dependencies(self, output_name: str) -> Sequence[str]:
         """Names of the inputs and states on which an output depends."""
-        return self.dependencies.get(output, [v.name for v in self.inputs])
+        return self.dependencies.get(output_name, [v.name for v in self.inputs])
 
 
 EXTRAPOLATION_WARNING = "outside the tabulated law, the curve continues with its last tangent"

@@ -17,7 +17,7 @@ from ..contact.interface import (
     NEWTON_TOLERANCE,
     ONE_SIDED_OFFSET,
     InterfaceLaw,
-    find_checked_spots,
+    get_checked_distribution,
     solve_largest_spot,
 )
 from ..contact.powerlaw import SpotDistribution
@@ -66,7 +66,7 @@ class Curve:
     stiffness_slope_end: Array
     interpolation_error: float = 0.0
     _coefficients: Array = field(init=False, repr=False)
-    _energies: Array = field(init=False, repr=False)
+    _node_energies: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         h = np.diff(self.displacement)
@@ -91,7 +91,7 @@ class Curve:
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
     @property
-    def end(self) -> tuple[float, float]:
+    def end_point(self) -> tuple[float, float]:
         """Displacement and load at the end of the table."""
         return float(self.displacement[-1]), float(self.load[-1])
 
@@ -131,7 +131,7 @@ class Curve:
             _MONOMIAL_MEANS[::-1], self._coefficients[::-1, i], strict=True
         ):
             mean = mean * t + monomial_mean * coefficient
-        energy = np.asarray(self._energies[i] + step * mean)
+        energy = np.asarray(self._node_energies[i] + step * mean)
         excess = displacement - inside
         if not np.any(excess):
             return energy
@@ -180,12 +180,14 @@ class Curve:
         return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
 
 
-def _find_segment(nodes: Array, abscissas: Array) -> NDArray[np.intp]:
+def _find_segment(node_abscissas: Array, abscissas: Array) -> NDArray[np.intp]:
     """Index (...) of the segment of nodes (n) that contains an abscissa (...), or of the nearest segment."""
-    return np.minimum(np.maximum(np.searchsorted(nodes, abscissas, side="right") - 1, 0), nodes.size - 2)
+    return np.minimum(
+        np.maximum(np.searchsorted(node_abscissas, abscissas, side="right") - 1, 0), node_abscissas.size - 2
+    )
 
 
-def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], data_error: float = 0.0) -> Curve:
+def assemble_curve(curve_pieces: list[tuple[Array, Array, Array, Array]], data_error: float = 0.0) -> Curve:
     """Join pieces of a curve; estimate the interpolation error.
 
     curve_pieces : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of
@@ -196,8 +198,8 @@ def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], data_error: 
     convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
     the spline is more accurate at their middle.
     """
-    every_second = [tuple(column[::2] for column in piece) for piece in pieces]
-    fine, coarse = _join_pieces(pieces), _join_pieces(every_second)  # type: ignore[arg-type]
+    every_second = [tuple(column[::2] for column in piece) for piece in curve_pieces]
+    fine, coarse = _join_pieces(curve_pieces), _join_pieces(every_second)  # type: ignore[arg-type]
     nodes = fine.displacement
     points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
     worst = data_error
@@ -209,7 +211,7 @@ def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], data_error: 
     )
 
 
-def refine_curve(tabulate: Callable[[int], Curve], initial_steps: int) -> Curve:
+def refine_curve(tabulate_curve: Callable[[int], Curve], initial_steps: int) -> Curve:
     """Refine a table until its error is at most MAX_ERROR.
 
     tabulate_curve : function, number of steps -> table
@@ -219,7 +221,7 @@ def refine_curve(tabulate: Callable[[int], Curve], initial_steps: int) -> Curve:
     """
     factor = 1
     while factor <= MAX_REFINEMENT:
-        curve = tabulate(initial_steps * factor)
+        curve = tabulate_curve(initial_steps * factor)
         factor *= 2
         if curve.load.size > MAX_TABLE_NODES:
             raise RuntimeError(
@@ -235,10 +237,12 @@ def refine_curve(tabulate: Callable[[int], Curve], initial_steps: int) -> Curve:
     )
 
 
-def _join_pieces(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
-    x, y, s = (np.concatenate([piece[k][bool(i) :] for i, piece in enumerate(pieces)]) for k in range(3))
-    start = np.concatenate([piece[3][:-1] for piece in pieces])
-    end = np.concatenate([piece[3][1:] for piece in pieces])
+def _join_pieces(curve_pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
+    x, y, s = (
+        np.concatenate([piece[k][bool(i) :] for i, piece in enumerate(curve_pieces)]) for k in range(3)
+    )
+    start = np.concatenate([piece[3][:-1] for piece in curve_pieces])
+    end = np.concatenate([piece[3][1:] for piece in curve_pieces])
     return Curve(x, y, s, start, end)
 
 
@@ -300,22 +304,26 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
     ValueError   : all spots are plastic (no stiffness) at every pressure up to the hardness
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
-    spots, area = find_checked_spots(law), law.A_0
+    spots, area = get_checked_distribution(law), law.A_0
     first = float(spots.stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO))
     last = float(solve_largest_spot(law, law.hardness))
     if not last > first:
-        p = float(spots.total("load", first)) / area
+        p = float(spots.sum_over_spots("load", first)) / area
         raise ValueError(
             f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.hardness):.3g} Pa: "
             "the surface (D, G) leaves only plastic spots"
         )
     return refine_curve(
-        lambda steps: _tabulate_log_areas(spots, area, first, last, steps), MIN_STEPS_PER_LOG_AREA
+        lambda steps: _tabulate_between_log_areas(spots, area, first, last, steps), MIN_STEPS_PER_LOG_AREA
     )
 
 
-def _tabulate_log_areas(
-    spots: SpotDistribution, area: float, start_log_area: float, end_log_area: float, steps_per_log_area: int
+def _tabulate_between_log_areas(
+    spot_distribution: SpotDistribution,
+    nominal_area: float,
+    start_log_area: float,
+    end_log_area: float,
+    steps_per_log_area: int,
 ) -> Curve:
     """Table of the pressure over the approach: the closing, then the law between two log-areas.
 
@@ -323,7 +331,7 @@ def _tabulate_log_areas(
     """
     ends = [
         start_log_area,
-        *(b for b in spots.sorted_regime_end_log_areas if start_log_area < b < end_log_area),
+        *(b for b in spot_distribution.sorted_regime_end_log_areas if start_log_area < b < end_log_area),
         end_log_area,
     ]
     pieces, offset = [], 0.0
@@ -333,15 +341,24 @@ def _tabulate_log_areas(
         half = 0.5 * (u[1] - u[0])
         inner = u[:-1, None] + half * (1.0 + GAUSS_RULE[0])
         increments = (
-            half * (spots.total_derivative("load", inner) / spots.total("normal", inner)) @ GAUSS_RULE[1]
+            half
+            * (
+                spot_distribution.sum_derivative("load", inner)
+                / spot_distribution.sum_over_spots("normal", inner)
+            )
+            @ GAUSS_RULE[1]
         )
         x = offset + np.concatenate([[0.0], np.cumsum(increments)])
         offset = x[-1]
         side = np.clip(
             u, start + ONE_SIDED_OFFSET, end - ONE_SIDED_OFFSET
         )  # one-sided derivative where a regime ends
-        k = spots.total("normal", u) / area
-        bend = k * spots.total_derivative("normal", side) / spots.total_derivative("load", side)
-        pieces.append((x, spots.total("load", u) / area, k, bend))
+        k = spot_distribution.sum_over_spots("normal", u) / nominal_area
+        bend = (
+            k
+            * spot_distribution.sum_derivative("normal", side)
+            / spot_distribution.sum_derivative("load", side)
+        )
+        pieces.append((x, spot_distribution.sum_over_spots("load", u) / nominal_area, k, bend))
     _, p, k, bend = (float(column[0]) for column in pieces[0])
     return assemble_curve([closing_pressure(p, k, bend, np.linspace(0.0, 1.0, CLOSING_STEPS + 1)), *pieces])

@@ -19,7 +19,9 @@ class HistoryLayout:
     """
 
     shapes: Mapping[str, tuple[int, ...]]
-    _places: tuple[tuple[str, int, int, tuple[int, ...]], ...] = field(init=False, repr=False, compare=False)
+    _variable_slices: tuple[tuple[str, int, int, tuple[int, ...]], ...] = field(
+        init=False, repr=False, compare=False
+    )
     """(name, index of the first value, index after the last, shape) of the variables."""
 
     def __post_init__(self) -> None:
@@ -27,18 +29,18 @@ class HistoryLayout:
         places = zip(self.shapes, [0, *ends], ends, self.shapes.values(), strict=False)
         object.__setattr__(self, "_places", tuple(places))
 
-    def __or__(self, right: "HistoryLayout") -> "HistoryLayout":
-        return HistoryLayout({**self.shapes, **right.shapes})
+    def __or__(self, other_layout: "HistoryLayout") -> "HistoryLayout":
+        return HistoryLayout({**self.shapes, **other_layout.shapes})
 
     @property
     def size(self) -> int:
         """Total number of values [1]."""
-        return self._places[-1][2] if self._places else 0
+        return self._variable_slices[-1][2] if self._variable_slices else 0
 
     @property
     def offsets(self) -> dict[str, int]:
         """{name: index of its first value in the array}."""
-        return {name: start for name, start, _, _ in self._places}
+        return {name: start for name, start, _, _ in self._variable_slices}
 
     def virgin_history(self) -> Array:
         """Array (n) of history variables in the virgin state: zeros."""
@@ -48,7 +50,8 @@ class HistoryLayout:
         """Views {name: variable (..., *shape)} into arrays of history variables (..., n)."""
         rows = history.shape[:-1]
         return {
-            name: history[..., start:end].reshape(rows + shape) for name, start, end, shape in self._places
+            name: history[..., start:end].reshape(rows + shape)
+            for name, start, end, shape in self._variable_slices
         }
 
     def join(self, variables: Mapping[str, ArrayLike], *leading_shape: int) -> Array:

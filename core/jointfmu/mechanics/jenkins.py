@@ -20,7 +20,7 @@ AT_LIMIT_TOLERANCE = 1e-12
 """Relative distance below the limit [1] at which a force counts as at the limit."""
 MIN_DENOMINATOR = 1e-200
 """Smallest denominator: replaces 0 in divisions by powers of forces and squared displacements."""
-ONE_TWELFTH = 1.0 / 12.0
+HERMITE_RULE_FACTOR = 1.0 / 12.0
 MAX_INVERSE_LIMIT = 1e30
 """Largest value of 1/limit, for limits near zero."""
 
@@ -171,7 +171,7 @@ def _return_map_2d(
     turn_factor = (
         0.25 * (decrease * squared * start_square + (largest - start_square) * shrinks) * per_shrinks
     )
-    correction_factor = turn_factor - ONE_TWELFTH * shrinks * per_shrinks * (slip_angle * slip_angle)
+    correction_factor = turn_factor - HERMITE_RULE_FACTOR * shrinks * per_shrinks * (slip_angle * slip_angle)
     correction = select(slips, slip_angle * correction_factor, 0.0)
     corrected = [q + correction * e for q, e in zip(predictor, (e_x, e_y), strict=True)]
     size2 = np.maximum(corrected[0] * corrected[0] + corrected[1] * corrected[1], MIN_DENOMINATOR)
@@ -183,7 +183,7 @@ def _return_map_2d(
         rotation
         * rotation
         * np.maximum(1.0 - squared * (per_size * per_size), 0.0)
-        * (ONE_TWELFTH * per_limit)
+        * (HERMITE_RULE_FACTOR * per_limit)
     )
     slip_stiffness = select(limit_function(predictor, limit) > 0.0, stiffness, 0.0)
     tangent = [
@@ -250,13 +250,13 @@ class Sliders:
             np.sum(mapping.tangent[0], axis=-1),
         )
 
-    def follow_increments(self, increments: Array, friction_limit: Array) -> Array:
+    def follow_increments(self, displacement_increments: Array, friction_limit: Array) -> Array:
         """Total force (m) after each of m displacement increments along one direction, from the virgin state.
 
         friction_limit : (n) constant friction limits
         """
-        force, totals = np.zeros_like(friction_limit), np.empty(increments.size)
-        for n, increment in enumerate(increments):
+        force, totals = np.zeros_like(friction_limit), np.empty(displacement_increments.size)
+        for n, increment in enumerate(displacement_increments):
             force = project_to_limit(
                 elastic_predictor([force], 1.0, self.stiffness, [increment])[0], friction_limit
             )

@@ -36,9 +36,9 @@ UNIFORM_DEVIATION = 1.0 / np.sqrt(12.0)
 """Standard deviation of a uniform distribution over its range [1]."""
 
 
-HEIGHTS_BELOW, HEIGHTS_ABOVE = 10, 7
+HEIGHTS_BELOW_REFERENCE, HEIGHTS_ABOVE_REFERENCE = 10, 7
 """Number of slider heights below the reference approach, and between it and the end of the curve [1]."""
-FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW + HEIGHTS_ABOVE + 2)
+FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW_REFERENCE + HEIGHTS_ABOVE_REFERENCE + 2)
 """Number of sliders of a foundation with the heights of `slider_heights` [1]."""
 MIN_REFERENCE_RATIO, MAX_REFERENCE_RATIO, DEFAULT_REFERENCE_RATIO = 1e-5, 0.1, 1e-3
 """Smallest and largest load at the reference approach, and load that replaces a smaller one, over the load at
@@ -54,7 +54,7 @@ def height_offsets(load: Array) -> Array:
     return np.asarray((rank_descending(load) * GOLDEN_RATIO_CONJUGATE + 0.5) % 1.0)
 
 
-def slider_heights(curve: Curve, reference: ArrayLike, height_offset: ArrayLike) -> Array:
+def slider_heights(curve: Curve, stated_reference_approach: ArrayLike, height_offset: ArrayLike) -> Array:
     """Heights (..., n) [m] that separate the sliders of foundations near a reference approach.
 
     They are dense just below the reference approach, where the first springs slip, and near the first
@@ -66,24 +66,24 @@ def slider_heights(curve: Curve, reference: ArrayLike, height_offset: ArrayLike)
                                 offsets slip at different displacements, so the errors of their stepwise slip
                                 cancel in the sum.
     """
-    reference_approach = np.asarray(reference, dtype=np.float64)
+    reference_approach = np.asarray(stated_reference_approach, dtype=np.float64)
     offset_column = np.asarray(height_offset, dtype=np.float64)[..., None]
-    end = curve.end[1]
+    end = curve.end_point[1]
     load = curve.derivatives(reference_approach, 0)[0]
     touches = load > MIN_REFERENCE_RATIO * end
     load = np.where(touches, np.minimum(load, MAX_REFERENCE_RATIO * end), DEFAULT_REFERENCE_RATIO * end)[
         ..., None
     ]
-    position_below = (np.arange(HEIGHTS_BELOW)[::-1] + offset_column) / HEIGHTS_BELOW
-    position_above = (np.arange(HEIGHTS_ABOVE) + offset_column) / HEIGHTS_ABOVE
+    position_below = (np.arange(HEIGHTS_BELOW_REFERENCE)[::-1] + offset_column) / HEIGHTS_BELOW_REFERENCE
+    position_above = (np.arange(HEIGHTS_ABOVE_REFERENCE) + offset_column) / HEIGHTS_ABOVE_REFERENCE
     loads_below = load * (1.0 - position_below) ** 2 / (position_below**2 + (1.0 - position_below) ** 2)
     loads_above = load * np.exp(np.log(end / load) * position_above**2)
     lowest, highest = (np.full_like(load, x) for x in curve.displacement[[0, -1]])
     inner_heights = curve.inverse(np.concatenate([loads_below, load, loads_above], axis=-1))
-    inner_heights[..., HEIGHTS_BELOW] = np.where(
+    inner_heights[..., HEIGHTS_BELOW_REFERENCE] = np.where(
         touches & (load[..., 0] < MAX_REFERENCE_RATIO * end),
         reference_approach,
-        inner_heights[..., HEIGHTS_BELOW],
+        inner_heights[..., HEIGHTS_BELOW_REFERENCE],
     )
     return np.concatenate([lowest, inner_heights, highest], axis=-1)
 
@@ -305,7 +305,7 @@ class Foundation:
 
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
         """
-        path = _Increment.from_ends(
+        path = _DisplacementIncrement.from_ends(
             start_approach, end_approach, self._slider_displacements(tangential_displacement)
         )
         properties_end = self.slider_properties(end_approach)
@@ -319,9 +319,9 @@ class Foundation:
             changes = ~self._keeps_contact_state(path)
             middle = self._middle_forces(force, properties_start, path) if np.any(changes) else [0.0, 0.0]
             varying = varying_stiffness_loss(
-                _components(force),
+                _vector_components(force),
                 update.force,
-                path.components,
+                path.tangential_components,
                 stiffness,
                 update.slip_force,
                 changes,
@@ -357,17 +357,18 @@ class Foundation:
         force: Array,
         start_properties: SliderProperties,
         end_properties: SliderProperties,
-        increment: "_Increment",
+        displacement_increment: "_DisplacementIncrement",
     ) -> ReturnMapping:
         """Return mapping of sliders (..., n); its loss is valid for constant stiffness, see `advance`."""
-        change: Number = increment.approach_change
+        change: Number = displacement_increment.approach_change
         rise: Number = 0.0
         small: Number = True
         if start_properties is not end_properties:
             steps = np.repeat(np.diff(self.heights), 2, axis=-1)
-            small = (self._keeps_contact_state(increment) & (np.abs(change) < SMALL_CHANGE_RATIO * steps)) | (
-                change == 0.0
-            )
+            small = (
+                self._keeps_contact_state(displacement_increment)
+                & (np.abs(change) < SMALL_CHANGE_RATIO * steps)
+            ) | (change == 0.0)
             limits = (end_properties.friction_limit - start_properties.friction_limit).reshape(
                 *end_properties.friction_limit.shape[:-1], -1, 2
             )
@@ -384,33 +385,36 @@ class Foundation:
         keeps, carries = retention_and_stiffness(*ends, change, rise, small)
         springs = end_properties.stiffness, compliance(end_properties.stiffness)
         return return_map(
-            _components(force),
+            _vector_components(force),
             keeps,
             carries,
-            increment.components,
+            displacement_increment.tangential_components,
             start_properties.friction_limit,
             end_properties.friction_limit,
             *springs,
         )
 
     def _middle_forces(
-        self, force: Array, start_properties: SliderProperties, increment: "_Increment"
+        self,
+        force: Array,
+        start_properties: SliderProperties,
+        displacement_increment: "_DisplacementIncrement",
     ) -> Vector:
         """Slider forces in the middle of an increment."""
-        half = increment.scale(0.5)
+        half = displacement_increment.scale_increment(0.5)
         return self._return_map(
             force, start_properties, self.slider_properties(half.end_approach[..., 0]), half
         ).force
 
-    def _keeps_contact_state(self, increment: "_Increment") -> NDArray[np.bool_]:
+    def _keeps_contact_state(self, displacement_increment: "_DisplacementIncrement") -> NDArray[np.bool_]:
         """Whether each slider (..., n) has the same contact state (full, partial, open) at both ends."""
         low, high = (np.repeat(h, 2, axis=-1) for h in (self.heights[..., :-1], self.heights[..., 1:]))
-        first, last = increment.start_approach, increment.end_approach
+        first, last = displacement_increment.start_approach, displacement_increment.end_approach
         return np.asarray(((first > low) == (last > low)) & ((first >= high) == (last >= high)))
 
 
 @dataclass(frozen=True, slots=True)
-class _Increment:
+class _DisplacementIncrement:
     """Increment of the relative displacement.
 
     start_approach, end_approach : (..., 1) [m] approaches at its ends
@@ -424,7 +428,7 @@ class _Increment:
     @classmethod
     def from_ends(
         cls, start_approach: ArrayLike, end_approach: ArrayLike, tangential_displacement: Array
-    ) -> "_Increment":
+    ) -> "_DisplacementIncrement":
         first_approach, last_approach = (
             np.asarray(x, dtype=np.float64)[..., None] for x in (start_approach, end_approach)
         )
@@ -436,22 +440,22 @@ class _Increment:
         return np.asarray(self.end_approach - self.start_approach)
 
     @property
-    def components(self) -> tuple[Array, Array]:
+    def tangential_components(self) -> tuple[Array, Array]:
         """Tangential displacements (..., 1) or (..., n) [m] along x and along y."""
-        return _components(self.tangential_displacement)
+        return _vector_components(self.tangential_displacement)
 
-    def scale(self, load_factor: float) -> "_Increment":
+    def scale_increment(self, load_factor: float) -> "_DisplacementIncrement":
         """Part of the increment from its start up to a load factor [1], from 0 to 1."""
-        return _Increment(
+        return _DisplacementIncrement(
             self.start_approach,
             self.start_approach + load_factor * self.approach_change,
             load_factor * self.tangential_displacement,
         )
 
 
-def _components(vector: Array) -> tuple[Array, Array]:
+def _vector_components(slider_vectors: Array) -> tuple[Array, Array]:
     """Components x, y (..., n) of vectors (..., 2, n)."""
-    return vector[..., 0, :], vector[..., 1, :]
+    return slider_vectors[..., 0, :], slider_vectors[..., 1, :]
 
 
 def _cycle_energies(
@@ -477,7 +481,7 @@ def cycle_energies(
     amplitude: Number,
     load: Number,
     slipped_load: Number,
-    energy: Number,
+    pressure_integral: Number,
 ) -> tuple[Number, Number]:
     """Energy loss [J/m2] of a cycle at constant approach, and elastic energy [J/m2] at its ends.
 
@@ -493,7 +497,7 @@ def cycle_energies(
         stiffness_ratio,
         amplitude,
         load - slipped_load,
-        0.5 * reach * (load + slipped_load) - energy,
+        0.5 * reach * (load + slipped_load) - pressure_integral,
     )
 
 
@@ -530,7 +534,7 @@ def partial_contact(
     load: Number,
     stiffness: Number,
     d2p: Number,
-    width: Number,
+    approach_excess: Number,
     stiffness_ratio: Number,
     friction_coefficient: Number,
 ) -> tuple[Number, ...]:
@@ -544,7 +548,9 @@ def partial_contact(
     """
     normal = np.maximum(load, 0.0)
     springs = select(load > 0.0, np.maximum(stiffness, 0.0), 0.0)  # round-off may make the load negative
-    apart = np.minimum(springs * (UNIFORM_DEVIATION * width), normal)  # the first spring has no load
+    apart = np.minimum(
+        springs * (UNIFORM_DEVIATION * approach_excess), normal
+    )  # the first spring has no load
     half = 0.5 * friction_coefficient
     return (
         0.5 * stiffness_ratio * springs,
@@ -572,11 +578,11 @@ def stick_retention(
 
 
 def retention_and_stiffness(
-    start: tuple[Number, Number],
-    end: tuple[Number, Number],
+    start_stiffness: tuple[Number, Number],
+    end_stiffness: tuple[Number, Number],
     approach_change: Number,
     stiffness_integral: Number,
-    is_small: Number,
+    is_small_change: Number,
 ) -> tuple[Number, Number]:
     """Fraction of the friction force retained [1], and secant stiffness [Pa/m], if the normal load changes.
 
@@ -590,17 +596,17 @@ def retention_and_stiffness(
     is_small_change : whether to compute the mean stiffness from both ends (fourth order), because
         stiffness_integral cancels
     """
-    (stiffness_start, slope_start), (stiffness_end, slope_end) = start, end
+    (stiffness_start, slope_start), (stiffness_end, slope_end) = start_stiffness, end_stiffness
     touches, is_unloading = stiffness_start > 0.0, approach_change < 0.0
     retention = select(touches, np.minimum(stiffness_end / select(touches, stiffness_start, 1.0), 1.0), 0.0)
     ends = 0.5 * (stiffness_start + stiffness_end) + approach_change * (slope_start - slope_end) / 12.0
     mean = select(
-        is_small,
+        is_small_change,
         ends,
         select(
             stiffness_start == stiffness_end,
             stiffness_end,
-            stiffness_integral / select(is_small, 1.0, approach_change),
+            stiffness_integral / select(is_small_change, 1.0, approach_change),
         ),
     )
     return select(is_unloading, retention, 1.0), select(is_unloading, stiffness_end, mean)
@@ -611,7 +617,7 @@ def varying_stiffness_loss(
     new_force: Vector,
     tangential_displacement: Vector,
     stiffness: tuple[Number, Number],
-    slip: Number,
+    slip_force: Number,
     has_contact_change: Number,
     middle_force: Vector,
 ) -> Number:
@@ -630,7 +636,7 @@ def varying_stiffness_loss(
     ) * tangential_displacement[1]
     half = middle_force[0] * tangential_displacement[0] + middle_force[1] * tangential_displacement[1]
     hermite_term = select(
-        slip > 0.0,
+        slip_force > 0.0,
         0.0,
         (
             tangential_displacement[0] * tangential_displacement[0]

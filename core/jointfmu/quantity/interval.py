@@ -97,11 +97,11 @@ class Interval:
         return f"{left}{self.low:g}, {self.high:g}{right}"
 
 
-def _next_float(start: float, towards: float) -> float:
+def _next_float(start_value: float, direction_value: float) -> float:
     """Next float after a value in the direction of another one; next to zero the smallest normal float."""
-    if start == 0.0:
-        return sys.float_info.min if towards > 0.0 else -sys.float_info.min
-    return nextafter(start, towards)
+    if start_value == 0.0:
+        return sys.float_info.min if direction_value > 0.0 else -sys.float_info.min
+    return nextafter(start_value, direction_value)
 
 
 def is_symbol(value: object) -> bool:
@@ -116,8 +116,8 @@ def erf(x: Number) -> Number:
     return np.vectorize(math.erf, otypes=[float])(x)
 
 
-def select(condition: Any, value: Number, otherwise: Number) -> Number:
+def select(condition: Any, value: Number, other_value: Number) -> Number:
     """`value` where a condition holds, else `other_value`, elementwise; a scalar condition keeps the type."""
     if isinstance(condition, bool | np.bool_):
-        return value if condition else otherwise
-    return np.where(condition, value, otherwise)
+        return value if condition else other_value
+    return np.where(condition, value, other_value)

@@ -11,7 +11,7 @@ from typing import Any, TypeVar, get_type_hints
 from .declaration import find_problems, name_in_file
 from .interval import Interval, Number
 
-T = TypeVar("T")
+ParameterSet = TypeVar("T")
 
 
 @cache
@@ -57,7 +57,7 @@ def flat_fields(
     parameter_names : parameter names that select one alternative of each group; None: all alternatives
     """
     if parameter_names is None:
-        yield from ((prefix + name, item) for name, item in _all_fields(cls))  # type: ignore[arg-type]
+        yield from ((prefix + name, item) for name, item in _cached_flat_fields(cls))  # type: ignore[arg-type]
         return
     hints = _type_hints(cls)  # type: ignore[arg-type]
     for item in fields(cls):
@@ -70,7 +70,7 @@ def flat_fields(
 
 
 @cache
-def _all_fields(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
+def _cached_flat_fields(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
     """Result of `flat_fields` with all alternatives of each group, cached."""
     hints, found_fields = _type_hints(cls), list[tuple[str, Field[Any]]]()
     for item in fields(cls):
@@ -96,7 +96,7 @@ def flatten_parameters(parameters: Any) -> dict[str, Any]:
     return values
 
 
-def build_parameter_set(cls: type[T], values: Mapping[str, object]) -> T:
+def build_parameter_set(cls: type[ParameterSet], values: Mapping[str, object]) -> ParameterSet:
     """Build and check the parameter set `cls` from {structured name: value}.
 
     Raises ValueError, one line, that names every unknown or missing name and every value that is not a number
@@ -110,7 +110,7 @@ def build_parameter_set(cls: type[T], values: Mapping[str, object]) -> T:
     return assemble_parameter_set(cls, plain, lambda part, arguments: part(**arguments))
 
 
-def replace_values(parameters: T, new_values: Mapping[str, object]) -> T:
+def replace_values(parameters: ParameterSet, new_values: Mapping[str, object]) -> ParameterSet:
     """Copy of a parameter set with some values replaced, by structured name.
 
     Raises ValueError as `build_parameter_set` does, and for names of a missing alternative.
@@ -127,11 +127,11 @@ def replace_values(parameters: T, new_values: Mapping[str, object]) -> T:
 
 
 def assemble_parameter_set(
-    cls: type[T],
+    cls: type[ParameterSet],
     values: Mapping[str, object],
     make_instance: Callable[[type[Any], dict[str, Any]], Any],
     prefix: str = "",
-) -> T:
+) -> ParameterSet:
     """Build the parameter set `cls` from {structured name: value} without checks.
 
     make_instance : (class, {field name: value}) -> instance
@@ -148,7 +148,7 @@ def assemble_parameter_set(
             )
         elif name in values:
             arguments[item.name] = values[name]
-    instance: T = make_instance(cls, arguments)
+    instance: ParameterSet = make_instance(cls, arguments)
     return instance
 
 

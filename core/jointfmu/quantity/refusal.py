@@ -4,6 +4,6 @@
 class InputRefusal(ValueError):
     """Invalid input; `setting` is the argument that would resolve it (`rated_torque`, `error`, `unit`)."""
 
-    def __init__(self, message: str, setting: str) -> None:
+    def __init__(self, message: str, setting_name: str) -> None:
         super().__init__(message)
-        self.setting = setting
+        self.setting = setting_name

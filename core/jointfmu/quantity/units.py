@@ -48,7 +48,7 @@ _POWER_OF_TEN_PATTERN = re.compile(
 """Pattern of a power of ten before a unit: `1e4`, `x10^4`, `10⁴`."""
 MAX_POWER_OF_TEN = 12
 """Largest absolute exponent of a power of ten before a unit [1]."""
-_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_SUPERSCRIPT_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
 _SPELLING_REPLACEMENTS = (
     (re.compile(r"[·⋅*]"), "."),
@@ -86,11 +86,11 @@ def base_exponents(unit: str) -> dict[str, int]:
     return dict(_parse_unit(unit)[1])
 
 
-def conversion_factor(unit: str, target: str) -> float:
+def conversion_factor(unit: str, target_unit: str) -> float:
     """Conversion factor between two units. Raises ValueError if they measure different quantities."""
-    (size, exponents), (target_size, target_exponents) = _parse_unit(unit), _parse_unit(target)
+    (size, exponents), (target_size, target_exponents) = _parse_unit(unit), _parse_unit(target_unit)
     if exponents != target_exponents:
-        raise ValueError(f"unit {target!r} does not measure what {unit!r} does")
+        raise ValueError(f"unit {target_unit!r} does not measure what {unit!r} does")
     return float(size / target_size)
 
 
@@ -102,17 +102,21 @@ def unit_sizes(unit: str, *other_units: str) -> UnitSizes:
     return {name: conversion_factor(name, unit) for name in (unit, *other_units)}
 
 
-def unit_size_in(unit: str, sizes: UnitSizes) -> float:
+def unit_size_in(unit: str, accepted_units: UnitSizes) -> float:
     """Size of a unit, in the first unit of `accepted_units`; any unit of the same quantity is accepted.
 
     Raises ValueError if the unit is unknown or measures another quantity.
     """
-    return sizes[unit] if unit in sizes else conversion_factor(unit, next(iter(sizes)))
+    return (
+        accepted_units[unit]
+        if unit in accepted_units
+        else conversion_factor(unit, next(iter(accepted_units)))
+    )
 
 
-def replace_symbols(unit: str, symbols: Mapping[str, str]) -> str:
+def replace_symbols(unit: str, symbol_replacements: Mapping[str, str]) -> str:
     """Replace symbols in a unit: `N/m3` with {"m": "mm"} becomes `N/mm3`."""
-    return _FACTOR_PATTERN.sub(lambda match: symbols.get(match[1], match[1]) + match[2], unit)
+    return _FACTOR_PATTERN.sub(lambda match: symbol_replacements.get(match[1], match[1]) + match[2], unit)
 
 
 @cache
@@ -121,7 +125,7 @@ def _parse_unit(unit: str) -> tuple[Fraction, dict[str, int]]:
     total, exponents = Fraction(1), dict[str, int]()
     notation_text = unit
     if ten := _POWER_OF_TEN_PATTERN.match(notation_text):
-        power = int(ten[1].translate(_SUPERSCRIPTS))
+        power = int(ten[1].translate(_SUPERSCRIPT_DIGITS))
         if abs(power) <= MAX_POWER_OF_TEN:
             total, notation_text = total * Fraction(10) ** power, notation_text[ten.end() :]
     for spelling, notation in _SPELLING_REPLACEMENTS:
@@ -196,8 +200,8 @@ UNITS: Mapping[str, Unit] = {
 }
 """{SI unit: quantity, base units, display units} for all variables, parameters and files."""
 
-CELSIUS = "degC"
-KELVIN_AT_ZERO = 273.15
+CELSIUS_UNIT = "degC"
+CELSIUS_ZERO_IN_KELVIN = 273.15
 """Display unit of temperatures in FMUs, and its zero point [K]; files and pages use kelvin."""
 LUBRICANT_TEMPERATURES = 193.15, 473.15
 """Temperature range [K] in which lubricants work: -80 to 200 degrees C."""

@@ -41,17 +41,17 @@ class Panel(NamedTuple):
 def encode_panels(panels: Sequence[Panel]) -> str:
     """Encode panels side by side as JSON that is safe inside an HTML page."""
 
-    def numbers(values: Any) -> list[float]:
+    def round_numbers(values: Any) -> list[float]:
         return [float(f"{x:.{_SIGNIFICANT_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
 
-    def series(chart_series: Series) -> dict[str, Any]:
+    def encode_series(chart_series: Series) -> dict[str, Any]:
         return chart_series._asdict() | {
-            "x": numbers(chart_series.x),
-            "y": numbers(chart_series.y),
+            "x": round_numbers(chart_series.x),
+            "y": round_numbers(chart_series.y),
             "titles": list(chart_series.titles) or None,
         }
 
-    rows = [panel._asdict() | {"series": [series(s) for s in panel.series]} for panel in panels]
+    rows = [panel._asdict() | {"series": [encode_series(s) for s in panel.series]} for panel in panels]
     return json.dumps(rows, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
@@ -60,9 +60,9 @@ def make_figure(panels: Sequence[Panel]) -> str:
     return f'<div class="figure"><script type="application/json">{encode_panels(panels)}</script></div>'
 
 
-def read_script(*names: str) -> str:
+def read_script(*script_names: str) -> str:
     """JavaScript that draws charts; the name `figures` adds code for all page elements of class `figure`."""
-    return '"use strict";\n' + "".join(_read_file(f"{name}.js") for name in ("text", "chart", *names))
+    return '"use strict";\n' + "".join(_read_file(f"{name}.js") for name in ("text", "chart", *script_names))
 
 
 def read_style() -> str:
@@ -70,5 +70,5 @@ def read_style() -> str:
     return _read_file("chart.css")
 
 
-def _read_file(name: str) -> str:
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+def _read_file(file_name: str) -> str:
+    return Path(__file__).with_name(file_name).read_text(encoding="utf-8")

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS, Modes
-from jointfmu.joints.bolted_joint.bolts import bolt_positions, moment_lever
+from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS, MemberModes
+from jointfmu.joints.bolted_joint.bolts import bolt_force_per_moment, bolt_positions
 from jointfmu.joints.bolted_joint.contact import MAX_PATCHES_PER_POINT, TRANSFER_DECIMALS, force_transfer
-from jointfmu.joints.bolted_joint.joint import MAX_POINTS, contact_points, friction_patches_of
-from jointfmu.joints.bolted_joint.law import MAX_MODES, Bolted, ElasticBodies
+from jointfmu.joints.bolted_joint.joint import MAX_POINTS, contact_points, find_friction_patches
+from jointfmu.joints.bolted_joint.law import MAX_MODES, AnyBoltedJoint, ElasticBodies
 from jointfmu.joints.bolted_joint.outputs import cycle_sums
 from jointfmu.mechanics.footprint.distribution import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
@@ -24,56 +24,62 @@ from ...joint_parts import FmuParts, RampPanel, chart, native_loader
 from ...joint_parts.data import DataConversion, DataTable
 from ...joint_parts.terminals import make_rotation_flange, make_translation_flange
 
-_SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
-BOLTS = 64
+_REPLACED_SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
+MAX_RIGID_SIDE_BOLTS = 64
 """Largest number of bolts [1] of a joint with rigid sides in compiled models; more need a compiler."""
 _ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
 """Nodal field with a single point, with which the C code is generated."""
 
 
-def _parameter_values(joint: Bolted) -> Mapping[str, object]:
+def _convert_parameters(joint: AnyBoltedJoint) -> Mapping[str, object]:
     """Parameter values with which the C code is generated: one contact point, mean positions of the bolts."""
-    own = {name: value for name, value in flatten_parameters(joint).items() if not name.startswith(_SECTIONS)}
+    own = {
+        name: value
+        for name, value in flatten_parameters(joint).items()
+        if not name.startswith(_REPLACED_SECTIONS)
+    }
     spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))
     points: dict[str, object] = {
         f"field.{name}": value for name, value in (_ONE_POINT_FIELD | spread).items()
     }
-    return own | points | (_one_mode(round(joint.n_bolts)) if joint.elastic else {})
+    return (
+        own | points | (_make_single_mode_bodies(round(joint.n_bolts)) if joint.has_elastic_members else {})
+    )
 
 
-def _one_mode(bolts: int) -> dict[str, object]:
+def _make_single_mode_bodies(bolt_count: int) -> dict[str, object]:
     """Section [bodies] with one mode, one friction patch and a number of bolts, all displacements zero."""
     stated = [item.name for item in fields(ElasticBodies) if item.default is MISSING]
     values: dict[str, tuple[float, ...]] = dict.fromkeys(stated, (0.0,))
-    values |= {"stiffness": (1.0,), **dict.fromkeys(("stretch", "bolt_x", "bolt_y"), (0.0,) * bolts)}
+    values |= {"stiffness": (1.0,), **dict.fromkeys(("stretch", "bolt_x", "bolt_y"), (0.0,) * bolt_count)}
     return {f"bodies.{name}": value for name, value in values.items()}
 
 
-def _tables(joint: Bolted) -> Mapping[str, DataTable]:
+def _make_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
     """Tables of points, patches, sliders, bolts and modes in the data block."""
-    patches = friction_patches_of(joint.pattern)
+    patches = find_friction_patches(joint.pattern)
     return {
-        "points": DataTable(_rows(contact_points(joint.pattern)), MAX_POINTS),
-        "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), MAX_PATCHES),
+        "points": DataTable(_distribution_rows(contact_points(joint.pattern)), MAX_POINTS),
+        "patches": DataTable(np.column_stack([_distribution_rows(patches), patches.radius]), MAX_PATCHES),
         "torsion_directions": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
-        "height_offsets": DataTable(height_offsets(patches.preload_shape)[:, None], MAX_PATCHES),
-        **_bodies(joint),
+        "height_offsets": DataTable(height_offsets(patches.preload_pressure_ratio)[:, None], MAX_PATCHES),
+        **_make_body_tables(joint),
     }
 
 
-def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
+def _make_body_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
     """Tables of the elastic members: modal stiffness, bolts, modal displacements, pressure transfer.
 
     A row has the displacements of one point, patch or bolt by all modes, as 2-byte integers. A joint with
     rigid sides reserves one row for each table, and MAX_RIGID_SIDE_BOLTS rows for the bolts.
     """
-    modes, most = Modes.for_rigid_bodies(0, 0, 0), (1, 1, 1, 1)
+    modes, most = MemberModes.for_rigid_bodies(0, 0, 0), (1, 1, 1, 1)
     bolts = bolt_positions(joint)
     pressing, pairs = np.zeros((0, 4)), 1
-    if joint.elastic:
+    if joint.has_elastic_members:
         assert isinstance(joint.bodies, ElasticBodies)
-        points, patches = contact_points(joint.pattern), friction_patches_of(joint.pattern)
-        modes = Modes.of(joint.bodies, len(points.area_share), patches.position)
+        points, patches = contact_points(joint.pattern), find_friction_patches(joint.pattern)
+        modes = MemberModes.for_bodies(joint.bodies, len(points.area_share), patches.position)
         pressing = _pressure_transfer_table(force_transfer(points, patches))
         pairs = MAX_PATCHES_PER_POINT * MAX_POINTS + MAX_PATCHES
         most = MAX_MODES, MAX_POINTS, MAX_PATCHES, len(bolts)
@@ -84,64 +90,76 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     return {
         "modal_stiffness": DataTable(modes.stiffness[:, None], most[0]),
         "bolts": DataTable(
-            np.column_stack([bolts, moment_lever(bolts)]),
-            len(bolts) if joint.elastic else max(len(bolts), BOLTS),
+            np.column_stack([bolts, bolt_force_per_moment(bolts)]),
+            len(bolts) if joint.has_elastic_members else max(len(bolts), MAX_RIGID_SIDE_BOLTS),
         ),
-        **{name: DataTable(_padded(rows), room[name], is_integer=True) for name, rows in moved.items()},
+        **{
+            name: DataTable(_encode_modal_rows(rows), room[name], is_integer=True)
+            for name, rows in moved.items()
+        },
         "pressure_transfer": DataTable(pressing, pairs, is_integer=True),
     }
 
 
-def _pressure_transfer_table(transfer: Any) -> Any:
+def _pressure_transfer_table(force_shares: Any) -> Any:
     """Rows (n, 4) of index of the patch, index of the point, share in units of the last decimal, and 0."""
-    patch, point = np.nonzero(transfer)
-    digits = np.round(transfer[patch, point] * 10.0**TRANSFER_DECIMALS)
+    patch, point = np.nonzero(force_shares)
+    digits = np.round(force_shares[patch, point] * 10.0**TRANSFER_DECIMALS)
     return np.column_stack([patch, point, digits, 0 * patch])
 
 
-def _padded(rows: Any) -> Any:
+def _encode_modal_rows(modal_rows: Any) -> Any:
     """Modal displacements in units of the last decimal, padded with zeros to MAX_MODES modes."""
-    return np.pad(np.round(rows * 10.0**MODE_DECIMALS), ((0, 0), (0, MAX_MODES - rows.shape[1])))
+    return np.pad(np.round(modal_rows * 10.0**MODE_DECIMALS), ((0, 0), (0, MAX_MODES - modal_rows.shape[1])))
 
 
-def _rows(shape: PressureDistribution) -> Any:
+def _distribution_rows(distribution: PressureDistribution) -> Any:
     """Rows (n, 5) of area share, x, y, and both pressure ratios of each point."""
-    return np.column_stack([shape.area_share, shape.position, shape.preload_shape, shape.moment_shape])
+    return np.column_stack(
+        [
+            distribution.area_share,
+            distribution.position,
+            distribution.preload_pressure_ratio,
+            distribution.moment_pressure_ratio,
+        ]
+    )
 
 
 LOOP_PRELOAD_RATIO = 0.3
 """Preload of the drawn friction loops over the preload at the end of the load ramp [1]."""
-AMPLITUDES = (0.06, 0.12, 0.22, 0.4)
+LOOP_AMPLITUDE_RATIOS = (0.06, 0.12, 0.22, 0.4)
 """Amplitudes of the drawn loops over the displacement at which a point with the mean approach slips [1]."""
-_POINTS = 13
+_CURVE_POINT_COUNT = 13
 
 
-def _loops(spring: Any, end: float) -> list[chart.Panel]:
+def _draw_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
     """Charts of friction loops with several amplitudes, and of their loss factor over the amplitude.
 
     ramp_end_preload : preload at the end of the load ramp [N]
     """
     left = spring.joint.embedding
-    preload = left + LOOP_PRELOAD_RATIO * (end - left)
+    preload = left + LOOP_PRELOAD_RATIO * (ramp_end_preload - left)
     approach = spring.preloaded_approach(preload, 0.0)
     foundation, share = spring.friction.foundation(), spring.points.area_share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
     slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 
-    def force(shift: Array) -> Array:
+    def virgin_force(displacement: Array) -> Array:
         """Shear force [N] in first loading at displacements (...) [m]."""
-        return np.asarray(spring.joint.A_0 * (foundation.virgin_traction(approach, shift[:, None]) @ share))
+        return np.asarray(
+            spring.joint.A_0 * (foundation.virgin_traction(approach, displacement[:, None]) @ share)
+        )
 
     lines = []
-    for part in reversed(AMPLITUDES):
-        u = part * slips * np.linspace(-1.0, 1.0, 2 * _POINTS + 1)
-        top = force(u[-1:])
-        back = top - 2.0 * force(0.5 * (u[-1] - u))
+    for part in reversed(LOOP_AMPLITUDE_RATIOS):
+        u = part * slips * np.linspace(-1.0, 1.0, 2 * _CURVE_POINT_COUNT + 1)
+        top = virgin_force(u[-1:])
+        back = top - 2.0 * virgin_force(0.5 * (u[-1] - u))
         shift, loop = np.concatenate([u, u[::-1]]), np.concatenate([back, -back])
         lines.append(chart.Series(f"amplitude {u[-1] * 1e6:.3g} µm", shift * 1e6, loop / 1e3))
-    u = AMPLITUDES[-1] * slips * np.linspace(0.0, 1.0, _POINTS)
-    lines.append(chart.Series("first shear", u * 1e6, force(u) / 1e3, dashed=True))
-    size = slips * np.geomspace(0.01, 2.0, _POINTS)
+    u = LOOP_AMPLITUDE_RATIOS[-1] * slips * np.linspace(0.0, 1.0, _CURVE_POINT_COUNT)
+    lines.append(chart.Series("first shear", u * 1e6, virgin_force(u) / 1e3, dashed=True))
+    size = slips * np.geomspace(0.01, 2.0, _CURVE_POINT_COUNT)
     sums = [cycle_sums(foundation, share, approach, np.full(approach.size, a)) for a in size]
     loss = [s["loop_work"] / (2.0 * np.pi * s["loop_energy"]) for s in sums]
     over = chart.Series("eta_loop", size * 1e6, loss)
@@ -153,19 +171,19 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     ]
 
 
-_AXES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
-_TURNS = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
+_TRANSLATION_FLANGES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
+_ROTATION_FLANGES = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
     native=native_loader(__name__),
-    data=DataConversion(_parameter_values, make_tables=_tables),
-    drawings={"BoltedJoint": {"loops": _loops}},
+    data=DataConversion(_convert_parameters, make_tables=_make_tables),
+    drawings={"BoltedJoint": {"loops": _draw_loops}},
     panels={"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))},
     terminals={
         "BoltedJoint": (
-            *(make_translation_flange(*row) for row in _AXES),
-            *(make_rotation_flange(*row) for row in _TURNS),
+            *(make_translation_flange(*row) for row in _TRANSLATION_FLANGES),
+            *(make_rotation_flange(*row) for row in _ROTATION_FLANGES),
         )
     },
 )

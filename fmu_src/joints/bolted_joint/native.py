@@ -7,18 +7,21 @@ from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.distribution import MAX_PATCHES
 
-from ...joint_parts.graph import Graph, add_closing_function, add_law_functions, make_symbols
-from ...joint_parts.native import APPROACH_FILES, Definitions, NativeDefinition
+from ...joint_parts.graph import FunctionGraph, add_closing_function, add_law_functions, make_symbols
+from ...joint_parts.native import APPROACH_FILES, CDefinitions, NativeDefinition
 from ...joint_parts.sliders import SLIDER_FILES, add_slider_functions
 
 
-def _functions(g: Graph, model: Model) -> None:
+def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     """Add the functions that the C code of the bolted joint calls."""
-    joint = g.joint
+    joint = function_graph.joint
     add_law_functions(
-        g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
+        function_graph,
+        joint,
+        ("normal",),
+        lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)],
     )
-    add_closing_function(g)
+    add_closing_function(function_graph)
     head = [
         joint.memory,
         joint.mu,
@@ -28,50 +31,54 @@ def _functions(g: Graph, model: Model) -> None:
         joint.damping,
     ]
     doc = "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping, number of bolts"
-    g.add_function("joint_constants", doc, [], [*head, joint.n_bolts])
-    _tightening(g)
-    _shear(g)
-    sums = dict(zip(outputs.SUMS, make_symbols("sum", len(outputs.SUMS)), strict=True))
+    function_graph.add_function("joint_constants", doc, [], [*head, joint.n_bolts])
+    _add_preload_functions(function_graph)
+    _add_shear_functions(function_graph)
+    sums = dict(zip(outputs.SUM_NAMES, make_symbols("sum", len(outputs.SUM_NAMES)), strict=True))
     shift, turn, rates = make_symbols("s", 3), make_symbols("t", 3), make_symbols("v", 6)
     p_max = ca.SX.sym("p_max")
     out = outputs.joint_outputs(joint, sums, shift, turn, rates, p_max)
     doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
     y = [out[o.name] for o in model.outputs if o.name in out]  # bolt forces follow from the modes
-    g.add_with_derivative("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
+    function_graph.add_with_derivative("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
 
 
-def _tightening(g: Graph) -> None:
+def _add_preload_functions(function_graph: FunctionGraph) -> None:
     """Add the functions of the pressures under preload and moment."""
     equal, tilt, mean, shift = make_symbols("node", 4)
     preload, moment = make_symbols("v", 2)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
-    g.add_with_derivative(
-        "bolt_pressures", doc, [preload, moment], law.bolt_pressures(g.joint, preload, moment)
+    function_graph.add_with_derivative(
+        "bolt_pressures", doc, [preload, moment], law.bolt_pressures(function_graph.joint, preload, moment)
     )
     doc = "preload -> preload after embedding"
-    g.add_with_derivative("working_preload", doc, [preload], [law.working_preload(g.joint, preload)])
+    function_graph.add_with_derivative(
+        "working_preload", doc, [preload], [law.working_preload(function_graph.joint, preload)]
+    )
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
-    pressure = law.shaped_pressure(equal, tilt, mean, shift)
-    g.add_with_derivative("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], constant_count=2)
+    pressure = law.superposed_pressure(equal, tilt, mean, shift)
+    function_graph.add_with_derivative(
+        "shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], constant_count=2
+    )
 
 
-def _shear(g: Graph) -> None:
+def _add_shear_functions(function_graph: FunctionGraph) -> None:
     """Add the functions of shear without history, and of the friction sliders of a patch."""
     x = make_symbols("x", 7)
     doc = (
         "friction limit, pressure and its derivatives, displacement -> traction, tangent xx, xy, yy, "
         "added pressure and stiffness"
     )
-    y = contact.elastic_shear(x[0], g.joint.shear_stiffness_ratio(), x[1:5], x[5], x[6])
-    g.add_with_derivative("elastic_shear", doc, x, y)
-    add_slider_functions(g)
-    _loops(g)
-    _rest(g)
+    y = contact.elastic_shear(x[0], function_graph.joint.shear_stiffness_ratio(), x[1:5], x[5], x[6])
+    function_graph.add_with_derivative("elastic_shear", doc, x, y)
+    add_slider_functions(function_graph)
+    _add_cycle_functions(function_graph)
+    _add_stick_function(function_graph)
     load, stiffness, bend, width, ratio, friction = make_symbols("x", 6)
     doc = "load, stiffness, its slope, excess of the approach -> stiffness, its slope, limits of both sliders"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.partial_contact(load, stiffness, bend, width, ratio, friction)
-    g.add_with_derivative("partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
+    function_graph.add_with_derivative("partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
     small, first, slope, last, then, change, rise = make_symbols("x", 7)
     doc = (
         "whether small, stiffness and its slope at both ends, change of the approach, integral of the "
@@ -79,7 +86,7 @@ def _shear(g: Graph) -> None:
     )
     kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
     x = [small, first, slope, last, then, change, rise]
-    g.add_with_derivative("retention_and_stiffness", doc, x, kept, constant_count=1)
+    function_graph.add_with_derivative("retention_and_stiffness", doc, x, kept, constant_count=1)
     across, slip = make_symbols("x", 2)
     force, moved, shift, ends, middle = (make_symbols(name, 2) for name in "qfukm")
     doc = (
@@ -88,31 +95,35 @@ def _shear(g: Graph) -> None:
     )
     loss = sliders.varying_stiffness_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    g.add_with_derivative("varying_stiffness_loss", doc, x, [loss], constant_count=3)
+    function_graph.add_with_derivative("varying_stiffness_loss", doc, x, [loss], constant_count=3)
 
 
-def _rest(g: Graph) -> None:
+def _add_stick_function(function_graph: FunctionGraph) -> None:
     """Add the function of a foundation in full stick."""
     stiff, now, falls = make_symbols("x", 3)
     doc = "whether the load decreases, stiffness at both ends -> fraction retained, secant stiffness"
     y = sliders.stick_retention(stiff, now, falls)
-    g.add_with_derivative("stick_retention", doc, [falls, stiff, now], y, constant_count=1)
+    function_graph.add_with_derivative("stick_retention", doc, [falls, stiff, now], y, constant_count=1)
 
 
-def _loops(g: Graph) -> None:
+def _add_cycle_functions(function_graph: FunctionGraph) -> None:
     """Add the functions of energy loss and elastic energy of a cycle at constant load."""
     x = make_symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, load, load at the slipped height, integral between -> loss, elastic energy"
-    g.add_with_derivative("cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2)
+    function_graph.add_with_derivative("cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2)
     (mu, ratio, size), now, then = make_symbols("x", 3), make_symbols("n", 3), make_symbols("t", 3)
     doc = "mu, K_T/K_N, amplitude, three derivatives of the load at both heights -> loss, elastic energy"
     y = sliders.small_cycle_energies(mu, ratio, size, now, then)
-    g.add_with_derivative("small_cycle_energies", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
+    function_graph.add_with_derivative(
+        "small_cycle_energies", doc, [mu, ratio, size, *now, *then], y, constant_count=2
+    )
 
 
-def _definitions(g: Graph, model: Model) -> Definitions:
+def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
     """Constants for the C code of the bolted joint."""
-    counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
+    counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUM_NAMES)} | {
+        "N_SUMS": len(outputs.SUM_NAMES)
+    }
     columns = ("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS")
     counts |= {name: k for k, name in enumerate(columns)}
     names = (
@@ -126,12 +137,12 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     )
     numbers = {name: float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
-    counts |= {"N_BELOW": sliders.HEIGHTS_BELOW, "N_ABOVE": sliders.HEIGHTS_ABOVE}
-    counts |= {"UNKNOWN": friction.UNKNOWN, "FULL_STICK": friction.FULL_STICK}
+    counts |= {"N_BELOW": sliders.HEIGHTS_BELOW_REFERENCE, "N_ABOVE": sliders.HEIGHTS_ABOVE_REFERENCE}
+    counts |= {"UNKNOWN": friction.NO_HISTORY, "FULL_STICK": friction.FULL_STICK}
     counts |= {"SLIP_1D": friction.SLIP_1D, "SLIP_2D": friction.SLIP_2D}
     counts |= {
         "MODES": law.MAX_MODES,
-        "ELASTIC": int(g.joint.elastic),
+        "ELASTIC": int(function_graph.joint.elastic),
         "MAX_NEWTON_ITERATIONS": equilibrium.MAX_NEWTON_ITERATIONS,
         "MAX_LINE_SEARCH": equilibrium.MAX_LINE_SEARCH,
     }
@@ -151,10 +162,13 @@ def _definitions(g: Graph, model: Model) -> Definitions:
             "DIFFERENCE_STEP",
         )
     }
-    numbers |= {"BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_RATIO, "BOLT_AT_LIFT_OFF": bolts.AT_LIFT_OFF}
-    return Definitions(counts, numbers)
+    numbers |= {
+        "BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_RATIO,
+        "BOLT_AT_LIFT_OFF": bolts.LIFT_OFF_STIFFNESS_FACTOR,
+    }
+    return CDefinitions(counts, numbers)
 
 
 NATIVE_PART = NativeDefinition(
-    _functions, (*APPROACH_FILES, *SLIDER_FILES), _definitions, friction.history_layout(MAX_PATCHES)
+    _add_functions, (*APPROACH_FILES, *SLIDER_FILES), _make_definitions, friction.history_layout(MAX_PATCHES)
 )

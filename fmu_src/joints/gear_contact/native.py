@@ -6,11 +6,11 @@ from jointfmu.contact.laws import yu2022
 from jointfmu.joints.gear_contact import spring
 from jointfmu.joints.model import Model
 
-from ...joint_parts.graph import Graph, add_closing_function, add_law_functions, make_symbols
+from ...joint_parts.graph import FunctionGraph, add_closing_function, add_law_functions, make_symbols
 from ...joint_parts.native import APPROACH_FILES, NativeDefinition
 
 
-def _add_functions(function_graph: Graph, model: Model) -> None:
+def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     """Add the functions that the C code of the gear contact calls."""
     joint = function_graph.joint
     f, approach, stiffness, area, elastic = make_symbols("x", 5)

@@ -6,11 +6,11 @@ import numpy as np
 from jointfmu.joints.gear_mesh import spring
 from jointfmu.joints.model import Model
 
-from ...joint_parts.graph import Graph, add_closing_function, add_law_functions, make_symbols
-from ...joint_parts.native import APPROACH_FILES, Definitions, NativeDefinition
+from ...joint_parts.graph import FunctionGraph, add_closing_function, add_law_functions, make_symbols
+from ...joint_parts.native import APPROACH_FILES, CDefinitions, NativeDefinition
 
 
-def _add_functions(function_graph: Graph, model: Model) -> None:
+def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     """Add the functions that the C code of the gear mesh calls."""
     mesh = function_graph.joint
     add_law_functions(function_graph, mesh, ("normal",), lambda spots, u: [])
@@ -33,5 +33,7 @@ def _add_functions(function_graph: Graph, model: Model) -> None:
 
 
 NATIVE_PART = NativeDefinition(
-    _add_functions, APPROACH_FILES, lambda g, model: Definitions({"PAIR_CLOSING_STEPS": spring.CLOSING_STEPS})
+    _add_functions,
+    APPROACH_FILES,
+    lambda g, model: CDefinitions({"PAIR_CLOSING_STEPS": spring.CLOSING_STEPS}),
 )

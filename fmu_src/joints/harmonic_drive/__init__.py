@@ -18,7 +18,7 @@ from jointfmu.quantity import Number, flatten_parameters, quantity_field
 
 from ...joint_parts import FmuParts, RampPanel, native_loader
 from ...joint_parts.data import EMPTY_TABLES, DataConversion, DataTable
-from ...joint_parts.terminals import ROTATIONAL, Terminal, make_shaft_flange
+from ...joint_parts.terminals import ROTATIONAL_FLANGE_CLASS, Terminal, make_shaft_flange
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ def _find_code_class(drive: Drive) -> type[Drive]:
     return MidlineDrive if isinstance(drive, TableDrive) else type(drive)
 
 
-def _parameter_values(drive: Drive) -> Mapping[str, Any]:
+def _convert_parameters(drive: Drive) -> Mapping[str, Any]:
     """{name: value} of the parameter set with which the C code of a drive is generated."""
     values = flatten_parameters(drive)
     if not isinstance(drive, TableDrive):
@@ -65,12 +65,12 @@ def _make_tables(drive: Drive) -> Mapping[str, DataTable]:
 
 
 _STIFFNESS_PANEL = RampPanel("tau", ("K_WTS", "K_TS"))
-_LOCKED_MEMBERS = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
+_LOCKED_FLANGE_MEMBERS = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
     native=native_loader(__name__),
-    data=DataConversion(_parameter_values, _find_code_class, _make_tables),
+    data=DataConversion(_convert_parameters, _find_code_class, _make_tables),
     panels={
         "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS_PANEL),
         "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS_PANEL),
@@ -81,7 +81,13 @@ FMU_PARTS = FmuParts(
             make_shaft_flange(2, "b", "output"),
         ),
         "HarmonicDriveCompliance": (
-            Terminal("flange", ROTATIONAL, "b", "output, wave generator locked", _LOCKED_MEMBERS),
+            Terminal(
+                "flange",
+                ROTATIONAL_FLANGE_CLASS,
+                "b",
+                "output, wave generator locked",
+                _LOCKED_FLANGE_MEMBERS,
+            ),
         ),
     },
 )

@@ -3,15 +3,15 @@
 import casadi as ca
 
 from jointfmu.joints.harmonic_drive import friction, hysteresis, spring
-from jointfmu.joints.harmonic_drive.drive import HARMONICS, error_amplitudes, kinematic_error
+from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS, error_amplitudes, kinematic_error
 from jointfmu.joints.harmonic_drive.law import ContactPairDrive, stiffness_with_play
 from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, MeasuredDrive, SplineNode
 from jointfmu.joints.model import Model
 
-from ...joint_parts.graph import Graph, Symbols, make_symbols
+from ...joint_parts.graph import FunctionGraph, Symbols, make_symbols
 from ...joint_parts.native import (
     CURVE_FILES,
-    Definitions,
+    CDefinitions,
     ModuleConstants,
     NativeDefinition,
     define_array,
@@ -21,7 +21,7 @@ from ...joint_parts.native import (
 from ...joint_parts.sliders import SLIDER_FILES, add_slider_functions
 
 
-def _add_functions(function_graph: Graph, model: Model) -> None:
+def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     """Add the functions that the C code of the harmonic drive calls."""
     drive = function_graph.joint
     add_slider_functions(function_graph)
@@ -85,32 +85,32 @@ def _is_torque_input(model: Model) -> bool:
     return model.inputs[0].name == "tau"
 
 
-NUMBER_NAMES: ModuleConstants = {
+REAL_CONSTANT_NAMES: ModuleConstants = {
     spring: ("MIN_STIFFNESS", "MIN_STIFFNESS_MARGIN"),
     hysteresis: ("WIND_UP_TOLERANCE", "MIN_REVERSAL_RATIO", "LIMIT_TOLERANCE"),
     friction: ("PRIOR_ROTATION_TIME",),
 }
-COUNT_NAMES: ModuleConstants = {
+INTEGER_CONSTANT_NAMES: ModuleConstants = {
     hysteresis: ("MAX_LIMIT_ITERATIONS", "HYSTERESIS_SLIDERS"),
     friction: ("FRICTION_SLIDERS",),
 }
 """Python constants of the drive with the same names in C: integers (REAL_CONSTANT_NAMES: real numbers)."""
 
 
-def _make_definitions(function_graph: Graph, model: Model) -> Definitions:
+def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
     """Constants for the C code of the harmonic drive."""
     counts = {"ARGUMENT_IS_LOAD": int(_is_torque_input(model)), "DRIVE_STEPS": spring.MIN_TABLE_STEPS}
-    counts["N_HARMONICS"] = len(HARMONICS)
-    sliders = define_array("STIFFNESS_SHARES", "N_STIFFNESS_SHARES", friction.STIFFNESS_SHARES)
-    sliders |= define_array("LIMIT_SHARES", "N_LIMIT_SHARES", friction.LIMIT_SHARES)
-    constants = define_constants(NUMBER_NAMES, COUNT_NAMES) | Definitions(counts) | sliders
+    counts["N_HARMONICS"] = len(KINEMATIC_ERROR_HARMONICS)
+    sliders = define_array("STIFFNESS_SHARES", "N_STIFFNESS_SHARES", friction.SLIDER_STIFFNESS_SHARES)
+    sliders |= define_array("LIMIT_SHARES", "N_LIMIT_SHARES", friction.SLIDER_LIMIT_SHARES)
+    constants = define_constants(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES) | CDefinitions(counts) | sliders
     constants |= define_quadrature("DRIVE_GAUSS", spring.GAUSS_RULE)
     if isinstance(function_graph.joint, MeasuredDrive):
-        return constants | Definitions({}, {"MIDLINE_IS_DATA": 1})
+        return constants | CDefinitions({}, {"MIDLINE_IS_DATA": 1})
     nodes = sum(
         len(f.result_expressions) for f in function_graph.functions if f.name == "midline_nodes"
     ) // len(SplineNode._fields)
-    return constants | Definitions({}, {"MIDLINE_NODES": nodes} if nodes else {})
+    return constants | CDefinitions({}, {"MIDLINE_NODES": nodes} if nodes else {})
 
 
 NATIVE_PART = NativeDefinition(

@@ -17,7 +17,7 @@ LOG_MANTISSA_BITS = 47
 _DECIMAL_DIGITS = 60
 _PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923078164")
 _ERF_NODES_PER_UNIT, _ERF_MAX_ARGUMENT, _ERF_TERM_COUNT = 4, 6, 15
-_EXPM1_TERM_COUNT, _N_SINE = 13, 8
+_EXPM1_TERM_COUNT, _SINE_TERM_COUNT = 13, 8
 
 
 @cache
@@ -41,18 +41,24 @@ def make_tables_header() -> str:
             f"EXP_TABLE[{TABLE_INTERVALS}][2]": [
                 _split_in_two((k * per_place).exp()) for k in range(TABLE_INTERVALS)
             ],
-            f"LOG_TABLE[{TABLE_INTERVALS}][3]": list(_log_rows()),
+            f"LOG_TABLE[{TABLE_INTERVALS}][3]": list(_make_log_rows()),
             f"EXPM1_SERIES[{_EXPM1_TERM_COUNT}]": [[1 / factorial(n + 2)] for n in range(_EXPM1_TERM_COUNT)],
-            f"ERF_TABLE[{_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1}][{_ERF_TERM_COUNT}]": list(_erf_rows()),
-            f"SINE_SERIES[{_N_SINE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_SINE)],
-            f"COSINE_SERIES[{_N_SINE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_SINE)],
+            f"ERF_TABLE[{_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1}][{_ERF_TERM_COUNT}]": list(
+                _make_erf_rows()
+            ),
+            f"SINE_SERIES[{_SINE_TERM_COUNT}]": [
+                [-((-1) ** n) / factorial(2 * n + 3)] for n in range(_SINE_TERM_COUNT)
+            ],
+            f"COSINE_SERIES[{_SINE_TERM_COUNT}]": [
+                [(-1) ** n / factorial(2 * n + 4)] for n in range(_SINE_TERM_COUNT)
+            ],
         }
     counts = {
         "TABLE_INTERVALS": TABLE_INTERVALS,
         "LOG_BITS": LOG_MANTISSA_BITS,
         "N_EXPM1_TERMS": _EXPM1_TERM_COUNT,
         "N_ERF_TERMS": _ERF_TERM_COUNT,
-        "N_SINE_TERMS": _N_SINE,
+        "N_SINE_TERMS": _SINE_TERM_COUNT,
     }
     return "\n".join(
         [
@@ -73,9 +79,9 @@ def _format_row(values: Sequence[float]) -> str:
     return text if len(values) == 1 else f"{{{text}}}"
 
 
-def _round_to_bits(value: Decimal, bits: int) -> float:
+def _round_to_bits(value: Decimal, fraction_bits: int) -> float:
     """Round a number to a multiple of 2^-bits."""
-    return float((value * 2**bits).to_integral_value()) * 2.0**-bits
+    return float((value * 2**fraction_bits).to_integral_value()) * 2.0**-fraction_bits
 
 
 def _split_in_two(value: Decimal) -> list[float]:
@@ -92,26 +98,26 @@ def _split_number(value: Decimal) -> Iterator[float]:
     yield float(value)
 
 
-def _log_rows() -> Iterator[list[float]]:
+def _make_log_rows() -> Iterator[list[float]]:
     """Rows of the table of the logarithm: 1/c, high and low part of log(c) for each interval.
 
     c is near the middle of the interval, and 1/c has few bits. In the interval of 1, c is exactly 1.
     """
     for interval in range(TABLE_INTERVALS):
         begin, end = (LOG_TABLE_START_BITS + (k << LOG_MANTISSA_BITS) for k in (interval, interval + 1))
-        middle = 0.5 * (_from_bits(begin) + _from_bits(end))
+        middle = 0.5 * (_double_from_bits(begin) + _double_from_bits(end))
         inverse = 1.0 if begin <= _BITS_OF_ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
         high = _round_to_bits(log, 42)
         yield [inverse, high, float(log - Decimal(high))]
 
 
-def _from_bits(bits: int) -> float:
+def _double_from_bits(bit_pattern: int) -> float:
     """Positive double with a given bit pattern."""
-    return float.fromhex(f"0x1.{bits & ((1 << 52) - 1):013x}p{(bits >> 52) - 1023}")
+    return float.fromhex(f"0x1.{bit_pattern & ((1 << 52) - 1):013x}p{(bit_pattern >> 52) - 1023}")
 
 
-def _erf_rows() -> Iterator[list[float]]:
+def _make_erf_rows() -> Iterator[list[float]]:
     """Taylor coefficients of erf about each node of its table: Hermite polynomials times a Gaussian."""
     for node in range(_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1):
         x = Decimal(node) / _ERF_NODES_PER_UNIT

@@ -59,7 +59,7 @@ _DERIVATIVE_FORMATS = {
     ca.OP_SIGN: "({0} > 0.0 ? 1.0 : 0.0) - ({0} < 0.0 ? 1.0 : 0.0)",
 }
 
-C_HELPERS = """/* exp(x) - 1; where the difference does not cancel by the faster exponential. */
+C_HELPER_FUNCTIONS = """/* exp(x) - 1; where the difference does not cancel by the faster exponential. */
 static inline double fast_expm1(double x)
 {
     return x < -0.7 || x > 0.7 ? portable_exp(x) - 1.0 : portable_expm1(x);
@@ -128,7 +128,7 @@ def format_function(
     body += [f"(void){name};" for name in unused]
     used_lines = _drop_unused_lines(body)
     lines = "\n".join(
-        f"    {line}" for line in (used_lines if is_derivative else _share_divisors(used_lines))
+        f"    {line}" for line in (used_lines if is_derivative else _replace_repeated_divisions(used_lines))
     )
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
@@ -153,7 +153,7 @@ def _simplify_quotient(operand_names: Sequence[str], operations: _Operations) ->
     return first if numerator == first else f"{first} == 0.0 ? 1.0 : 0.0"
 
 
-def _conditional_product(operand_names: Sequence[str], operations: _Operations) -> str | None:
+def _simplify_product(operand_names: Sequence[str], operations: _Operations) -> str | None:
     """C conditional expression for the product of a value and a condition (1 or 0); None: another product."""
     for condition, value in (operand_names, operand_names[::-1]):
         if operations.get(condition, (None, []))[0] in _CONDITION_OPERATIONS:
@@ -175,7 +175,7 @@ def _simplify_sum(operand_names: Sequence[str], operations: _Operations) -> str 
     return None
 
 
-_SIMPLIFICATIONS = {ca.OP_ADD: _simplify_sum, ca.OP_DIV: _simplify_quotient, ca.OP_MUL: _conditional_product}
+_SIMPLIFICATIONS = {ca.OP_ADD: _simplify_sum, ca.OP_DIV: _simplify_quotient, ca.OP_MUL: _simplify_product}
 _CONDITION_OPERATIONS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_NOT)
 
 
@@ -194,7 +194,7 @@ def _drop_unused_lines(code_lines: Sequence[str]) -> list[str]:
 _DIVISION_PATTERN = re.compile(r"const double (t\d+) = (\S+) / (t\d+|x\[\d+\]);")
 
 
-def _share_divisors(code_lines: Sequence[str]) -> list[str]:
+def _replace_repeated_divisions(code_lines: Sequence[str]) -> list[str]:
     """Replace several divisions by the same number by one reciprocal and products."""
     divisions = [_DIVISION_PATTERN.fullmatch(line) for line in code_lines]
     count = Counter(match[3] for match in divisions if match)

@@ -21,30 +21,32 @@ from .law_c import format_law
 
 RUNTIME_FOLDER = Path(__file__).parent.with_name("runtime")
 _GENERATED_FILES = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
-_law_texts: dict[tuple[object, ...], tuple[str, str]] = {}
+_cached_law_texts: dict[tuple[object, ...], tuple[str, str]] = {}
 
 
-def list_runtime_files(law_stems: Sequence[str] = ()) -> list[Path]:
+def list_runtime_files(law_file_stems: Sequence[str] = ()) -> list[Path]:
     """Paths of the hand-written C files of every FMU, and of files in `runtime/law/` with given stems."""
-    return sorted(p for p in RUNTIME_FOLDER.rglob("*.[ch]") if p.parent.name != "law" or p.stem in law_stems)
+    return sorted(
+        p for p in RUNTIME_FOLDER.rglob("*.[ch]") if p.parent.name != "law" or p.stem in law_file_stems
+    )
 
 
-def generate_sources(name: str, parameters: ParameterFile) -> dict[str, str]:
+def generate_sources(fmu_name: str, parameters: ParameterFile) -> dict[str, str]:
     """{file name: text} of all C sources of an FMU with its data, for both FMI versions.
 
     Raises ValueError if the parameters are of another joint.
     """
-    model = (MODELS | PARTNERS)[name].with_parameters(parameters.joint, parameters.values)
+    model = (MODELS | PARTNERS)[fmu_name].with_parameters(parameters.joint, parameters.values)
     parameter_split = split_parameters(model, parameters)
     files = generate_code(model, parameters, parameter_split)
     return files | {"data.c": make_fmu_data(model, parameters, parameter_split, files).make_source()}
 
 
-def generate_code(model: Model, parameters: ParameterFile, split: ParameterSplit) -> dict[str, str]:
+def generate_code(model: Model, parameters: ParameterFile, parameter_split: ParameterSplit) -> dict[str, str]:
     """{file name: text} of all C sources but data.c, the same for all parameter files of one structure."""
     native = load_native_definition(model)
     files = _read_handwritten_files(model, native)
-    files["law.h"], files["law.c"] = _generate_law(model, split, native)
+    files["law.h"], files["law.c"] = _generate_law(model, parameter_split, native)
     files |= {
         "variables.c": format_variables_c(model),
         "model.h": _format_model_header(model, parameters.values, native.history_layout.size),
@@ -52,22 +54,28 @@ def generate_code(model: Model, parameters: ParameterFile, split: ParameterSplit
     files |= {"elementary_tables.h": make_tables_header()}
     head = GENERATED_COMMENT.format(version=__version__, of="")
     files |= {n: head + files[n] for n in _GENERATED_FILES}
-    return dict(sorted((files | {"data.h": make_placeholder(model, split).make_header()}).items()))
+    return dict(sorted((files | {"data.h": make_placeholder(model, parameter_split).make_header()}).items()))
 
 
-def _generate_law(model: Model, split: ParameterSplit, definition: NativeDefinition) -> tuple[str, str]:
+def _generate_law(
+    model: Model, parameter_split: ParameterSplit, native_definition: NativeDefinition
+) -> tuple[str, str]:
     """Texts of law.h and law.c, generated once for all parameter files of one structure."""
-    key = model.name, model.parameters, split.parameter_class, split.structure_key
-    if key not in _law_texts:
-        _law_texts[key] = format_law(
-            build_graph(model, split, definition.add_functions, definition.is_tabulated), model, definition
+    key = model.name, model.parameters, parameter_split.parameter_class, parameter_split.structure_key
+    if key not in _cached_law_texts:
+        _cached_law_texts[key] = format_law(
+            build_graph(
+                model, parameter_split, native_definition.add_functions, native_definition.is_tabulated
+            ),
+            model,
+            native_definition,
         )
-    return _law_texts[key]
+    return _cached_law_texts[key]
 
 
-def read_token(files: Mapping[str, str]) -> str:
+def read_token(source_texts: Mapping[str, str]) -> str:
     """GUID or instantiation token in the file data.c of C sources."""
-    line = next(line for line in files["data.c"].splitlines() if ".token = " in line)
+    line = next(line for line in source_texts["data.c"].splitlines() if ".token = " in line)
     return line.split('"')[1]
 
 
@@ -90,7 +98,7 @@ def load_native_definition(model: Model) -> NativeDefinition:
 
 def _read_handwritten_files(model: Model, definition: NativeDefinition) -> dict[str, str]:
     """Read the hand-written C of a joint, {file name: text}: runtime, shared files, files of its own."""
-    paths = list_runtime_files((*definition.shared_files, "elementary"))
+    paths = list_runtime_files((*definition.shared_file_stems, "elementary"))
     joint_files = [path for path in find_source_folder(model).iterdir() if path.suffix in (".c", ".h")]
     header = [path.name for path in joint_files if path.suffix == ".h"]
     files = {"joint_model.h": "".join(f'#include "{name}"\n' for name in header)} if header else {}

@@ -8,7 +8,7 @@ import struct
 from hashlib import sha256
 from uuid import UUID
 
-from ..data import PLACEHOLDER, DataBlock
+from ..data import PLACEHOLDER_NAME, DataBlock
 
 _MACHO_MAGIC = struct.pack("<I", 0xFEEDFACF)
 _UUID_COMMAND, _SIGNATURE_COMMAND = 0x1B, 0x1D
@@ -18,7 +18,7 @@ _DIGEST_SIZE = 32
 """Size of a SHA-256 digest [bytes]."""
 
 
-def fill_library(library: bytes, placeholder: DataBlock, data: DataBlock, name: str) -> bytes:
+def fill_library(library: bytes, placeholder_data: DataBlock, data: DataBlock, fmu_name: str) -> bytes:
     """Insert data and name of an FMU into a compiled library.
 
     library          : compiled with the placeholder data and the placeholder name
@@ -27,61 +27,63 @@ def fill_library(library: bytes, placeholder: DataBlock, data: DataBlock, name: 
 
     Raises ValueError if the library does not contain the placeholder data exactly once.
     """
-    if library.count(placeholder.content) != 1 or len(placeholder.content) != len(data.content):
-        raise ValueError(f"{name}: the compiled part is not that of these data; remove it")
-    image = bytearray(library.replace(placeholder.content, data.content))
-    _rename(image, name.encode())
+    if library.count(placeholder_data.content) != 1 or len(placeholder_data.content) != len(data.content):
+        raise ValueError(f"{fmu_name}: the compiled part is not that of these data; remove it")
+    image = bytearray(library.replace(placeholder_data.content, data.content))
+    _replace_placeholder_name(image, fmu_name.encode())
     if image.startswith(_MACHO_MAGIC):
         _set_uuid(image, UUID(data.token))
-        _sign(image)
+        _update_signature(image)
     return bytes(image)
 
 
-def _rename(image: bytearray, name: bytes) -> None:
+def _replace_placeholder_name(library_bytes: bytearray, fmu_name: bytes) -> None:
     """Replace the placeholder name in every text of the library; the rest of the text is kept."""
-    start = image.find(PLACEHOLDER.encode())
+    start = library_bytes.find(PLACEHOLDER_NAME.encode())
     while start >= 0:
-        end = image.index(0, start)
-        image[start:end] = (name + image[start + len(PLACEHOLDER) : end]).ljust(end - start, b"\0")
-        start = image.find(PLACEHOLDER.encode(), end)
+        end = library_bytes.index(0, start)
+        library_bytes[start:end] = (fmu_name + library_bytes[start + len(PLACEHOLDER_NAME) : end]).ljust(
+            end - start, b"\0"
+        )
+        start = library_bytes.find(PLACEHOLDER_NAME.encode(), end)
 
 
-def _find_load_commands(image: bytes | bytearray) -> dict[int, int]:
+def _find_load_commands(library_bytes: bytes | bytearray) -> dict[int, int]:
     """{load command: byte offset} of a Mach-O library."""
-    (count,) = struct.unpack_from("<I", image, 16)
+    (count,) = struct.unpack_from("<I", library_bytes, 16)
     offsets, offset = {}, 32
     for _ in range(count):
-        command, size = struct.unpack_from("<II", image, offset)
+        command, size = struct.unpack_from("<II", library_bytes, offset)
         offsets[command] = offset
         offset += size
     return offsets
 
 
-def _set_uuid(image: bytearray, uuid: UUID) -> None:
+def _set_uuid(library_bytes: bytearray, uuid: UUID) -> None:
     """Set the UUID of a Mach-O library."""
-    offset = _find_load_commands(image)[_UUID_COMMAND] + 8
-    image[offset : offset + 16] = uuid.bytes
+    offset = _find_load_commands(library_bytes)[_UUID_COMMAND] + 8
+    library_bytes[offset : offset + 16] = uuid.bytes
 
 
-def _sign(image: bytearray) -> None:
+def _update_signature(library_bytes: bytearray) -> None:
     """Recompute the digests of the ad-hoc signature of a Mach-O library, if it has one."""
-    command = _find_load_commands(image).get(_SIGNATURE_COMMAND)
+    command = _find_load_commands(library_bytes).get(_SIGNATURE_COMMAND)
     if command is None:
         return
-    (signature,) = struct.unpack_from("<I", image, command + 8)
-    (blobs,) = struct.unpack_from(">I", image, signature + 8)
+    (signature,) = struct.unpack_from("<I", library_bytes, command + 8)
+    (blobs,) = struct.unpack_from(">I", library_bytes, signature + 8)
     for i in range(blobs):
-        (offset,) = struct.unpack_from(">I", image, signature + 16 + 8 * i)
+        (offset,) = struct.unpack_from(">I", library_bytes, signature + 16 + 8 * i)
         directory = signature + offset
-        if struct.unpack_from(">I", image, directory) == (_CODE_DIRECTORY_MAGIC,):
-            _digest_pages(image, directory)
+        if struct.unpack_from(">I", library_bytes, directory) == (_CODE_DIRECTORY_MAGIC,):
+            _update_page_digests(library_bytes, directory)
 
 
-def _digest_pages(image: bytearray, directory: int) -> None:
+def _update_page_digests(library_bytes: bytearray, directory_offset: int) -> None:
     """Recompute the page digests of the code directory at a byte offset."""
-    digests, _, _, pages, limit = struct.unpack_from(">IIIII", image, directory + 16)
-    page = 1 << image[directory + 39]
+    digests, _, _, pages, limit = struct.unpack_from(">IIIII", library_bytes, directory_offset + 16)
+    page = 1 << library_bytes[directory_offset + 39]
     for i in range(pages):
-        digest = sha256(image[i * page : min((i + 1) * page, limit)]).digest()
-        start = directory + digests + _DIGEST_SIZE * i
-        image[start : start + _DIGEST_SIZE] = digest
+        digest = sha256(library_bytes[i * page : min((i + 1) * page, limit)]).digest()
+        start = directory_offset + digests + _DIGEST_SIZE * i
+        library_bytes[start : start + _DIGEST_SIZE] = digest

@@ -10,15 +10,15 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-CACHE_VARIABLE = "JOINTFMU_CACHE"
+CACHE_ENVIRONMENT_VARIABLE = "JOINTFMU_CACHE"
 """Environment variable with the path of the cache folder."""
-COMPILER_CACHE_VARIABLE = "ZIG_GLOBAL_CACHE_DIR"
+COMPILER_CACHE_ENVIRONMENT_VARIABLE = "ZIG_GLOBAL_CACHE_DIR"
 """Environment variable with the compiler's cache; not set: a subfolder of the cache folder."""
 
 
 def cache_folder() -> Path:
     """Path of the cache folder: JOINTFMU_CACHE, or `jointfmu` in the user's cache folder."""
-    if path := os.environ.get(CACHE_VARIABLE):
+    if path := os.environ.get(CACHE_ENVIRONMENT_VARIABLE):
         return Path(path).absolute()
     home = {
         "win32": os.environ.get("LOCALAPPDATA") or "~/AppData/Local",
@@ -32,13 +32,13 @@ def compiled_model_folder() -> Path:
     return cache_folder() / "parts"
 
 
-def compiler_cache() -> Path:
+def compiler_cache_folder() -> Path:
     """Cache folder of the compiler: ZIG_GLOBAL_CACHE_DIR, or `zig` in the cache folder."""
-    path = os.environ.get(COMPILER_CACHE_VARIABLE)
+    path = os.environ.get(COMPILER_CACHE_ENVIRONMENT_VARIABLE)
     return Path(path).absolute() if path else cache_folder() / "zig"
 
 
-def check_access(path: Path) -> None:
+def check_cache_access(path: Path) -> None:
     """Check the owner and write access of a file or folder in the cache, and of its parents in the cache.
 
     A missing path, a path outside the cache, and any path on Windows pass.
@@ -48,7 +48,7 @@ def check_access(path: Path) -> None:
     """
     if sys.platform == "win32":
         return
-    roots = {cache_folder(), compiler_cache()}
+    roots = {cache_folder(), compiler_cache_folder()}
     ancestors = [path, *path.parents]
     last = max((i for i, ancestor in enumerate(ancestors) if ancestor in roots), default=-1)
     for ancestor in ancestors[: last + 1]:
@@ -56,23 +56,25 @@ def check_access(path: Path) -> None:
             status = ancestor.stat()
         except FileNotFoundError:
             continue
-        advice = f"expected a cache of your own (remove it, or set {CACHE_VARIABLE} to another folder)"
+        advice = (
+            f"expected a cache of your own (remove it, or set {CACHE_ENVIRONMENT_VARIABLE} to another folder)"
+        )
         if status.st_uid not in (os.geteuid(), 0):
             raise ValueError(f"{ancestor}: belongs to another user; {advice}")
         if status.st_mode & stat.S_IWOTH:
             raise ValueError(f"{ancestor}: every user may write to it; {advice}")
 
 
-def make_folder(folder: Path) -> None:
+def make_cache_folder(folder: Path) -> None:
     """Make a folder of the cache and its missing parents, accessible for this user only. Raises OSError."""
     for missing in reversed([path for path in (folder, *folder.parents) if not path.exists()]):
         missing.mkdir(mode=0o700, exist_ok=True)
 
 
-def count_files() -> tuple[int, int]:
+def count_cached_files() -> tuple[int, int]:
     """Number of files in the cache and their total size [bytes], without files that vanish meanwhile."""
     sizes = []
-    for folder, _, names in (entry for root in _own_folders() for entry in os.walk(root)):
+    for folder, _, names in (entry for root in _cache_subfolders() for entry in os.walk(root)):
         for name in names:
             with suppress(FileNotFoundError):
                 sizes.append(os.stat(os.path.join(folder, name)).st_size)
@@ -84,7 +86,7 @@ def clear_cache() -> None:
 
     Raises ValueError if it cannot be removed.
     """
-    for folder in _own_folders():
+    for folder in _cache_subfolders():
         try:
             shutil.rmtree(folder)
         except FileNotFoundError:
@@ -93,6 +95,6 @@ def clear_cache() -> None:
             raise ValueError(f"{folder}: cannot be removed ({error.strerror})") from None
 
 
-def _own_folders() -> tuple[Path, Path]:
+def _cache_subfolders() -> tuple[Path, Path]:
     """Folders that jointfmu fills: compiled models, and the compiler's default cache."""
     return compiled_model_folder(), cache_folder() / "zig"

@@ -26,7 +26,7 @@ def compile_ahead(fmu_names: Sequence[str], output_folder: Path) -> list[Path]:
     models = MODELS | PARTNERS
     if unknown := [name for name in fmu_names if name not in models]:
         raise ValueError(f"unknown FMU {unknown[0]!r}, allowed are {', '.join(models)}")
-    jobs = [job for name in fmu_names or models for job in list_structures(models[name])]
+    jobs = [job for name in fmu_names or models for job in list_code_structures(models[name])]
     output_folder.mkdir(parents=True, exist_ok=True)
     written_files = []
     for model, parameters in track_progress(jobs, "compile", len(jobs)):
@@ -40,7 +40,7 @@ def compile_ahead(fmu_names: Sequence[str], output_folder: Path) -> list[Path]:
     return written_files
 
 
-def list_structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
+def list_code_structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
     """Yield model and parameters once for each set of choices and laws that gives an FMU its own C code."""
     if model.name in PARTNERS:
         yield model, partner_parameters(model.name)
@@ -56,12 +56,12 @@ def list_structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
             yield law_model, chosen
 
 
-def _list_choices(model: Model, file: ParameterFile) -> Iterator[Mapping[str, object]]:
+def _list_choices(model: Model, parameter_file: ParameterFile) -> Iterator[Mapping[str, object]]:
     """Yield all combinations {name: value} of the choice parameters on which the C code depends."""
-    code = split_parameters(model, file).code_values
+    code = split_parameters(model, parameter_file).code_values
     allowed = {
         name: item.metadata["allowed"]
-        for name, item in flat_fields(type(file.values))
+        for name, item in flat_fields(type(parameter_file.values))
         if name in code and "allowed" in item.metadata
     }
     for values in product(*allowed.values()):

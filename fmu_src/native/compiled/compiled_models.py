@@ -24,21 +24,21 @@ from typing import NamedTuple
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.progress import set_step
+from jointfmu.progress import set_status_text
 
 from ...folders import find_source_folder
 from ...joint_parts.data import ParameterSplit
-from ..data import PLACEHOLDER, make_placeholder
-from .cache import check_access, compiled_model_folder, make_folder
-from .compiler import TARGETS, compile_libraries, select_units
+from ..data import PLACEHOLDER_NAME, make_placeholder
+from .cache import check_cache_access, compiled_model_folder, make_cache_folder
+from .compiler import ZIG_TARGETS, compile_libraries, select_source_files
 
-SHIPPED_FOLDER = Path(__file__).parent.with_name("parts")
+SHIPPED_MODEL_FOLDER = Path(__file__).parent.with_name("parts")
 """Folder of the compiled models in a wheel."""
 FMI_VERSIONS = ("2", "3")
 """Versions of FMI."""
 MAX_CACHED_FILES = 200
 """Largest number of files in a cache folder [1]; the oldest are deleted."""
-_MODEL_SUFFIX, _RESULT_SUFFIX = ".tar.xz", ".kept.xz"
+_MODEL_FILE_SUFFIX, _RESULT_FILE_SUFFIX = ".tar.xz", ".kept.xz"
 _COMPILER_PACKAGES = ("casadi", "ziglang")
 _SOURCE_SUFFIXES = (".py", ".c", ".h")
 _MEMBER_PATTERN = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
@@ -57,7 +57,7 @@ class CompiledModel(NamedTuple):
 
 
 def get_compiled_model(
-    model: Model, parameters: ParameterFile, split: ParameterSplit, platform: str | None = None
+    model: Model, parameters: ParameterFile, parameter_split: ParameterSplit, platform: str | None = None
 ) -> CompiledModel:
     """Get the compiled model of an FMU from the wheel or the cache, or compile and cache it.
 
@@ -66,43 +66,43 @@ def get_compiled_model(
     Raises ImportError if it must be compiled and a package is missing, ValueError if other users may write
     to the cache, ValueError and RuntimeError as `compiler.compile_libraries`.
     """
-    paths = _candidate_paths(compiled_model_name(model, split))
+    paths = _candidate_paths(compiled_model_name(model, parameter_split))
     if platform:
-        name = paths[-1].name.removesuffix(_MODEL_SUFFIX)
-        paths = (*paths, paths[-1].with_name(f"{name}-{platform}{_MODEL_SUFFIX}"))
-    for content in filter(None, map(_read_cached, paths)):
+        name = paths[-1].name.removesuffix(_MODEL_FILE_SUFFIX)
+        paths = (*paths, paths[-1].with_name(f"{name}-{platform}{_MODEL_FILE_SUFFIX}"))
+    for content in filter(None, map(_read_cache_file, paths)):
         with suppress(lzma.LZMAError, tarfile.TarError, ValueError, EOFError):
             return unpack_model(content)
-    targets = ((platform,), FMI_VERSIONS[-1:]) if platform else (tuple(TARGETS), FMI_VERSIONS)
-    compiled_model = compile_model(model, parameters, split, *targets)
+    targets = ((platform,), FMI_VERSIONS[-1:]) if platform else (tuple(ZIG_TARGETS), FMI_VERSIONS)
+    compiled_model = compile_model(model, parameters, parameter_split, *targets)
     with suppress(OSError):  # without cache the next build compiles again
-        _write_cached(paths[-1], pack_model(compiled_model))
+        _write_cache_file(paths[-1], pack_model(compiled_model))
     return compiled_model
 
 
-def cached_result(dependency: str, model: Model, compute_result: Callable[[], bytes]) -> bytes:
+def get_cached_result(dependency_text: str, model: Model, compute_result: Callable[[], bytes]) -> bytes:
     """Bytes that `compute_result` computes from a model, read from the cache if the sources are unchanged.
 
     dependency_text : text of everything else on which the result depends
 
     Raises ValueError if other users may write to the cache, and what `compute_result` raises.
     """
-    name = sha256(f"{dependency} {_digest_sources(model)}".encode()).hexdigest()[:32]
-    file = _candidate_paths(f"{model.name}-{name}{_RESULT_SUFFIX}")[-1]
-    if content := _read_cached(file):
+    name = sha256(f"{dependency_text} {_digest_sources(model)}".encode()).hexdigest()[:32]
+    file = _candidate_paths(f"{model.name}-{name}{_RESULT_FILE_SUFFIX}")[-1]
+    if content := _read_cache_file(file):
         with suppress(lzma.LZMAError):
             return lzma.decompress(content)
     result = compute_result()
     with suppress(OSError):
-        _write_cached(file, lzma.compress(result))
+        _write_cache_file(file, lzma.compress(result))
     return result
 
 
-def _read_cached(file: Path) -> bytes:
+def _read_cache_file(cache_path: Path) -> bytes:
     """Content of a cached file; empty if it is missing. Raises ValueError as `check_cache_access`."""
     with suppress(OSError):
-        check_access(file)
-        return file.read_bytes()
+        check_cache_access(cache_path)
+        return cache_path.read_bytes()
     return b""
 
 
@@ -125,31 +125,35 @@ def _defer_interrupt() -> Iterator[None]:
 def compile_model(
     model: Model,
     parameters: ParameterFile,
-    split: ParameterSplit,
+    parameter_split: ParameterSplit,
     platforms: Sequence[str],
-    versions: Sequence[str],
+    fmi_versions: Sequence[str],
 ) -> CompiledModel:
     """Compile the model of an FMU for platforms and FMI versions."""
-    set_step(f"compile {model.name}")
+    set_status_text(f"compile {model.name}")
     from ..code.generate import generate_code
 
     with _defer_interrupt():
-        sources = generate_code(model, parameters, split)
-    all_sources = sources | {"data.c": make_placeholder(model, split).make_source()}
+        sources = generate_code(model, parameters, parameter_split)
+    all_sources = sources | {"data.c": make_placeholder(model, parameter_split).make_source()}
     libraries_by_version = {
         fmi: compile_libraries(
-            model.name, all_sources, select_units(all_sources, fmi), platforms, stem=PLACEHOLDER
+            model.name,
+            all_sources,
+            select_source_files(all_sources, fmi),
+            platforms,
+            library_stem=PLACEHOLDER_NAME,
         )
-        for fmi in versions
+        for fmi in fmi_versions
     }
     return CompiledModel(sources, libraries_by_version)
 
 
-def compiled_model_name(model: Model, split: ParameterSplit) -> str:
+def compiled_model_name(model: Model, parameter_split: ParameterSplit) -> str:
     """File name of a compiled model, with a digest of structure and sources."""
     law = model.parameters
-    text = f"{model.name} {law.__module__}.{law.__qualname__} {split.structure_key} {_digest_sources(model)}"
-    return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_MODEL_SUFFIX}"
+    text = f"{model.name} {law.__module__}.{law.__qualname__} {parameter_split.structure_key} {_digest_sources(model)}"
+    return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_MODEL_FILE_SUFFIX}"
 
 
 def _candidate_paths(file_name: str) -> tuple[Path, ...]:
@@ -158,7 +162,9 @@ def _candidate_paths(file_name: str) -> tuple[Path, ...]:
     for package in _COMPILER_PACKAGES:
         with suppress(PackageNotFoundError):
             compilers.append(f"{package}-{version(package)}")
-    return SHIPPED_FOLDER / file_name, compiled_model_folder() / "_".join(compilers or ["none"]) / file_name
+    return SHIPPED_MODEL_FOLDER / file_name, compiled_model_folder() / "_".join(
+        compilers or ["none"]
+    ) / file_name
 
 
 def _digest_sources(model: Model) -> str:
@@ -228,23 +234,25 @@ def unpack_model(content: bytes) -> CompiledModel:
     return CompiledModel(sources, libraries_by_version)
 
 
-def _write_cached(file: Path, content: bytes) -> None:
+def _write_cache_file(cache_path: Path, content: bytes) -> None:
     """Write a cache file atomically, and delete the oldest files of its folder beyond MAX_CACHED_FILES.
 
     While other processes write into the folder, its listing can contain a file twice.
     """
-    make_folder(file.parent)
-    with tempfile.NamedTemporaryFile("wb", dir=file.parent, delete=False) as new:
+    make_cache_folder(cache_path.parent)
+    with tempfile.NamedTemporaryFile("wb", dir=cache_path.parent, delete=False) as new:
         new.write(content)
-    Path(new.name).replace(file)
-    times = {other: _modification_time(other) for other in file.parent.glob("*.xz") if other != file}
+    Path(new.name).replace(cache_path)
+    times = {
+        other: _modification_time(other) for other in cache_path.parent.glob("*.xz") if other != cache_path
+    }
     dated_files = sorted((time, other) for other, time in times.items() if time is not None)
     for _, old_file in dated_files[: max(len(dated_files) + 1 - MAX_CACHED_FILES, 0)]:
         old_file.unlink(missing_ok=True)
 
 
-def _modification_time(file: Path) -> float | None:
+def _modification_time(cache_path: Path) -> float | None:
     """Modification time of a file [s]; None if another process has just deleted it."""
     with suppress(FileNotFoundError):
-        return file.stat().st_mtime
+        return cache_path.stat().st_mtime
     return None

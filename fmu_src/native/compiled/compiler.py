@@ -11,9 +11,14 @@ from importlib import import_module
 from os import cpu_count
 from pathlib import Path
 
-from .cache import COMPILER_CACHE_VARIABLE, check_access, compiler_cache, make_folder
+from .cache import (
+    COMPILER_CACHE_ENVIRONMENT_VARIABLE,
+    check_cache_access,
+    compiler_cache_folder,
+    make_cache_folder,
+)
 
-TARGETS = {
+ZIG_TARGETS = {
     "x86_64-windows": "x86_64-windows-gnu",
     "x86_64-linux": "x86_64-linux-gnu.2.17",
     "aarch64-linux": "aarch64-linux-gnu.2.17",
@@ -39,11 +44,11 @@ _UCRT_LIBRARIES = ("convert", "heap", "math", "private", "runtime", "stdio", "st
 
 
 def compile_libraries(
-    name: str,
+    fmu_name: str,
     sources: Mapping[str, str],
     source_names: Sequence[str],
-    platforms: Sequence[str] = tuple(TARGETS),
-    stem: str = "",
+    platforms: Sequence[str] = tuple(ZIG_TARGETS),
+    library_stem: str = "",
     linker_options: Sequence[str] = (),
 ) -> dict[str, bytes]:
     """Compile C sources to {platform: shared library}; the libraries export the FMI functions.
@@ -60,7 +65,7 @@ def compile_libraries(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    options = {platform: _compiler_options(platform, stem or name) for platform in platforms}
+    options = {platform: _compiler_options(platform, library_stem or fmu_name) for platform in platforms}
     windows = Path(__file__).with_name("windows.c")
     folder = _write_source_folder(
         {**_read_fmi_headers(), windows.name: windows.read_text(encoding="utf-8"), **sources}
@@ -68,9 +73,9 @@ def compile_libraries(
 
     def compile_library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
-            file = Path(out) / library_file_name(stem or name, platform)
+            file = Path(out) / library_file_name(library_stem or fmu_name, platform)
             _run_zig(
-                f"{name} for {platform}",
+                f"{fmu_name} for {platform}",
                 folder,
                 "cc",
                 *options[platform],
@@ -85,20 +90,26 @@ def compile_libraries(
         return dict(zip(platforms, pool.map(compile_library, platforms), strict=True))
 
 
-def select_units(source_names: Iterable[str], version: str) -> list[str]:
+def select_source_files(source_names: Iterable[str], fmi_version: str) -> list[str]:
     """C files to compile for one FMI version."""
-    excluded = {"2": "fmi3.c", "3": "fmi2.c"}[version]
+    excluded = {"2": "fmi3.c", "3": "fmi2.c"}[fmi_version]
     return [name for name in source_names if name.endswith(".c") and name != excluded]
 
 
-def compile_webassembly(name: str, sources: Mapping[str, str], source_names: Sequence[str]) -> bytes:
+def compile_webassembly(module_name: str, sources: Mapping[str, str], source_names: Sequence[str]) -> bytes:
     """Compile C files to a WebAssembly reactor module; errors as `compile_libraries`."""
     import_module("ziglang")
     folder = _write_source_folder({**_read_fmi_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
-        file = Path(out) / f"{name}.wasm"
+        file = Path(out) / f"{module_name}.wasm"
         _run_zig(
-            f"{name} for WebAssembly", folder, "cc", *_WEBASSEMBLY_OPTIONS, *source_names, "-o", str(file)
+            f"{module_name} for WebAssembly",
+            folder,
+            "cc",
+            *_WEBASSEMBLY_OPTIONS,
+            *source_names,
+            "-o",
+            str(file),
         )
         return file.read_bytes()
 
@@ -108,7 +119,7 @@ def library_file_name(library_name: str, platform: str) -> str:
     return library_name + {"windows": ".dll", "linux": ".so", "darwin": ".dylib"}[platform.split("-")[1]]
 
 
-def join_universal(libraries: Sequence[bytes]) -> bytes:
+def join_universal_library(libraries: Sequence[bytes]) -> bytes:
     """Join macOS libraries for several processors into one universal file; their signatures stay valid."""
     page = 1 << 14
     header, body = struct.pack(">II", 0xCAFEBABE, len(libraries)), b""
@@ -126,7 +137,7 @@ def _compiler_options(platform: str, library_name: str) -> tuple[str, ...]:
 
     # Instruction scheduling for processors with AVX2; the code still runs on every x86_64.
     tuned = ("-mtune=haswell",) if platform.startswith("x86_64") else ()
-    common = ("-target", TARGETS[platform], *_LIBRARY_OPTIONS, *tuned)
+    common = ("-target", ZIG_TARGETS[platform], *_LIBRARY_OPTIONS, *tuned)
     # Only libraries of the system: otherwise zig first compiles its own runtime, of which nothing is linked.
     # No unwind tables: no C++ exception passes through this C; only the Windows ABI requires them.
     unix = ("-nostdlib", "-lc", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
@@ -160,12 +171,12 @@ def _read_fmi_headers() -> dict[str, str]:
 
 def _write_source_folder(files: Mapping[str, str]) -> Path:
     """Write files into a cache folder named by their digest; zig reuses results of the same path."""
-    advice = f"set {COMPILER_CACHE_VARIABLE} to a writable folder"
+    advice = f"set {COMPILER_CACHE_ENVIRONMENT_VARIABLE} to a writable folder"
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(files.items())).encode()).hexdigest()[:32]
-    folder = compiler_cache() / "jointfmu" / digest
+    folder = compiler_cache_folder() / "jointfmu" / digest
     try:
-        check_access(folder)
-        make_folder(folder)
+        check_cache_access(folder)
+        make_cache_folder(folder)
         for name, text in files.items():
             if not (folder / name).exists():
                 with tempfile.NamedTemporaryFile("wb", dir=folder, delete=False) as file:
@@ -176,12 +187,12 @@ def _write_source_folder(files: Mapping[str, str]) -> Path:
     return folder
 
 
-def _run_zig(target: str, folder: Path, *arguments: str) -> str:
+def _run_zig(result_name: str, folder: Path, *arguments: str) -> str:
     """Run zig in a folder and return its output; `result_name` is the name of the result in errors."""
     process = subprocess.run(
         [sys.executable, "-m", "ziglang", *arguments],
         cwd=folder,
-        env={**os.environ, COMPILER_CACHE_VARIABLE: str(compiler_cache())},
+        env={**os.environ, COMPILER_CACHE_ENVIRONMENT_VARIABLE: str(compiler_cache_folder())},
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
@@ -191,5 +202,5 @@ def _run_zig(target: str, folder: Path, *arguments: str) -> str:
     if process.returncode:
         lines = process.stderr.splitlines()
         first = next((line for line in lines if "error" in line), process.stderr.strip() or "no message")
-        raise RuntimeError(f"{target}: {first}")
+        raise RuntimeError(f"{result_name}: {first}")
     return process.stdout

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import Fmu, here_alone
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.export import tabulate_normal_force
 from jointfmu_tools.joints.bolted_joint.fit.preload import joint_stiffness
@@ -65,7 +65,7 @@ def file_of_sides(request):
 
 @pytest.fixture(scope="module", name="spring")
 def spring_of_sides(file):
-    return BoltedJointSpring.of(file.values)
+    return BoltedJointSpring.for_joint(file.values)
 
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
@@ -84,7 +84,7 @@ def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):
 
 def without_bolts(spring):
     """The same joint whose bolts have no stiffness."""
-    return BoltedJointSpring.of(replace(spring.joint, bolt_stiffness=0.0))
+    return BoltedJointSpring.for_joint(replace(spring.joint, bolt_stiffness=0.0))
 
 
 # The law
@@ -93,11 +93,11 @@ def without_bolts(spring):
 def test_a_bolt_pulls_or_has_no_force_and_its_gap_makes_up_for_the_rest():
     springs = BoltSprings(np.zeros((5, 2)), 1.0, 2e8, 1e-6)
     tightened, elongation = np.full(5, 1e4), np.array([1e-5, 0.0, -4e-5, -5e-5, -8e-5])
-    force, gap = springs.force(tightened, elongation), springs.gap(tightened, elongation)
+    force, gap = springs.bolt_force(tightened, elongation), springs.head_gap(tightened, elongation)
     np.testing.assert_allclose(force, [1.2e4, 1e4, 2e3, 0.0, 0.0], atol=1e-9)
     np.testing.assert_allclose(gap, [0.0, 0.0, 0.0, 0.0, 3e-5], atol=1e-18)
     np.testing.assert_allclose(force, tightened + 2e8 * (elongation + gap), atol=1e-9)
-    np.testing.assert_array_equal(springs.tangent(tightened, elongation), [2e8, 2e8, 2e8, 1e8, 0.0])
+    np.testing.assert_array_equal(springs.tangent_stiffness(tightened, elongation), [2e8, 2e8, 2e8, 1e8, 0.0])
 
 
 @pytest.mark.parametrize("positions", [[[0.01, 0.02]], [[-0.08, -0.03], [0.06, 0.05]], None])
@@ -105,7 +105,7 @@ def test_a_field_without_a_list_of_bolts_has_places_with_its_means(positions):
     """Those of one bolt, of two, and of four on a rectangle are the places themselves."""
     rectangle = [[x, y] for x in (-0.07, 0.09) for y in (-0.03, 0.04)]
     places = np.array(positions or rectangle)
-    found = bolt_law._rectangle(*position_means(places))
+    found = bolt_law._equivalent_positions(*position_means(places))
     np.testing.assert_allclose(position_means(found), position_means(places), atol=1e-15)
     apart = np.abs(found[:, None] - places).sum(axis=-1)
     np.testing.assert_allclose(apart.min(axis=1), 0.0, atol=1e-9)
@@ -123,7 +123,7 @@ def test_a_field_may_list_its_bolts():
 def test_one_row_of_bolts_takes_no_share_of_a_moment():
     """Also where their mean is not their place to the last bit."""
     row = np.column_stack([[-0.05, 0.0, 0.05], [0.1, 0.1, 0.1]])
-    np.testing.assert_array_equal(bolt_law.moment_lever(row), 0.0)
+    np.testing.assert_array_equal(bolt_law.bolt_force_per_moment(row), 0.0)
 
 
 # The joint
@@ -163,7 +163,7 @@ def test_no_bolt_pushes(spring, sweep):
 
 def test_a_lifted_bolt_has_no_stiffness():
     """All of it is gone beyond lift-off, half of it at lift-off itself; between rigid sides."""
-    spring = BoltedJointSpring.of(rigid_file().values)
+    spring = BoltedJointSpring.for_joint(rigid_file().values)
     free, six = without_bolts(spring), np.zeros(6)
     x, y = spring.bolts.position.T
     for part, expected in ((0.9, 1.0), (1.0, 0.5), (1.1, 0.0)):
@@ -176,7 +176,7 @@ def test_a_lifted_bolt_has_no_stiffness():
 
 def test_stiffness_is_that_of_the_forces_on_both_sides_of_lift_off(file):
     """All bolts pull, some of them, or none."""
-    spring, seen = BoltedJointSpring.of(file.values), set()
+    spring, seen = BoltedJointSpring.for_joint(file.values), set()
 
     for part in (0.5, 0.8, 1.6, 2.5):
         six = part * LIFT_OFF * MIXED
@@ -195,7 +195,7 @@ def test_a_closed_elastic_cycle_through_lift_off_has_no_work(file):
     By Simpson's rule, whose error is that of the corners. A bolt that lost its force at once would miss
     14.2 kN over some of 47 um.
     """
-    spring, depth, lifted = BoltedJointSpring.of(file.values), 1.3 * LIFT_OFF, False
+    spring, depth, lifted = BoltedJointSpring.for_joint(file.values), 1.3 * LIFT_OFF, False
     angle = np.linspace(0.0, 2.0 * np.pi, 401)
     way = np.zeros((angle.size, 6))
     way[:, 2] = -0.5 * depth * (1.0 - np.cos(angle))
@@ -257,7 +257,7 @@ def random_motions(rng, steps):
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
 def test_the_fmu_lifts_its_bolts_as_the_package(file, spring, tmp_path, flavour):
     with here_alone():
-        build(["BoltedJoint"], [flavour], file, tmp_path)
+        build_fmus(["BoltedJoint"], [flavour], file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     fmu, memory = Fmu(path).start({"preload": PRELOAD}), spring.initial_history()
     _, memory = at(spring, *STILL, memory=memory)
@@ -277,7 +277,7 @@ def test_the_fmu_lifts_its_bolts_as_the_package(file, spring, tmp_path, flavour)
 def test_derivatives_are_those_of_the_forces_on_both_sides(file, tmp_path):
     """By normal motions, by the preload and by the moment."""
     with here_alone():
-        build(["BoltedJoint"], ["fmi2"], file, tmp_path)
+        build_fmus(["BoltedJoint"], ["fmi2"], file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     names = [*FORCES, *(f"F_bolt[{j + 1}]" for j in range(4) if file.values.elastic)]
     inputs = {"preload": 1e-1, "moment": 1e-3, "s_rel_z": 1e-10, "theta_x": 1e-9, "theta_y": 1e-9}
@@ -301,7 +301,7 @@ def test_derivatives_are_those_of_the_forces_on_both_sides(file, tmp_path):
 
 
 def test_the_pull_curve_is_that_of_bolts_that_lift_off():
-    spring = BoltedJointSpring.of_nodes(rigid_file(bolt_stiffness=2e10).values)
+    spring = BoltedJointSpring.for_interface_nodes(rigid_file(bolt_stiffness=2e10).values)
     table = tabulate_normal_force(spring, PRELOAD, 0.0, 1e-3)
     s, force, k = table.rows.T
     lift_off = (PRELOAD - EMBEDDING) / 2e10
@@ -315,7 +315,7 @@ def test_the_pull_curve_is_that_of_bolts_that_lift_off():
 def test_fits_over_preload_begin_with_bolts_at_lift_off():
     joint = rigid_file().values
     loads = np.array([0.0, EMBEDDING, PRELOAD])
-    spring = BoltedJointSpring.of_nodes(joint)
+    spring = BoltedJointSpring.for_interface_nodes(joint)
     exact = [at(spring, *STILL, preload=load)[0]["K_zz"] for load in loads]
     np.testing.assert_allclose(joint_stiffness(joint, loads), exact, rtol=1e-6)
 
@@ -323,8 +323,8 @@ def test_fits_over_preload_begin_with_bolts_at_lift_off():
 @pytest.mark.slow
 @needs("gmsh")
 def test_bolts_under_an_uneven_pull_have_no_negative_force(elastic_file):
-    spring = BoltedJointSpring.of(elastic_file.values)
-    most = (PRELOAD - EMBEDDING) / np.max(-spring.bolts.lever)
+    spring = BoltedJointSpring.for_joint(elastic_file.values)
+    most = (PRELOAD - EMBEDDING) / np.max(-spring.bolts.force_per_moment)
     found = bolt_forces(spring, PRELOAD, 1.2 * most, np.linspace(0.0, 1e4, 3))
     assert len(found)
     assert np.min(found) >= 0.0

@@ -40,7 +40,7 @@ MASS = np.diag([100.0, 100.0, 100.0, 4.0, 3.0, 5.0])
 
 def all_nodes(preload: float, moment: float) -> Array:
     """Stiffness (6, 6) of all nodes in full stick, each with the law's own stiffness."""
-    nodes = BoltedJointSpring.of_nodes(JOINT)
+    nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     shape = nodes.points
     k = (
         JOINT.A_0
@@ -109,7 +109,7 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
     """A block pushed in a turned frame gets the turned force, also in partial slip."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turned = np.array([[c, -s], [s, c]])
-    spring = BoltedJointSpring.of(JOINT)
+    spring = BoltedJointSpring.for_joint(JOINT)
     rest = spring.initial_history()
 
     def shear(u: Array) -> Array:
@@ -253,8 +253,8 @@ def swings(first: float, least: float) -> Array:
     first, B, and does no work. So their distance 2 s follows from q s = 2 I(s), I the integral of B, and the
     force there is q - 2 B(s).
     """
-    nodes = BoltedJointSpring.of_nodes(JOINT)
-    approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction.foundation()
+    nodes = BoltedJointSpring.for_interface_nodes(JOINT)
+    approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction_law.foundation()
     share, limit = nodes.points.area_share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
 
     def force(u: float) -> float:

@@ -26,13 +26,13 @@ each_load = pytest.mark.parametrize(("preload", "moment"), LOADS)
 
 @pytest.fixture(scope="module")
 def spring():
-    return BoltedJointSpring.of(JOINT)
+    return BoltedJointSpring.for_joint(JOINT)
 
 
 @pytest.fixture(scope="module")
 def elastic():
     """Without memory, on all nodes."""
-    return BoltedJointSpring.of_nodes(replace(JOINT, memory=False))
+    return BoltedJointSpring.for_interface_nodes(replace(JOINT, memory=False))
 
 
 def at(place, **inputs):
@@ -311,7 +311,7 @@ def test_elastic_joint_returns_its_energy(elastic):
 
 def test_elastic_joint_warns_beyond_its_friction():
     """Where the linear shear force would be the limit the traction t u/R has 1/sqrt 2 of it."""
-    spring = BoltedJointSpring.of(replace(JOINT, memory=False))
+    spring = BoltedJointSpring.for_joint(replace(JOINT, memory=False))
     slips = {}
     for u in (5e-7, 2e-6):
         inputs = at(u * np.eye(6)[0])
@@ -324,7 +324,7 @@ def test_elastic_joint_warns_beyond_its_friction():
     assert text.startswith("slip = ")
     assert "the shear force exceeds the friction limit" in text
     assert "elastic" not in text
-    remembers = BoltedJointSpring.of(JOINT)
+    remembers = BoltedJointSpring.for_joint(JOINT)
     assert not MODEL.find_warnings(remembers, inputs | MODEL.evaluate(remembers, inputs))
 
 
@@ -334,7 +334,7 @@ def test_elastic_joint_warns_beyond_its_friction():
 @each_load
 def test_without_turns_the_forces_are_those_of_all_nodes(spring, preload, moment):
     """The points that carry the normal force: within 1e-5 of that of the bolts."""
-    nodes = BoltedJointSpring.of_nodes(JOINT)
+    nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     for z in (-3e-6, -1e-6, 1e-6, 3e-6):
         few, all_ = (
             rest(s, np.array([0, 0, z, 0, 0, 0]), preload=preload, moment=moment) for s in (spring, nodes)
@@ -346,7 +346,7 @@ def test_without_turns_the_forces_are_those_of_all_nodes(spring, preload, moment
 @pytest.mark.parametrize("memory", [True, False])
 @each_load
 def test_the_stiffness_matrix_is_symmetric_and_holds_the_outputs(preload, moment, memory):
-    spring = BoltedJointSpring.of(replace(JOINT, memory=memory))
+    spring = BoltedJointSpring.for_joint(replace(JOINT, memory=memory))
     loads = {"preload": preload, "moment": moment}
     # of SIZE, far from slip; the tilted joint has patches that open
     K = stiffness(spring, np.array([0, 0, 5e-7, 3e-6, 2e-6, 0]), 1e-6 * SIZE, **loads)
@@ -391,7 +391,7 @@ def test_tilt_turns_back_and_moment_alone_does_not_turn(spring):
 def test_a_turned_frame_gives_turned_forces(degrees, memory):
     """Without memory to round-off; sliders stand on circles that do not turn: 2 % of a bolt's
     force, 6 % of the heat of the first slip."""
-    spring = BoltedJointSpring.of(replace(JOINT, memory=memory))
+    spring = BoltedJointSpring.for_joint(replace(JOINT, memory=memory))
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     both = np.kron(np.eye(2), R)

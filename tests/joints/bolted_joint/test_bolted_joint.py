@@ -41,7 +41,7 @@ def changed(**values):
 
 @pytest.fixture(scope="module")
 def spring():
-    return BoltedJointSpring.of_nodes(JOINT)
+    return BoltedJointSpring.for_interface_nodes(JOINT)
 
 
 @pytest.fixture(scope="module")

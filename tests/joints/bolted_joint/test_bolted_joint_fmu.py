@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from conftest import here_alone
 from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.picture import CELL_OVERLAP, _cell_sizes, draw_plan
 from jointfmu_tools.joints.bolted_joint.report import picture_figure
 from jointfmu_tools.pages.laboratory.describe import list_modules
-from jointfmu_tools.pages.report.course import LoadHistory
+from jointfmu_tools.pages.report.load_history import LoadHistory
 from jointfmu_tools.run.ramps import ramp
 from natives import SAME as SAME_FLAVOURS
 from natives import Host, close, jacobian, near, package
@@ -38,7 +38,7 @@ MOVED = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 
 def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None:
     joint, instance = parameters("BoltedJoint"), fmu("BoltedJoint").start()
-    spring = BoltedJointSpring.of(joint)
+    spring = BoltedJointSpring.for_joint(joint)
     for preload, moment in ((5e3, 0.0), (9e3, 600.0), (2e4, -1500.0)):
         found = instance.at({"preload": preload, "moment": moment})
         node = preload_pressure(joint, spring.points, preload, moment)
@@ -79,7 +79,7 @@ def test_springs_that_just_touch_have_a_friction(host: Host, tmp_path: Path) -> 
     none: after some hundred steps of this way forces were no numbers, whatever came then."""
     file = Path(str(files("jointfmu_models"))) / "bolted_joint/box_specimen_roughness.toml"
     with here_alone("3"):
-        build(["BoltedJoint"], ["fmi3"], load_parameter_file(file), tmp_path)
+        build_fmus(["BoltedJoint"], ["fmi3"], load_parameter_file(file), tmp_path)
     joint, heat = host("BoltedJoint", folder=tmp_path).start({"preload": 1e4}), 0.0
     most = dict(zip(MOVED, (2.6e-6, 8.4e-7, 6.8e-7, 4.6e-5, 6.8e-6, 7.6e-6), strict=True))
     for k in range(1200):
@@ -301,10 +301,12 @@ COMPILED = 1e-9
 @pytest.mark.slow
 @pytest.mark.parametrize("law", ["zhao2018", "roughness"])
 def test_the_map_is_the_pressure_at_the_points(law):
-    module = next(m for m in list_modules() if m.model.name == "BoltedJoint" and m.files[0].law == law)
-    joint = module.files[0].values
+    module = next(
+        m for m in list_modules() if m.model.name == "BoltedJoint" and m.parameter_files[0].law == law
+    )
+    joint = module.parameter_files[0].values
     shape = contact_points(joint.pattern)
-    spring = BoltedJointSpring.of_nodes(joint, shape)
+    spring = BoltedJointSpring.for_interface_nodes(joint, shape)
     instance = Instance(module, module.compile_module())
     for moment, apart, turn in ((0.0, 0.0, 0.0), (1500.0, 2e-7, 1e-6)):
         given = {"preload": 12e3, "moment": moment, "s_rel_z": apart, "theta_x": turn, "theta_y": -turn}
@@ -334,7 +336,7 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
     file = load_default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
     model = MODELS["BoltedJoint"]
     course = LoadHistory(model, file)
-    small, *_, large = course.compute_loops().compute_rows()
+    small, *_, large = course.compute_loops().compute_loop_results()
     point = {**course.loop_inputs, "s_rel_x": 0.0}
     stiff = model.evaluate(course.spring, point)["K_xx"]
     assert small["secant_stiffness"] > 0.25 * stiff

@@ -380,7 +380,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
     with here_alone():
         assert cli.main(command) == 0
     instance = Fmu(tmp_path / "fmi2" / "BoltedJoint.fmu")
-    spring = BoltedJointSpring.of(load_parameter_file(path).values)
+    spring = BoltedJointSpring.for_joint(load_parameter_file(path).values)
     for preload, moment, s_rel in (
         (3e4, 0.0, STILL),
         (2e4, 300.0, (1e-7, -2e-7, 3e-7)),
@@ -405,7 +405,9 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
         path = tmp_path / f"{field}.toml"
         words = ["--plate", "60x60", "--bolts", "M16", "--grip", "30", *FACES, "--preload", "60e3"]
         made(capsys, *words, "--field", field, path=path)
-        files[field] = BoltedJointSpring.of(load_parameter_file(path).values).evaluate(6e4, 0.0, STILL, STILL)
+        files[field] = BoltedJointSpring.for_joint(load_parameter_file(path).values).evaluate(
+            6e4, 0.0, STILL, STILL
+        )
     for name, within in (
         ("K_zz", 0.01),
         ("K_rx", 0.25),

@@ -12,7 +12,7 @@ from clients import needs
 from conftest import refused_line
 from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_tools import cli
-from jointfmu_tools.cli.commands.assembly import with_assembly
+from jointfmu_tools.cli.commands.assembly import replace_assembly_parameters
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
@@ -20,9 +20,9 @@ from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
 from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
+from jointfmu.joints.bolted_joint.compliances import STIFFNESS_UNITS, Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
-from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, preload_pressure
+from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, find_contradictions, preload_pressure
 from jointfmu.mechanics.footprint.plate import BoltedPlate, equivalent_bolt_rows, plate_cells, pressure_decay
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
@@ -67,18 +67,18 @@ def test_every_layout_balances_its_bolts(name):
     assert areas.sum() == pytest.approx(pattern.area, rel=5e-4)  # the edge of a hole in eighths of a cell
     assert shape.area_share.sum() == pytest.approx(1.0, rel=SUM)
     assert shape.area_share @ shape.position == pytest.approx([0.0, 0.0], abs=SUM)
-    assert shape.area_share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
+    assert shape.area_share @ shape.preload_pressure_ratio == pytest.approx(1.0, rel=SUM)
     # the centre of pressure is that of the bolts, from the centroid of plate without holes
     _, places = plate_cells(pattern)
     centroid = areas @ places / areas.sum()
-    centre = shape.area_share @ (shape.preload_shape[:, None] * shape.position)
-    assert centre == pytest.approx(pattern.bolts.mean(axis=0) - centroid, abs=1e-12)
+    centre = shape.area_share @ (shape.preload_pressure_ratio[:, None] * shape.position)
+    assert centre == pytest.approx(pattern.bolts_from_middle.mean(axis=0) - centroid, abs=1e-12)
     # a moment about x changes no force and is balanced by the pressure
-    assert shape.area_share @ shape.moment_shape == pytest.approx(0.0, abs=1e-11)
-    assert shape.area_share @ (shape.moment_shape * shape.position[:, 1]) == pytest.approx(
+    assert shape.area_share @ shape.moment_pressure_ratio == pytest.approx(0.0, abs=1e-11)
+    assert shape.area_share @ (shape.moment_pressure_ratio * shape.position[:, 1]) == pytest.approx(
         pattern.equivalent_bolt_rows[1], rel=1e-11
     )
-    assert np.all(shape.preload_shape >= 0.0)
+    assert np.all(shape.preload_pressure_ratio >= 0.0)
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
@@ -107,7 +107,7 @@ def test_one_pressure_falls_as_the_polynomial_and_has_the_moment_of_its_cone():
     square = np.trapezoid(p * r**3, r) / np.trapezoid(p * r, r)
     assert square == pytest.approx(0.5 * (a**2 + (0.5 * pattern.cone_diameter) ** 2), rel=1e-6)
     shape = pattern.pressure_distribution()  # and the cells have it too
-    found = shape.area_share @ (shape.preload_shape * np.sum(shape.position**2, axis=1))
+    found = shape.area_share @ (shape.preload_pressure_ratio * np.sum(shape.position**2, axis=1))
     assert found == pytest.approx(square, rel=0.01)
 
 
@@ -143,7 +143,7 @@ def test_the_contact_of_one_row_opens_where_the_rows_say():
     pattern = plate(*LAYOUTS["one row"])
     one, shape = joint(pattern), pattern.pressure_distribution()
     opening = 1e4 * one.row_distance * one.row_bolts
-    pressed = shape.preload_shape > 0.0
+    pressed = shape.preload_pressure_ratio > 0.0
     held, open_ = (
         np.array([preload_pressure(one, shape, 1e4, sign * part * opening)[pressed] for sign in (1.0, -1.0)])
         for part in (0.999, 1.001)
@@ -180,7 +180,7 @@ def test_a_plate_that_cannot_be_is_refused(changes, words):
 )
 def test_a_file_that_contradicts_itself_is_refused(tmp_path, changes, text):
     one = joint(plate(*LAYOUTS["two by two"]))
-    assert list(contradictions(one)) == []
+    assert list(find_contradictions(one)) == []
     path = tmp_path / "joint.toml"
     file = replace(load_default("bolted_joint"), values=replace(one, **changes), roughness={})
     path.write_text(format_parameter_file(file))
@@ -219,15 +219,15 @@ def test_one_row_says_what_to_do():
 
 def normal(pattern, **changes):
     """The joint on the points of its normal force, on which its friction is too: no bolt knows of it."""
-    return BoltedJointSpring.of_nodes(joint(pattern, **changes), contact_points(pattern))
+    return BoltedJointSpring.for_interface_nodes(joint(pattern, **changes), contact_points(pattern))
 
 
 def test_without_bolt_stiffness_nothing_changes():
     old = load_default("bolted_joint").values
     assert old.bolt_stiffness == 0.0
     state = (9e3, 800.0, (1e-6, -2e-6, 5e-7), (1e-3, 2e-3, -1e-3))
-    plain = BoltedJointSpring.of(old).evaluate(*state)
-    again = BoltedJointSpring.of(replace(old, bolt_stiffness=1e8)).evaluate(*state)
+    plain = BoltedJointSpring.for_joint(old).evaluate(*state)
+    again = BoltedJointSpring.for_joint(replace(old, bolt_stiffness=1e8)).evaluate(*state)
     same = {"f_x", "f_y", "K_xx", "K_yy", "C_xx", "C_zz", "K_rz", "p_mean", "p_max", "eta_t", "eta_n"}
     assert {name: plain[name] for name in same} == {name: again[name] for name in same}
     assert again["f_z"] - plain["f_z"] == pytest.approx(-8e8 * 5e-7, rel=1e-9)
@@ -281,7 +281,7 @@ def test_each_bolt_pulls_at_its_place(name):
     s_z, turn = 1e-4, (2e-4, -3e-4, 1e-4)
     without, with_ = (one.evaluate(3e4, 0.0, (0.0, 0.0, s_z), STILL, turn) for one in (free, held))
     areas, places = plate_cells(pattern)
-    x, y = (pattern.bolts - areas @ places / areas.sum()).T
+    x, y = (pattern.bolts_from_middle - areas @ places / areas.sum()).T
     tension = M12 * (s_z + turn[0] * y - turn[1] * x)
     cut = 1e-3 * M12 * s_z  # the centroid of cells is that of the plate within their cut at a hole's edge
     assert with_["f_z"] - without["f_z"] == pytest.approx(-tension.sum(), rel=1e-3, abs=cut)
@@ -298,7 +298,7 @@ PLATE = Plate(length=0.2, width=0.1, thickness=0.02, E=210e9, nu=0.3, density=78
 @pytest.mark.parametrize("x", [(0.0,), (-0.05, 0.0, 0.05)])
 def test_the_default_joint_takes_one_row(x):
     bolts = BoltList(x=x, y=(0.0,) * len(x), hole_diameter=0.0135, head_diameter=0.018)
-    joint = with_assembly(
+    joint = replace_assembly_parameters(
         load_default("bolted_joint"), Assembly("row", PLATE, PLATE, bolts), include_bolts=True
     ).values
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == (len(x), 1.0, 0.018)
@@ -322,7 +322,7 @@ def test_the_bolt_that_gets_most_decides_when_the_interface_opens():
     even = found._replace(bolt_force=np.full((3, 6), 0.02))
     assert even.opening_load(1e3) == pytest.approx(3e3 / (1.0 - 0.06))
     assert even._replace(bolt_force=np.zeros((3, 6))).opening_load(1e3) == pytest.approx(3e3)
-    assert [row[2][3] for row in found.rows()] == [0.0, 0.0, 1.0, 0.0, 1.0, 0.0]
+    assert [row[2][3] for row in found.table_rows()] == [0.0, 0.0, 1.0, 0.0, 1.0, 0.0]
 
 
 def made(capsys, *words):
@@ -385,9 +385,9 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
     )
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
     values = load_parameter_file(path).values
-    found = BoltedJointSpring.of(values).compliances(15e3)
-    np.testing.assert_allclose(found.total, seen[0].compliances.total, rtol=2e-3)
-    for name, compliance in zip(DIRECTIONS, found.total, strict=True):
+    found = BoltedJointSpring.for_joint(values).compliances(15e3)
+    np.testing.assert_allclose(found.total_compliance, seen[0].compliances.total, rtol=2e-3)
+    for name, compliance in zip(STIFFNESS_UNITS, found.total_compliance, strict=True):
         whole = facts[f"joint_K_{name if name.startswith('r') else 2 * name}"]
         assert 1.0 / compliance == pytest.approx(whole, rel=1e-9), name
     drawn = PlaneLayout.from_joint(values)
@@ -454,4 +454,4 @@ def test_embedding_that_takes_all_of_the_preload_is_refused(tmp_path, capsys):
     page = make_documentation(MODELS["BoltedJoint"], replace(file, inputs={}))["index.html"]
     assert b"Loops at preload = 17.4 kN" in page
     model = MODELS["BoltedJoint"].with_parameters("bolted_joint", file.values)
-    assert model.load_cycle.settings["preload"] == 24e3
+    assert model.load_cycle.variable_values["preload"] == 24e3

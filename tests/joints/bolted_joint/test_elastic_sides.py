@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import REFINEMENT, Fmu, here_alone, refused_line
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.native import page
 from jointfmu_tools import cli
 from jointfmu_tools.common.shown import format_quantity
@@ -23,7 +23,7 @@ from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
 from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
-from jointfmu_tools.pages.report.course import LoadHistory
+from jointfmu_tools.pages.report.load_history import LoadHistory
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 from oracles.joint_elements import pole_deviations
@@ -31,7 +31,7 @@ from oracles.joint_elements import pole_deviations
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import equilibrium
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
-from jointfmu.joints.bolted_joint.law import interface_alone
+from jointfmu.joints.bolted_joint.law import with_rigid_members
 from jointfmu.parameters import format_parameter_file, load_parameter_file
 
 pytestmark = [pytest.mark.slow, needs("gmsh")]
@@ -66,7 +66,7 @@ def made(tmp_path_factory):
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]
                 assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
             file = load_parameter_file(path)
-            spring = BoltedJointSpring.of(file.values)
+            spring = BoltedJointSpring.for_joint(file.values)
             found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen["last"].compliances)
         return found[words]
 
@@ -77,7 +77,7 @@ def embedded(joint, path):
     """The same joint whose bolts lose 800 N, in a file of its own."""
     file = joint.file.with_values({"embedding": 800.0}, "user", "test")
     path.write_text(format_parameter_file(file))
-    return SimpleNamespace(path=path, file=file, spring=BoltedJointSpring.of(file.values))
+    return SimpleNamespace(path=path, file=file, spring=BoltedJointSpring.for_joint(file.values))
 
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
@@ -149,7 +149,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     bare = replace(file, values=replace(file.values, bodies=replace(file.values.bodies, outline=())))
     assert format_quantity((), "m") == ("none", "")
     assert [row.value for row in page._parameter_rows(bare) if row.name == "bodies.outline"] == ["none"]
-    alone = interface_alone(joint.file.values)
+    alone = with_rigid_members(joint.file.values)
     assert report.stiffness_figures(LoadHistory(model, replace(joint.file, values=alone))) == []
 
 
@@ -215,7 +215,7 @@ def test_a_load_at_the_faces_hardly_reaches_the_bolts(made):
 def test_embedding_takes_of_the_preload(made):
     """All is as under the preload that is left; of a preload that is no larger nothing is."""
     joint = made(*FOUR, preload=15e3)
-    lost = BoltedJointSpring.of(replace(joint.file.values, embedding=800.0))
+    lost = BoltedJointSpring.for_joint(replace(joint.file.values, embedding=800.0))
     motion = (2e-7, 0.0, 1e-7, 1e-6, 0.0, 0.0)
     expected, _ = at(joint.spring, *motion, preload=14.2e3, moment=20.0)
     found, _ = at(lost, *motion, preload=15e3, moment=20.0)
@@ -255,7 +255,7 @@ def test_bands_are_those_of_the_whole(made):
     for name in ("K_zz", "K_xx"):
         assert found.nominal[name][-1] == pytest.approx(out[name], rel=1e-4)
         assert found.nominal[name][0] == pytest.approx(at(joint.spring, *STILL, preload=0.0)[0][name])
-    alone = replace(joint.file, values=interface_alone(joint.file.values))
+    alone = replace(joint.file, values=with_rigid_members(joint.file.values))
     rigid = propagate.compute_bands(
         state_problem(alone, {"h": "+-20%"}, 15e3, 3), propagate.sample_designs(task, 16, 0)[0]
     )
@@ -278,8 +278,8 @@ def test_sides_that_do_not_give_way_are_rigid(made):
     """
     values = made(*FOUR, preload=15e3).file.values
     stiff = replace(values.bodies, stiffness=tuple(1e12 * k for k in values.bodies.stiffness))
-    elastic = BoltedJointSpring.of(replace(values, bodies=stiff))
-    rigid = replace(BoltedJointSpring.of(replace(values, sides="rigid")), patches=elastic.patches)
+    elastic = BoltedJointSpring.for_joint(replace(values, bodies=stiff))
+    rigid = replace(BoltedJointSpring.for_joint(replace(values, sides="rigid")), patches=elastic.patches)
     memory = [spring.initial_history() for spring in (elastic, rigid)]
     for six in ([1e-7, 2e-8, -1e-8, 1e-7, 0.0, 1e-7], [2e-7, 1e-7, 5e-8, -1e-7, 2e-7, 0.0]):
         (a, memory[0]), (b, memory[1]) = (
@@ -323,7 +323,7 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
     """Ways through slip, opening and tilt: both find the equilibrium to 1e-13 of all forces."""
     joint = embedded(made(*FOUR, preload=15e3), tmp_path / "joint.toml")
     with here_alone():
-        build(["BoltedJoint"], [flavour], joint.file, tmp_path)
+        build_fmus(["BoltedJoint"], [flavour], joint.file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     rng, six = np.random.default_rng(3), np.zeros(6)
     unit, memory = np.array([1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 2e-5]), joint.spring.initial_history()
@@ -384,7 +384,7 @@ def test_a_joint_without_preload_has_no_contact_force_and_gets_it_back(made, tmp
 
 def test_a_bolt_of_no_stiffness_leaves_an_open_joint_without_force(made):
     values = made(*FOUR, preload=15e3).file.values
-    spring = BoltedJointSpring.of(replace(values, bolt_stiffness=0.0))
+    spring = BoltedJointSpring.for_joint(replace(values, bolt_stiffness=0.0))
     _, memory = at(spring, *1e-7 * AXIS_X, preload=15e3)
     for apart in (1e-4, 2e-4):
         out, memory = at(spring, 1e-7, 0, apart, 0, 0, 0, memory=memory, preload=15e3)
@@ -399,7 +399,7 @@ def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavou
     """Co-simulation and model exchange, over random histories. Absolute: forces and stiffnesses vanish."""
     joint = embedded(made(*FOUR, preload=15e3), tmp_path / "joint.toml")
     with here_alone():
-        build(["BoltedJoint"], [flavour], joint.file, tmp_path)
+        build_fmus(["BoltedJoint"], [flavour], joint.file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     least = {"f": 1e-5, "m": 1e-6, "F": 1e-5, "K": 100.0, "s": 1e-9, "C": 1e-2, "E": 1e-12, "e": 1e-9}
     for seed, exchange in enumerate((False, True, False, True)):
@@ -434,7 +434,7 @@ def accept(fmu):
 
 def refused(changes, file):
     with pytest.raises(ValueError, match=r"sides|bodies") as error:
-        BoltedJointSpring.of(replace(file.values, **changes))
+        BoltedJointSpring.for_joint(replace(file.values, **changes))
     return str(error.value)
 
 
@@ -576,14 +576,14 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
     both = ["--attached", "faces", "--out", str(out), "--field", str(field)]
     assert cli.main([*words, "--refinement", "0.5", *both]) == 0
-    spring = BoltedJointSpring.of(load_parameter_file(out).values)
-    assert spring.joint.elastic
+    spring = BoltedJointSpring.for_joint(load_parameter_file(out).values)
+    assert spring.joint.has_elastic_members
     assert (
         f"joint_K_zz         {spring.evaluate(15e3, 0.0, *[(0.0,) * 3] * 2)['K_zz']:.4g} N/m"
         in capsys.readouterr().out
     )
     found, before = spring.compliances(15e3), drawn.spring.compliances(15e3)
-    assert np.all((found.total < before.total) & (found.total > 0.6 * before.total))
+    assert np.all((found.total_compliance < before.total) & (found.total_compliance > 0.6 * before.total))
     assert found.bolt_stiffness == pytest.approx(before.bolt_stiffness, rel=1e-3)
     corners = 0.03 * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
     even = ContactField(np.full(4, 1e-3), corners, np.full(4, 15e6))
@@ -592,13 +592,13 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     # its field brought back, with plates of the rectangle around it: on a finer mesh the same joint
     again = ["footprint", "import", str(field), "--open", "keep", *words[3:]]
     assert cli.main([*again, "--thickness", "10", "10", "--out", str(back)]) == 0
-    returned = BoltedJointSpring.of(load_parameter_file(back).values)
-    assert returned.joint.elastic
+    returned = BoltedJointSpring.for_joint(load_parameter_file(back).values)
+    assert returned.joint.has_elastic_members
     assert (
         f"opening_load       {returned.compliances(15e3).opening_load(14.2e3):.4g} N"
         in capsys.readouterr().out
     )
-    np.testing.assert_allclose(returned.compliances(15e3).total, found.total, rtol=0.05)
+    np.testing.assert_allclose(returned.compliances(15e3).total_compliance, found.total_compliance, rtol=0.05)
     np.testing.assert_allclose(
         returned.joint.pattern.bolt_position_means, spring.joint.pattern.bolt_position_means, atol=1e-6
     )
@@ -630,7 +630,7 @@ def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path)
     assert abs(np.log(found.solution.values["h"] / true)) < 3.0 * found.solution.relative_deviations["h"]
     assert found.solution.relative_deviations["h"] < 0.01
     assert not found.warnings()
-    alone = over_preload.fit(path, replace(start, values=interface_alone(start.values)))
+    alone = over_preload.fit(path, replace(start, values=with_rigid_members(start.values)))
     assert "the law deviates systematically from the curve" in alone.warnings()[-1]
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_tools.exchange.export import ansys, keywords, tables
-from jointfmu_tools.exchange.export.mesh import NodePairs, read_pairs
+from jointfmu_tools.exchange.export.mesh import NodePairs, read_node_pairs
 from jointfmu_tools.exchange.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
 from jointfmu_tools.joints.bolted_joint.export import (
     TOTAL_OUTPUTS,
@@ -31,7 +31,7 @@ DIGITS = 1e-8  # the formats carry nine digits
 
 @pytest.fixture(scope="module")
 def joint():
-    return BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
+    return BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def test_open_pairs_are_left_out(joint):
     springs = springs_of_joint(joint, 15e3, moment)
     p = preload_pressure(joint.joint, joint.points, 15e3, moment)
     assert springs.open_pairs == np.sum(p == 0.0) > 0
-    assert len(springs.nodes) == np.sum(p > 0.0)
+    assert len(springs.node_labels) == np.sum(p > 0.0)
     assert springs.K_n.sum() == pytest.approx(joint.evaluate(15e3, moment, REST, REST)["K_zz"], rel=1e-12)
 
 
@@ -164,13 +164,13 @@ ROWS = "1,11,0,0,2,1\n2,12,4,0,2,0\n3,13,0,6,4,2.5\n"
 def test_pairs_are_read_in_their_units(tmp_path):
     path = tmp_path / "pairs.csv"
     path.write_text(HEAD + ROWS)
-    mesh = read_pairs(path)
-    assert mesh.nodes.tolist() == [[1, 11], [2, 12], [3, 13]]
+    mesh = read_node_pairs(path)
+    assert mesh.node_labels.tolist() == [[1, 11], [2, 12], [3, 13]]
     np.testing.assert_allclose(mesh.area, [2e-6, 2e-6, 4e-6])
     np.testing.assert_allclose(mesh.pressure, [1e6, 0.0, 2.5e6])
     np.testing.assert_allclose(mesh.position, [[-1e-3, -3e-3], [3e-3, -3e-3], [-1e-3, 3e-3]])
     path.write_text(HEAD.replace(",pressure [MPa]", "") + "\n".join(r[: r.rfind(",")] for r in ROWS.split()))
-    assert read_pairs(path).pressure is None
+    assert read_node_pairs(path).pressure is None
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_bad_pairs_are_refused_with_their_place(tmp_path, old, new, said):
     path = tmp_path / "pairs.csv"
     path.write_text((HEAD + ROWS).replace(old, new))
     with pytest.raises(ValueError, match=said) as raised:
-        read_pairs(path)
+        read_node_pairs(path)
     assert str(raised.value).startswith(f"{path}: ")
 
 
@@ -375,5 +375,5 @@ def test_csv_is_read_by_the_standard_library(found):
 def test_what_is_written_as_csv_is_a_mesh_again(joint, found, tmp_path):
     path = tmp_path / "springs.csv"
     path.write_text(tables.format_springs_csv(found, Placement(MM), []))
-    again = springs_under_pressure(joint, read_pairs(path))
+    again = springs_under_pressure(joint, read_node_pairs(path))
     np.testing.assert_allclose(again.K_n, found.K_n, rtol=1e-9)  # pressures of twelve digits, power 0.9

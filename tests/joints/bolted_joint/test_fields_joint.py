@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import here_alone
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
 from jointfmu_tools.common import plots
 from jointfmu_tools.exchange.modelica import library
 from jointfmu_tools.inputs.fields import nodal_result, reduction
-from jointfmu_tools.inputs.fields.joint_parameters import insert_field, pressure_shape
+from jointfmu_tools.inputs.fields.joint_parameters import insert_field, normalise_pressure_field
 from jointfmu_tools.inputs.fields.nodal_result import ContactField
 from jointfmu_tools.inputs.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
 from jointfmu_tools.inputs.fields.sums import (
@@ -24,7 +24,7 @@ from jointfmu_tools.run.ramps import ramp
 from oracles import contact_patches
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
-from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
+from jointfmu.joints.bolted_joint.law import get_bolted_frame, preload_pressure
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.reproducible import round_distribution
@@ -41,11 +41,11 @@ OFFSET = np.array([0.2, -0.1])
 
 def field(closed=0.0, moment=0.0):
     """Nodes of the default frame with its pressure; below `closed` of the mean they are open."""
-    shape = bolt_pattern(JOINT).pressure_distribution()
+    shape = get_bolted_frame(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    p = np.maximum(shape.preload_shape - closed, 0.0)
+    p = np.maximum(shape.preload_pressure_ratio - closed, 0.0)
     p *= mean / (shape.area_share @ p)
-    p += moment / (JOINT.row_distance * JOINT.A_0) * shape.moment_shape
+    p += moment / (JOINT.row_distance * JOINT.A_0) * shape.moment_pressure_ratio
     return ContactField(shape.area_share * JOINT.A_0, shape.position + OFFSET, p)
 
 
@@ -54,7 +54,7 @@ FIELD = field()
 
 @pytest.fixture(scope="module", params=[0.0, 0.45], ids=["closed", "open"])
 def reduced(request):
-    shape = pressure_shape(JOINT, field(request.param), PRELOAD)
+    shape = normalise_pressure_field(JOINT, field(request.param), PRELOAD)
     joint = replace(JOINT, A_0=float(FIELD.area.sum()))
     return joint, shape, reduce_field(joint, shape, PRELOAD, preload_pressure)
 
@@ -62,8 +62,8 @@ def reduced(request):
 def direct(joint, shape, load):
     """Force, K_zz, K_xx, K_rx, K_ry of the spring itself over all nodes, and those at tightening."""
     elastic = replace(joint, memory=False)
-    curve = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve
-    spring = replace(BoltedJointSpring.of_nodes(elastic, shape), curve=curve)
+    curve = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).pressure_curve
+    spring = replace(BoltedJointSpring.for_interface_nodes(elastic, shape), curve=curve)
     force = load.preload_ratio * PRELOAD
     moment = load.moment_ratio * force * joint.row_distance * joint.row_bolts
     start = spring.preloaded_approach(force, moment)
@@ -82,7 +82,7 @@ def test_points_keep_the_sums(reduced):
     assert found.point_count < 0.35 * found.node_count
     assert found.largest_deviation <= RELATIVE_TOLERANCE
     rng = np.random.default_rng(11)
-    lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve.displacement[0]
+    lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).pressure_curve.displacement[0]
     for _ in range(15):  # many in studies/fields_explanation.py
         load = LoadCase(
             float(np.exp(rng.uniform(*np.log(PRELOAD_RATIO_RANGE)))),
@@ -116,7 +116,7 @@ def test_points_balance(reduced):
 
 def test_a_field_that_is_a_bit_off_is_the_same():
     """Reduced are the same bits: 40 times with every number of the file off by 1e-15 of itself."""
-    rng, shape = np.random.default_rng(8), pressure_shape(JOINT, FIELD, PRELOAD)
+    rng, shape = np.random.default_rng(8), normalise_pressure_field(JOINT, FIELD, PRELOAD)
     before = round_distribution(shape, ROUNDING_BITS)
     numbers = ("area_share", "position", "preload_shape", "moment_shape")
     for _ in range(40):
@@ -124,12 +124,14 @@ def test_a_field_that_is_a_bit_off_is_the_same():
             values * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], values.shape))
             for values in (FIELD.area, FIELD.position, FIELD.pressure)
         )
-        other = pressure_shape(JOINT, ContactField(area, position, pressure), PRELOAD)
+        other = normalise_pressure_field(JOINT, ContactField(area, position, pressure), PRELOAD)
         for name in numbers:
             assert np.array_equal(
                 getattr(round_distribution(other, ROUNDING_BITS), name), getattr(before, name)
             ), name
-    one, two = (reduce_field(JOINT, each, PRELOAD, preload_pressure).reduced_shape for each in (shape, other))
+    one, two = (
+        reduce_field(JOINT, each, PRELOAD, preload_pressure).reduced_distribution for each in (shape, other)
+    )
     for name in numbers:
         was = getattr(one, name)
         np.testing.assert_allclose(getattr(two, name), was, rtol=1e-9, atol=1e-9 * np.max(np.abs(was)))
@@ -140,17 +142,17 @@ def test_patches_come_from_the_nodes(tmp_path):
     friction; the file keeps the patches, and those that do not balance are refused."""
     ring = contact_patches.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    contact = ContactField(ring.area_share * JOINT.A_0, ring.position, mean * ring.preload_shape)
+    contact = ContactField(ring.area_share * JOINT.A_0, ring.position, mean * ring.preload_pressure_ratio)
     (tmp_path / "ring.toml").write_text(
         format_parameter_file(insert_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
     )
     joint = load_parameter_file(tmp_path / "ring.toml").values
-    spring = BoltedJointSpring.of(joint)
+    spring = BoltedJointSpring.for_joint(joint)
     assert spring.patches.area_share.tolist() == list(joint.pattern.patch_share)
     slides = spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0,) * 3, (0.0, 0.0, 1e-2))
     friction = joint.mu * PRELOAD * joint.n_bolts
     assert np.hypot(slides["f_x"], slides["f_y"]) < 4e-3 * friction
-    arm = (ring.area_share * ring.preload_shape) @ np.hypot(*ring.position.T)
+    arm = (ring.area_share * ring.preload_pressure_ratio) @ np.hypot(*ring.position.T)
     assert -slides["m_z"] == pytest.approx(friction * arm, rel=2e-3)
     share = (2.0 * joint.pattern.patch_share[0], *joint.pattern.patch_share[1:])
     with pytest.raises(ValueError, match=r"^the sum of patch_share is 1\.\d+, expected 1 within 1e-06$"):
@@ -158,12 +160,14 @@ def test_patches_come_from_the_nodes(tmp_path):
 
 
 def test_few_nodes_stay_as_they_are():
-    shape = pressure_shape(JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50))
-    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).reduced_shape is shape
+    shape = normalise_pressure_field(
+        JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50)
+    )
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).reduced_distribution is shape
 
 
 def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
-    shape = pressure_shape(JOINT, FIELD, PRELOAD)
+    shape = normalise_pressure_field(JOINT, FIELD, PRELOAD)
     found = [
         reduction.Reduction(shape.select_nodes(slice(99)), shape, 0.5 * reduction.LARGE_FIELD_TOLERANCE),
         None,
@@ -189,19 +193,21 @@ def _preload(one, count):
 def test_second_field_gives_the_tilt():
     """The pattern's own two fields give back the pattern's own tilt, up to the sum it leaves (round-off)."""
     moment = 900.0
-    found = pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment), moment)
-    pattern = bolt_pattern(JOINT).pressure_distribution()
+    found = normalise_pressure_field(JOINT, FIELD, PRELOAD, field(moment=moment), moment)
+    pattern = get_bolted_frame(JOINT).pressure_distribution()
     scale = FIELD.area.sum() / JOINT.A_0
     np.testing.assert_allclose(
-        found.moment_shape, scale * pattern.moment_shape, atol=1e-9 * np.abs(pattern.moment_shape).max()
+        found.moment_pressure_ratio,
+        scale * pattern.moment_pressure_ratio,
+        atol=1e-9 * np.abs(pattern.moment_pressure_ratio).max(),
     )
     with pytest.raises(ValueError, match=r"balance -0.877 of the moment of -900 N.m, allowed is 0.5 to 1.5"):
-        pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment), -moment)
+        normalise_pressure_field(JOINT, FIELD, PRELOAD, field(moment=moment), -moment)
     with pytest.raises(ValueError, match=r"moment = None N.m is outside"):
-        pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment))
+        normalise_pressure_field(JOINT, FIELD, PRELOAD, field(moment=moment))
     moved = replace(FIELD, position=FIELD.position + 0.01 * OFFSET)
     with pytest.raises(ValueError, match=r"node 1 of the field with a moment is at .* expected"):
-        pressure_shape(JOINT, FIELD, PRELOAD, moved, moment)
+        normalise_pressure_field(JOINT, FIELD, PRELOAD, moved, moment)
 
 
 @pytest.mark.parametrize("factor", [0.989, 1.011])
@@ -211,7 +217,7 @@ def test_a_force_more_than_one_per_cent_off_is_refused(factor):
         ValueError, match=r"the force of the field is .* N, expected 72000 N within 1 %: 8 bolts"
     ):
         insert_field(FILE, wrong, PRELOAD, "test")
-    assert pressure_shape(JOINT, replace(FIELD, pressure=1.009 * FIELD.pressure), PRELOAD)
+    assert normalise_pressure_field(JOINT, replace(FIELD, pressure=1.009 * FIELD.pressure), PRELOAD)
 
 
 def test_other_joints_have_no_field():
@@ -284,9 +290,9 @@ def test_what_asks_for_bolts_refuses_a_field(imported):
 def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes."""
     monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 10)
-    shape = bolt_pattern(JOINT).pressure_distribution()
+    shape = get_bolted_frame(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    many = ContactField(shape.area_share * JOINT.A_0, shape.position, mean * shape.preload_shape)
+    many = ContactField(shape.area_share * JOINT.A_0, shape.position, mean * shape.preload_pressure_ratio)
     (tmp_path / "field.csv").write_text(nodal_result.csv_text(many))
     out = tmp_path / "joint.toml"
     line = [
@@ -302,9 +308,9 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     file = load_parameter_file(out, "bolted_joint")
     assert len(file.values.pattern.share) < many.area.size
     with here_alone():
-        (fmu,) = build(["BoltedJoint"], ["fmi2"], file, tmp_path)
+        (fmu,) = build_fmus(["BoltedJoint"], ["fmi2"], file, tmp_path)
     found = ramp.run_ramp(fmu, "preload", 27e3, 3e3).columns
-    full = pressure_shape(JOINT, many, PRELOAD)
+    full = normalise_pressure_field(JOINT, many, PRELOAD)
     for i in range(1, len(found["preload"])):
         _, (expected, _), peak = direct(file.values, full, LoadCase(found["preload"][i] / PRELOAD, 0.0, 0.0))
         got = [found["p_mean"][i] * file.values.A_0, *(found[n][i] for n in ("K_zz", "K_xx", "K_rx", "K_ry"))]
@@ -341,10 +347,10 @@ def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(imported, tmp_path, 
     assert cli.main([*line, "--force-tolerance", "0.3", "--out", str(out)]) == 0
     assert "scaled by +25 % to the force of the bolts" in capsys.readouterr().err
     right, _ = imported
-    found = BoltedJointSpring.of(load_parameter_file(out).values).evaluate(
+    found = BoltedJointSpring.for_joint(load_parameter_file(out).values).evaluate(
         PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     )
-    exact = BoltedJointSpring.of(right.values).evaluate(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    exact = BoltedJointSpring.for_joint(right.values).evaluate(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert found["K_zz"] == pytest.approx(exact["K_zz"], rel=1e-6)  # the points of both, 1e-6
 
 

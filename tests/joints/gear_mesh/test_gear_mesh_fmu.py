@@ -51,7 +51,7 @@ def states(of: GearMeshSpring, count: int) -> list[Inputs]:
     """Both flanks from nanometres to beyond the table, and a tenth between them."""
     rng, found = np.random.default_rng(1), []
     for _ in range(count):
-        size = 10.0 ** rng.uniform(-9.0, np.log10(1.2 * of.curve.end[0]))
+        size = 10.0 ** rng.uniform(-9.0, np.log10(1.2 * of.curve.end_point[0]))
         s = 0.0 if rng.random() < 0.1 else size * float(rng.choice([-1.0, 1.0]))
         moving = {"w1": float(rng.normal()), "w2": float(rng.normal())}
         found.append(angles(of, s, float(rng.uniform(-3.0, 3.0))) | moving)
@@ -204,7 +204,7 @@ def test_teeth_too_soft_for_a_table_are_refused_as_by_the_package(host: Host, ve
 
 def test_beyond_the_table_each_side_warns_once_and_a_state_remembers(host: Host, version: str) -> None:
     of, instance = spring("default"), host("GearMesh", version).start()
-    end = of.curve.end[0]
+    end = of.curve.end_point[0]
     inside = instance.at(angles(of, 0.9 * end, 0.2))
     state = instance.fmu.getFMUState()
     far = instance.at(angles(of, 1.1 * end, 0.2))

@@ -225,7 +225,7 @@ def test_a_whole_contact_ratio_has_no_mesh_cycle(ratio):
 
 def test_beyond_the_table_the_tangent_continues_with_a_warning():
     model, spring = MODELS["GearMesh"], SPRINGS["default"]
-    end = spring.curve.end[0]
+    end = spring.curve.end_point[0]
     out = motion(spring, end * np.array([1.0, 1.5, -4.0]), 0.0)
     np.testing.assert_allclose(out["K"], out["K"][0], rtol=1e-10)  # round-off over the last segment
     expected = out["f"][0] * np.array([1.0, 1.0, -1.0]) + out["K"][0] * end * np.array([0.0, 0.5, -3.0])

@@ -8,7 +8,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from conftest import Fmu, here_alone, refused_line
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
 
@@ -272,7 +272,7 @@ def test_all_flavours_have_the_kinks(tmp_path):
     T = np.linspace(0.0, 90.0, 181)
     found = []
     with here_alone():
-        paths = build(["HarmonicDriveCompliance"], ["fmi2", "fmi3", "python"], file, tmp_path)
+        paths = build_fmus(["HarmonicDriveCompliance"], ["fmi2", "fmi3", "python"], file, tmp_path)
     for path in paths:
         found.append(jointfmu.run(path, {"tau": T})["phi_rel"])
         expected = angle(file.values_by_name, T)

@@ -22,7 +22,7 @@ from jointfmu_tools.joints.harmonic_drive.friction import (
     rated_efficiency,
     scale_friction,
 )
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from jointfmu_tools.joints.harmonic_drive.report import compare_with_catalogue
 from jointfmu_tools.pages.report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET
 from jointfmu_tools.pages.report.joint import write_joint_report
@@ -215,7 +215,9 @@ def test_part_load_of_worked_examples_from_the_efficiency_at_rated_torque(drive)
 
 
 def made(name, **options):
-    return NEW.make_joint(dict.fromkeys(o.name for o in NEW.options) | {"catalogue": name} | options).file
+    return NEW_JOINT_COMMAND.make_joint(
+        dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"catalogue": name} | options
+    ).file
 
 
 def rows_of(name, **options):
@@ -258,7 +260,7 @@ def test_printed_numbers_from_those_of_the_other_drives():
     """
     found = list(leave_one_out())
     assert len(found) == 20
-    assert sum(not f.low <= printed <= f.high for *_, printed, f in found) <= 2
+    assert sum(not f.interval_low <= printed <= f.interval_high for *_, printed, f in found) <= 2
     miss = {name: np.log(f.value / p) for name, what, p, f in found if what == "starting torque"}
     assert len(miss) == 6
     assert max(map(abs, miss.values())) < np.log(1.25)
@@ -277,7 +279,7 @@ def test_the_law_is_the_stated_one():
     law = scale_friction(40.0, 50.0, tuple(drives))
     assert law.starting_torque.value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
     assert law.viscous_torque.value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)
-    assert (law.starting_torque.low, law.viscous_torque.high) == (
+    assert (law.starting_torque.interval_low, law.viscous_torque.interval_high) == (
         pytest.approx(law.starting_torque.value, rel=1e-9),
         pytest.approx(law.viscous_torque.value, rel=1e-9),
     )
@@ -315,9 +317,9 @@ def test_drag_and_temperature(tmp_path, capsys):
     assert warm.efficiency(CATALOGUE_SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
     kelvin = made("CSG-25-100", temperature="318.15K")
     assert kelvin.inputs == file.inputs
-    bare = dict.fromkeys(o.name for o in NEW.options) | {"motor_drag": "0.02", "ratio": "100"}
+    bare = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"motor_drag": "0.02", "ratio": "100"}
     bare |= {"K1": "4700", "K2": "6100", "K3": "7100", "T1": "2", "T2": "6.9"}
-    assert NEW.make_joint(bare).file.values.friction_coulomb == 0.02
+    assert NEW_JOINT_COMMAND.make_joint(bare).file.values.friction_coulomb == 0.02
 
 
 def test_uncertainty_takes_the_interval_of_the_source(tmp_path):

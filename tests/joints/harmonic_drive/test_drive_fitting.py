@@ -59,7 +59,7 @@ def test_angle_of_the_polygon():
     ids=str,
 )
 def test_angles_are_kept(one):
-    found = catalogue.fit_pair(one)
+    found = catalogue.fit_contact_pair_law(one)
     kept = np.array([one.T1, one.T2, one.rated])
     np.testing.assert_allclose(wind_up(found.parameters.values, kept), one.wind_up(kept), rtol=0.01)
     assert found.parameters.values.max_torque == catalogue.MAX_TORQUE_RATIO * one.rated
@@ -82,10 +82,10 @@ def test_shipped_example_is_this_fit(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.slow
 def test_fmu_passes_through_the_catalogue(tmp_path):
-    from jointfmu_fmu_src.building import build
+    from jointfmu_fmu_src.building import build_fmus
 
     with here_alone():
-        build(["HarmonicDriveCompliance"], ["fmi2"], load_parameter_file(SHIPPED), tmp_path)
+        build_fmus(["HarmonicDriveCompliance"], ["fmi2"], load_parameter_file(SHIPPED), tmp_path)
     path = tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu"
     columns = ramp.run_ramp(path, "tau", 6.9, 0.1, {}).columns
     for T in (2.0, 6.9):
@@ -130,7 +130,7 @@ def test_the_default_keeps_the_lines_and_tells_what_the_pair_makes_of_them(tmp_p
     assert document["unknowns"] == []
     facts = {name: fact["value"] for name, fact in document["facts"].items()}
     assert all(abs(facts[f"angle_error_{name}"]) < 0.005 for name in ("T1", "T2", "rated", "max"))
-    pair = catalogue.fit_pair(row(1e4, 1.4e4, 1.6e4, 3.9, 12, rated=31.0)).parameters.values
+    pair = catalogue.fit_contact_pair_law(row(1e4, 1.4e4, 1.6e4, 3.9, 12, rated=31.0)).parameters.values
     K = torque_curve(pair).stiffness[0]
     assert facts["pair_stiffness_zero"] == pytest.approx(K / 1e4 - 1.0, rel=1e-9)
     assert facts["pair_stiffness_zero"] < -0.1
@@ -343,12 +343,12 @@ def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_the_modelica_record_is_the_midline(law):
     from jointfmu_tools.exchange.modelica.records import to_curve
-    from jointfmu_tools.joints.harmonic_drive.modelica import COMPONENT
+    from jointfmu_tools.joints.harmonic_drive.modelica import MODELICA_COMPONENT
 
     file = load_default("harmonic_drive", law)
-    (record,) = COMPONENT.make_records(file, [()])
+    (record,) = MODELICA_COMPONENT.make_records(file, [()])
     exact, made = torque_curve(file.values), to_curve(record.table)
-    x = np.linspace(0.0, 1.2 * exact.end[0], 500)
+    x = np.linspace(0.0, 1.2 * exact.end_point[0], 500)
     for a, b in zip(made.derivatives(x, 1), exact.derivatives(x, 1), strict=True):
         np.testing.assert_allclose(a, b, rtol=1e-7, atol=1e-12)
     assert float(record.values["K_FTS0"]) == pytest.approx(file.values.K_FTS)

@@ -13,7 +13,7 @@ from natives import close
 from jointfmu.joints.harmonic_drive.friction import (
     HISTORY_LAYOUT,
     REFERENCE_TEMPERATURE,
-    STIFFNESS_SHARES,
+    SLIDER_STIFFNESS_SHARES,
     FrictionSliders,
     friction_limits,
     viscous_torque,
@@ -95,7 +95,7 @@ def test_a_drive_begins_where_it_is():
 
 def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
     """One step against very many, of which each is nearly a trapezium."""
-    brake, rng = FrictionSliders(5.0 * STIFFNESS_SHARES), np.random.default_rng(4)
+    brake, rng = FrictionSliders(5.0 * SLIDER_STIFFNESS_SHARES), np.random.default_rng(4)
     memory = brake.pack_history(
         brake.advance(HISTORY_LAYOUT.virgin_history(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08)
     )

@@ -20,8 +20,8 @@ from test_modelica import COMMITTED, EXACT, STAND_IN, move, simulate, top
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import (
     FRICTION_SLIDERS,
-    LIMIT_SHARES,
     REFERENCE_TEMPERATURE,
+    SLIDER_LIMIT_SHARES,
     friction_limits,
     viscous_torque,
 )
@@ -279,7 +279,7 @@ def test_a_coasting_motor_goes_as_far_as_its_energy_lasts(rumoca: Any):
     assert w[before] == pytest.approx(speed - friction / J * times[before], abs=1e-4 * speed)
     assert phi[-1] == pytest.approx(ends, abs=3.0 * PRESLIDING)
     # the sliders of a drive that turns have stored energy, and keep some of it when it stands
-    stored = np.sum((friction * LIMIT_SHARES) ** 2 / (2.0 * law.friction.stiffness))
+    stored = np.sum((friction * SLIDER_LIMIT_SHARES) ** 2 / (2.0 * law.friction.stiffness))
     assert 0.0 < loss[-1] - 0.5 * J * speed**2 < stored
     assert np.abs(w[times > 0.25]).max() < 0.05 * speed
 
@@ -355,7 +355,7 @@ def test_a_drive_of_any_law_gives_the_torque_of_the_package(
     file = replace(file, values=replace_values(file.values, more)) if more else file
     library.write_library(tmp_path, file)
     drive = HarmonicDriveSpring.tabulate(file.values)
-    reach = 1.2 * drive.curve.end[0]
+    reach = 1.2 * drive.curve.end_point[0]
     record = make_identifier(file.name)
     text = top(
         f"JointStiffness.Components.HarmonicDriveSpring drive(data=JointStiffness.Data.{record}(), d=0);\n"

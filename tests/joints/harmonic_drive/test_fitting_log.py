@@ -11,7 +11,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.common import columns
 from jointfmu_tools.inputs.fitting import outcome
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from matplotlib.figure import Figure
 from oracles import robot_log
 from oracles.robot_log import CASES, TRUE, fit_log
@@ -27,9 +27,12 @@ WARM = "temperature=temperature_degC [degC]"
 @pytest.fixture
 def drive(tmp_path):
     """A parameter file of a drive like the robot's."""
-    given = dict.fromkeys(o.name for o in NEW.options) | {"catalogue": "CSG-25-100", "fixed": "flexspline"}
+    given = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {
+        "catalogue": "CSG-25-100",
+        "fixed": "flexspline",
+    }
     path = tmp_path / "drive.toml"
-    path.write_text(format_parameter_file(NEW.make_joint(given).file), encoding="utf-8")
+    path.write_text(format_parameter_file(NEW_JOINT_COMMAND.make_joint(given).file), encoding="utf-8")
     return path
 
 

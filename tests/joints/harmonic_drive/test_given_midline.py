@@ -7,9 +7,9 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_tools.common.pressure import judge_file
+from jointfmu_tools.common.pressure import judge_joint_stiffness
 from jointfmu_tools.joints.harmonic_drive import catalogue
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 from scipy.interpolate import PchipInterpolator
@@ -42,7 +42,9 @@ def drive(**changes):
 
 
 def named(name):
-    return NEW.make_joint(dict.fromkeys(option.name for option in NEW.options) | {"catalogue": name}).file
+    return NEW_JOINT_COMMAND.make_joint(
+        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": name}
+    ).file
 
 
 def name_of(row):
@@ -79,7 +81,7 @@ def test_every_row_keeps_its_angles(row):
 def test_stiffness_is_the_derivative_and_has_no_kink():
     """Central differences, and the derivative of the stiffness from both sides of every node."""
     curve = torque_curve(drive())
-    x, h = np.linspace(1e-6, curve.end[0], 4001), 1e-8
+    x, h = np.linspace(1e-6, curve.end_point[0], 4001), 1e-8
     slope = (curve.derivatives(x + h, 0)[0] - curve.derivatives(x - h, 0)[0]) / (2.0 * h)
     np.testing.assert_allclose(slope, curve.derivatives(x, 1)[1], rtol=1e-6)  # round-off of 1e-13 N m over h
     assert np.all(curve.stiffness_slope_start[1:] == curve.stiffness_slope_end[:-1])
@@ -129,7 +131,7 @@ def test_lines_that_cannot_be_are_refused(changes, text):
 def test_the_table_reaches_past_the_second_corner():
     """A T2 tuned beyond max_torque moves the end of the table, and nothing is refused."""
     curve = torque_curve(drive(T2=200.0))
-    assert curve.end[1] > 200.0
+    assert curve.end_point[1] > 200.0
     assert float(curve.inverse(300.0)) == pytest.approx(lines(300.0, **CSG_17 | {"T2": 200.0}), rel=SAME)
 
 
@@ -225,7 +227,7 @@ def test_files_are_read_and_written(law, tmp_path):
     path.write_text(format_parameter_file(file), encoding="utf-8")
     assert load_parameter_file(path) == file
     assert file.law == law
-    assert judge_file(file).comparison is None  # there is no interface to judge
+    assert judge_joint_stiffness(file).comparison is None  # there is no interface to judge
 
 
 @pytest.mark.parametrize("law", ["catalogue", "table"])

@@ -15,9 +15,9 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.archive import write_archive
-from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
 from jointfmu_fmu_src.native.compiled import compiled_models
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from natives import Host, close
 
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE
@@ -48,8 +48,8 @@ def file_of(name: str) -> ParameterFile:
     """CSG-17-100, and the shipped table."""
     if name == "table":
         return load_default("harmonic_drive", name)
-    given = dict.fromkeys(option.name for option in NEW.options)
-    file: ParameterFile = NEW.make_joint(given | {"catalogue": "CSG-17-100"}).file
+    given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options)
+    file: ParameterFile = NEW_JOINT_COMMAND.make_joint(given | {"catalogue": "CSG-17-100"}).file
     return file
 
 
@@ -60,8 +60,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     def make_all(out: Path) -> None:
         with here_alone("3"):
             for one in LAWS:
-                build([SPRING], ["fmi3", "python"], file_of(one), out / one)
-                build([COMPLIANCE], ["fmi3"], file_of(one), out / one)
+                build_fmus([SPRING], ["fmi3", "python"], file_of(one), out / one)
+                build_fmus([COMPLIANCE], ["fmi3"], file_of(one), out / one)
 
     return made_once(tmp_path_factory, "given", make_all)
 
@@ -163,7 +163,7 @@ def test_another_table_needs_no_compiler(
     monkeypatch.setattr(compiled_models, "compile_model", refused)
     file = table_of(points)
     with here_alone("3"):
-        build([name], ["fmi3"], file, tmp_path)
+        build_fmus([name], ["fmi3"], file, tmp_path)
     instance, expected = host(name, "fmi3", tmp_path).start(), law(name, file.values).after()
     for inputs in random_inputs(name, 10, seed=11):
         # a place within a short segment has the round-off of the whole wind-up
@@ -202,7 +202,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     def make(out: Path) -> None:
         for alias, file in FILES.items():
-            build(["HarmonicDriveCompliance"], list(FLAVOURS), file, out, alias=alias)
+            build_fmus(["HarmonicDriveCompliance"], list(FLAVOUR_BUILDERS), file, out, alias=alias)
 
     return made_once(tmp_path_factory, "named drives", make)
 
@@ -214,7 +214,7 @@ def expected() -> dict[str, float]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("flavour", FLAVOUR_BUILDERS)
 def test_everything_has_the_name(drives: Path, flavour: str) -> None:
     tokens = set()
     for alias in FILES:

@@ -12,7 +12,7 @@ from clients import needs
 from conftest import made_once
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
 from jointfmu_tools.joints.harmonic_drive.efficiency import make_test_rig
-from jointfmu_tools.joints.harmonic_drive.job import LABORATORY
+from jointfmu_tools.joints.harmonic_drive.job import LABORATORY_MODELS
 from jointfmu_tools.pages.laboratory.assemble import write_laboratory
 from jointfmu_tools.run.ramps import ramp
 from jointfmu_tools.systems.master import Slave
@@ -248,7 +248,7 @@ SCRIPT = """(async () => {
 def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
     given = {"ratio": ratio, "hysteresis_loss": 0.0, "error_2": 0.0, "temperature_factor": 1.3}
     found = shown.run(SCRIPT.replace("GIVEN", str(given)).replace("SPEED", str(SPEED)))
-    example = LABORATORY[NAME].example
+    example = LABORATORY_MODELS[NAME].example
     assert example
     file = load_default("harmonic_drive").with_values({**example.values, **given}, "user", "a test")
     bench = make_test_rig(MODELS[NAME], file)

@@ -20,7 +20,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_SPEED, rated_efficiency
-from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -157,7 +157,9 @@ def is_printed(item, column):
 
 
 def made(name, **options):
-    return NEW.make_joint(dict.fromkeys(o.name for o in NEW.options) | {"catalogue": name} | options).file
+    return NEW_JOINT_COMMAND.make_joint(
+        dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"catalogue": name} | options
+    ).file
 
 
 # the loop

@@ -51,7 +51,7 @@ typedef struct {
     X('c', 's', GetDirectionalDerivative, "NULL", (c, &out, 1, &in, 1, NULL, &number), 30)                   \
     X('c', 's', GetDirectionalDerivative, "NULL", (c, &out, 1, &in, 1, &one, NULL), 31)                      \
     X('c', 's', SetRealInputDerivatives, "order 1", (c, &in, 1, &(fmi2Integer){2}, &one), 32)                \
-    X('c', 's', SetRealInputDerivatives, "no input", (c, &out, 1, &(fmi2Integer){1}, &one), 33)              \
+    X('c', 's', SetRealInputDerivatives, "is not an input", (c, &out, 1, &(fmi2Integer){1}, &one), 33)              \
     X('c', 's', SetRealInputDerivatives, "finite", (c, &in, 1, &(fmi2Integer){1}, &nan_), 34)                \
     X('c', 's', SetRealInputDerivatives, "NULL", (c, &in, 1, NULL, &one), 35)                                \
     X('c', 's', GetRealOutputDerivatives, "expected 0", (c, &out, 1, &(fmi2Integer){1}, &number), 36)        \

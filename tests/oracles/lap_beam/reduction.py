@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from jointfmu_tools.fem.contact import ContactModel, Interface, displacement_matrix
+from jointfmu_tools.fem.contact import ContactInterface, ContactModel, displacement_matrix
 from jointfmu_tools.fem.elasticity import Cholesky
 from scipy.sparse.linalg import LinearOperator, eigsh
 
@@ -35,7 +35,7 @@ class Structure:
 
     beam: mesh.LapBeam
     bodies: tuple
-    interface: Interface
+    interface: ContactInterface
     bolts: sp.csr_matrix
 
     @classmethod
@@ -43,7 +43,9 @@ class Structure:
         """Mesh a beam; one patch for each element of the contact."""
         view = plan(beam, size)
         bodies = mesh.bodies(beam, view, size)
-        return cls(beam, bodies, patches(Interface.from_mesh(mesh.contact(beam, view))), shanks(beam, bodies))
+        return cls(
+            beam, bodies, patches(ContactInterface.from_mesh(mesh.contact(beam, view))), shanks(beam, bodies)
+        )
 
     @property
     def symmetric(self):
@@ -100,7 +102,7 @@ def patches(interface):
     share = sp.csr_matrix((interface.quadrature_area, (rows, np.arange(rows.size))), shape=(count, rows.size))
     area = np.asarray(share.sum(axis=1)).ravel()
     mean = sp.diags(1.0 / area) @ share
-    return Interface(
+    return ContactInterface(
         interface.basis,
         interface.nodes,
         (mean @ interface.interpolation_matrix).tocsr(),

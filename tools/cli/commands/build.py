@@ -6,13 +6,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from jointfmu.files import archives
-from jointfmu.files.outputs import FOLDER
+from jointfmu.files.outputs import OUTPUT_FOLDER
 from jointfmu.joints import MODELS
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.progress import worker_processes
 
 from ...common.options import require_package
-from ...common.pressure import judge_file
+from ...common.pressure import judge_joint_stiffness
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
 
@@ -20,9 +20,9 @@ MAX_PRINTED_CHANGES = 3
 """Largest number of changed start values that are printed of a replaced FMU; `--json` has all."""
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu build` with its options."""
-    make = declare_command(commands, "build", _run_build, "build FMUs from default or user parameters")
+    make = declare_command(command_parsers, "build", _run_build, "build FMUs from default or user parameters")
     declare_argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
     make.add_argument(
         "--flavour",
@@ -44,7 +44,7 @@ def add(commands: SubParsers) -> None:
     make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
-    declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+    declare_output(make, "--out", OUTPUT_FOLDER, "folder to write", default=Path("dist"))
 
 
 def _run_build(args: argparse.Namespace) -> CommandResult:
@@ -60,7 +60,7 @@ def _run_build(args: argparse.Namespace) -> CommandResult:
         built = []
         with worker_processes() as pool:
             if args.names or not args.systems:
-                built += building.build(
+                built += building.build_fmus(
                     args.names, args.flavour, file, args.out, args.parameters, args.name, pool, args.force
                 )
             if args.systems:
@@ -69,7 +69,7 @@ def _run_build(args: argparse.Namespace) -> CommandResult:
                 built += ssp.build_systems(args.out, None, file, True, args.parameters, pool, args.force)
     changed = _find_changed_values(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
-    judgements = {f.joint: judge_file(f) for f in ([file] if file else map(load_default, joints))}
+    judgements = {f.joint: judge_joint_stiffness(f) for f in ([file] if file else map(load_default, joints))}
     judged = {joint: judgement.to_json() for joint, judgement in judgements.items()}
     notes = []
     for path, values in changed.items():
@@ -95,7 +95,9 @@ def _read_start_values(path: Path) -> dict[str, str]:
     """Read {parameter: start value as text} of an FMU; empty if the file is not an FMU."""
     try:
         with archives.open_archive(path) as archive:
-            description = ElementTree.fromstring(archives.read_member(archive, archives.DESCRIPTION_NAME))
+            description = ElementTree.fromstring(
+                archives.read_member(archive, archives.MODEL_DESCRIPTION_NAME)
+            )
     except (ValueError, ElementTree.ParseError):
         return {}
     starts = {}
@@ -127,9 +129,11 @@ def _find_changed_values(
     return changed
 
 
-def add_cache(commands: SubParsers) -> None:
+def add_cache(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu cache` with its options."""
-    cache = declare_command(commands, "cache", _run_cache, "show or clear the cache of compiled FMU code")
+    cache = declare_command(
+        command_parsers, "cache", _run_cache, "show or clear the cache of compiled FMU code"
+    )
     cache.add_argument("--clear", action="store_true", help="clear the cache; the next build compiles again")
 
 
@@ -138,9 +142,11 @@ def _run_cache(args: argparse.Namespace) -> CommandResult:
         from jointfmu_fmu_src.native.compiled import cache
     if args.clear:
         cache.clear_cache()
-    files, size = cache.count_files()
+    files, size = cache.count_cached_files()
     folder = str(cache.cache_folder())
     return CommandResult(
         document={"folder": folder, "files": files, "bytes": size},
-        lines=[f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE_VARIABLE})"],
+        lines=[
+            f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE_ENVIRONMENT_VARIABLE})"
+        ],
     )

@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.outputs import EXCHANGE_TEXT
+from jointfmu.files.outputs import EXCHANGE_FILE
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...common.judgement import Plausibility, assess_law, find_rms_height
 from ...common.options import option_flag, require_package
-from ...common.pressure import judge_file, nominal_pressure, warn_missing_members
+from ...common.pressure import judge_joint_stiffness, nominal_pressure, warn_missing_members
 from ...exchange.export import exports
 from ...exchange.export.exports import DEFAULT_LOAD_ERROR, EXPORT_CONTENTS, FORMAT_CONTENTS, ROBOT_FORMATS
 from ...exchange.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
@@ -22,21 +22,21 @@ from ..outputs import declare_output
 if TYPE_CHECKING:
     from ...exchange.export.writing import ExportedFile
 
-_NUMBERED_FORMATS = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
+_FORMATS_WITH_FIRST_NUMBER = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
 """{argument: formats that need this first number together with --nodes}."""
-_NUMBER_MEANINGS = {
+_FIRST_NUMBER_MEANINGS = {
     "first": "a number above all elements of your model",
     "first_set": "a number above all element types and sets of real constants of your model",
 }
 """Meanings for error messages: {argument for a first free number: meaning}."""
-_FACT_UNITS = {"K_": "N/m", "C_": "N.s/m"}
+_PRINTED_QUANTITY_UNITS = {"K_": "N/m", "C_": "N.s/m"}
 """{first letters of a printed quantity: its SI unit}."""
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu export` with its options."""
-    export = declare_command(commands, "export", _run_export, "write a joint for another solver")
-    with_springs = exports.joints_with("springs")
+    export = declare_command(command_parsers, "export", _run_export, "write a joint for another solver")
+    with_springs = exports.joints_with_content("springs")
     forms = [*FORMAT_CONTENTS, *ROBOT_FORMATS]
     export.add_argument("form", choices=forms, metavar="FORMAT", help=f"one of {', '.join(forms)}")
     export.add_argument(
@@ -71,7 +71,7 @@ def add(commands: SubParsers) -> None:
     declare_argument(export, "--error", float, text, "E")
     text = f"{', '.join(ROBOT_FORMATS)}: largest torque of the fit [N.m] (default: rated torque)"
     declare_argument(export, "--torque", float, text, "T")
-    declare_output(export, "--out", EXCHANGE_TEXT, "file to write", required=True)
+    declare_output(export, "--out", EXCHANGE_FILE, "file to write", required=True)
 
 
 def _working_point_meanings() -> dict[str, list[str]]:
@@ -101,11 +101,11 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
     write_text(args.out, written.text)
     facts = {"written": str(args.out), "format": args.form, "what": args.what, "units": args.units}
     lines = [f"wrote {args.out}: {args.what} for {args.form}, {args.units}"]
-    for name, value in written.facts.items():
+    for name, value in written.facts_by_name.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
-        lines.append(f"  {name:<24}  {number} {_FACT_UNITS.get(name[:2], '')}".rstrip())
+        lines.append(f"  {name:<24}  {number} {_PRINTED_QUANTITY_UNITS.get(name[:2], '')}".rstrip())
     judgement = _judge_export(args, file).with_warnings([*written.warnings, *warn_missing_members(file)])
-    return CommandResult(document={**facts, **written.facts}, lines=lines, judgement=judgement)
+    return CommandResult(document={**facts, **written.facts_by_name}, lines=lines, judgement=judgement)
 
 
 def _export_drive(args: argparse.Namespace) -> CommandResult:
@@ -115,11 +115,11 @@ def _export_drive(args: argparse.Namespace) -> CommandResult:
     if args.units != SI_UNIT_SET.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI_UNIT_SET.name}")
     from ...api import load
-    from ...exchange.robots.writing import write_drive
+    from ...exchange.robots.writing import format_drive
     from ...joints.harmonic_drive.transmission import make_transmission
 
     with require_package("measure the file", "mujoco"):
-        text, lines, facts = write_drive(args.form, make_transmission(load(args.what).file), args.torque)
+        text, lines, facts = format_drive(args.form, make_transmission(load(args.what).file), args.torque)
     write_text(args.out, text)
     return CommandResult(
         document={"written": str(args.out), "format": args.form, **facts},
@@ -127,38 +127,38 @@ def _export_drive(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _judge_export(args: argparse.Namespace, file: ParameterFile) -> Plausibility:
+def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Plausibility:
     """Judge the stiffness at the working point, at the pressures of `--nodes`, or else at a default load."""
-    nominal = nominal_pressure(KINDS[file.joint])
+    nominal = nominal_pressure(KINDS[parameter_file.joint])
     load = getattr(args, nominal.load_variable, None) if nominal else None
     if load is None and args.nodes:
-        from ...exchange.export.mesh import read_pairs
+        from ...exchange.export.mesh import read_node_pairs
 
-        mesh = read_pairs(args.nodes)
+        mesh = read_node_pairs(args.nodes)
         if mesh.pressure is not None:
             mean = float(mesh.pressure @ mesh.area / mesh.area.sum())
             return assess_law(
-                KINDS[file.joint].extract_law(file.values),
+                KINDS[parameter_file.joint].extract_law(parameter_file.values),
                 [mean],
-                find_rms_height(file),
+                find_rms_height(parameter_file),
                 float(mesh.pressure.max()),
             )
-    return judge_file(file, None if load is None else [load])
+    return judge_joint_stiffness(parameter_file, None if load is None else [load])
 
 
-def _create_export(args: argparse.Namespace, file: ParameterFile) -> "ExportedFile":
+def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "ExportedFile":
     from ...exchange.export import writing
-    from ...exchange.export.mesh import read_pairs
+    from ...exchange.export.mesh import read_node_pairs
 
     units = UNIT_SETS[args.units]
     error = DEFAULT_LOAD_ERROR if args.error is None else args.error
     if args.what == "contact":
-        return writing.export_contact(args.form, file, units, error)
-    state = _read_working_point(args, file.joint)
+        return writing.export_contact(args.form, parameter_file, units, error)
+    state = _read_working_point(args, parameter_file.joint)
     if args.what == "curve":
-        return writing.export_curve(args.form, file, state, units, error)
-    mesh = read_pairs(args.nodes) if args.nodes else None
-    first, text = next(iter(exports.exports_of(file.joint).working_point.items()), ("", ""))
+        return writing.export_curve(args.form, parameter_file, state, units, error)
+    mesh = read_node_pairs(args.nodes) if args.nodes else None
+    first, text = next(iter(exports.exports_of(parameter_file.joint).working_point.items()), ("", ""))
     if mesh is not None and mesh.pressure is not None and state is not None:
         raise ValueError(
             f"{mesh.path} states the pressures; leave out {option_flag(first)}, or its column 'pressure'"
@@ -168,12 +168,12 @@ def _create_export(args: argparse.Namespace, file: ParameterFile) -> "ExportedFi
     placing = Placement(
         units, args.normal or "z", args.first or 1, args.first_set or 1, has_own_nodes=mesh is None
     )
-    return writing.export_springs(args.form, file, state, mesh, placing)
+    return writing.export_springs(args.form, parameter_file, state, mesh, placing)
 
 
-def _read_working_point(args: argparse.Namespace, joint: str) -> Any:
+def _read_working_point(args: argparse.Namespace, joint_name: str) -> Any:
     """Working point of the joint from the options; None if no option states one."""
-    available = exports.exports_of(joint)
+    available = exports.exports_of(joint_name)
     values = {name: getattr(args, name) for name in available.working_point}
     if available.working_point_class is None or all(value is None for value in values.values()):
         return None
@@ -190,25 +190,29 @@ def _refuse_options(args: argparse.Namespace, unused_options: Mapping[str, str])
             raise ValueError(f"{option_flag(name)} has no effect for {what}")
 
 
-def _check_working_point(args: argparse.Namespace, joint: str) -> None:
+def _check_working_point(args: argparse.Namespace, joint_name: str) -> None:
     """Raise ValueError if a working point is set but not used, or if a required one is missing."""
-    used = {} if args.what == "contact" else exports.exports_of(joint).working_point
+    used = {} if args.what == "contact" else exports.exports_of(joint_name).working_point
     _refuse_options(
         args,
-        {name: f"the {args.what} of a {joint}" for name in _working_point_meanings() if name not in used},
+        {
+            name: f"the {args.what} of a {joint_name}"
+            for name in _working_point_meanings()
+            if name not in used
+        },
     )
     stated = [name for name in used if getattr(args, name) is not None]
     first, text = next(iter(used.items()), ("", ""))
     if stated and first not in stated:
         raise ValueError(f"{option_flag(stated[0])} needs {option_flag(first)}, {text}")
     if args.what == "curve" and first and not stated:
-        raise ValueError(f"the curve of a {joint} needs {option_flag(first)}, {text}")
+        raise ValueError(f"the curve of a {joint_name} needs {option_flag(first)}, {text}")
 
 
-def _check_options(args: argparse.Namespace, file: ParameterFile) -> None:
+def _check_options(args: argparse.Namespace, parameter_file: ParameterFile) -> None:
     """Check the options. Raises ValueError if one has no effect, is missing or is out of range."""
-    exports.require_content(file.joint, args.what)
-    _check_working_point(args, file.joint)
+    exports.require_content(parameter_file.joint, args.what)
+    _check_working_point(args, parameter_file.joint)
     if args.what == "springs":
         idle = {"error": "springs; it is for tables"}
     else:
@@ -220,7 +224,7 @@ def _check_options(args: argparse.Namespace, file: ParameterFile) -> None:
         value, option = getattr(args, name), option_flag(name)
         if value is not None and not 1 <= value <= highest:
             raise ValueError(f"{option} = {value} is outside [1, {highest}]")
-        if value is None and args.nodes is not None and args.form in _NUMBERED_FORMATS[name]:
-            raise ValueError(f"--nodes needs {option}, {_NUMBER_MEANINGS[name]}")
+        if value is None and args.nodes is not None and args.form in _FORMATS_WITH_FIRST_NUMBER[name]:
+            raise ValueError(f"--nodes needs {option}, {_FIRST_NUMBER_MEANINGS[name]}")
     if args.form == "modelica" and args.units != SI_UNIT_SET.name:
         raise ValueError(f"--units = {args.units}: a Modelica table is in {SI_UNIT_SET.name}")

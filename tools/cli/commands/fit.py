@@ -5,15 +5,15 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from jointfmu.files.outputs import PARAMETER_FILE, PICTURE
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_parameter_file
-from jointfmu.progress import set_step
+from jointfmu.progress import set_status_text
 
 from ...api.make import Fit
 from ...common import columns, plots
 from ...common.options import Option, option_flag
-from ...common.pressure import judge_file
+from ...common.pressure import judge_joint_stiffness
 from ...inputs.drawing.reading import parse_number
 from ...inputs.fitting.outcome import format_deviation
 from ...inputs.fitting.procedure import Procedure, fit_procedures
@@ -22,10 +22,10 @@ from ..outputs import FORCE_HELP, declare_output
 from . import declare_option
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare `jointfmu fit` and its procedures."""
     text = "fit a joint's parameters to a measured curve or to catalogue values"
-    top = commands.add_parser("fit", help=text, description=format_sentence(text))
+    top = command_parsers.add_parser("fit", help=text, description=format_sentence(text))
     ways = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
     for choices in fit_procedures().values():
         _declare_procedure(ways, choices)
@@ -49,7 +49,7 @@ def _declare_procedure(procedure_parsers: SubParsers, choices: Mapping[str, Proc
     text = f"{FORCE_HELP}; write the parameter file even if the fit does not determine the joint"
     sub.add_argument("--force", action="store_true", help=text)
     declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
-    declare_output(sub, "--plot", PICTURE, "draw data, law and residuals (.png, .svg)")
+    declare_output(sub, "--plot", PICTURE_FILE, "draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
         declare_option(sub, option)
 
@@ -60,8 +60,8 @@ def _run_fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> Comm
     procedure = choices[joint]
     start = load_parameter_file(args.params, joint) if args.params else None
     data = (args.file,) if procedure.takes_file else ()
-    set_step(f"fit of the {KINDS[joint].title}")
-    return _write_fit(args, Fit(procedure.run(*data, start, args.free, **_read_options(procedure, args))))
+    set_status_text(f"fit of the {KINDS[joint].title}")
+    return _write_fit(args, Fit(procedure.run_fit(*data, start, args.free, **_read_options(procedure, args))))
 
 
 def _read_options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object]:
@@ -135,7 +135,7 @@ def _write_fit(args: argparse.Namespace, fit: Fit) -> CommandResult:
         lines.append(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{ends}{mark}")
     for name, (value, unit, text) in outcome.facts.items():
         lines.append(f"{name:24} {value:.4g} {unit}  {text}")
-    judgement, document = judge_file(outcome.parameters), outcome.document()
+    judgement, document = judge_joint_stiffness(outcome.parameters), outcome.document()
     notes = [f"note: {line}" for line in document["warnings"]]
     notes += [f"warning: {line}" for line in judgement.warnings]
     if doubt:

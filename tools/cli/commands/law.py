@@ -24,10 +24,10 @@ from ...inputs.laws import (
 from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_settings
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu law` with its options."""
     text = "evaluate one interface law at pressures or at areas of the largest contact spot"
-    law = declare_command(commands, "law", _run_law, text)
+    law = declare_command(command_parsers, "law", _run_law, text)
     laws = [name for name in LAWS if joints_with_law(name)]
     law.add_argument("law", choices=laws, metavar="LAW", help=f"one of {', '.join(laws)}")
     at = law.add_mutually_exclusive_group(required=True)
@@ -59,9 +59,11 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _finite_entry(column: Any, row_index: int) -> float | None:
+def _finite_entry(law_column: Any, row_index: int) -> float | None:
     """Entry i of a column, which may be one number for all rows; None if it is not finite."""
     value = float(
-        np.broadcast_to(column, (row_index + 1,) if np.ndim(column) == 0 else np.shape(column))[row_index]
+        np.broadcast_to(law_column, (row_index + 1,) if np.ndim(law_column) == 0 else np.shape(law_column))[
+            row_index
+        ]
     )
     return value if math.isfinite(value) else None

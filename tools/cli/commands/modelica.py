@@ -3,28 +3,30 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.outputs import FOLDER
+from jointfmu.files.outputs import OUTPUT_FOLDER
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile, load_parameter_file
 
 from ...common.judgement import Plausibility
 from ...common.options import option_flag, require_package
-from ...common.pressure import judge_file, warn_missing_members
+from ...common.pressure import judge_joint_stiffness, warn_missing_members
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu modelica` with its options."""
-    make = declare_command(commands, "modelica", _run_modelica, "write the Modelica library JointStiffness")
+    make = declare_command(
+        command_parsers, "modelica", _run_modelica, "write the Modelica library JointStiffness"
+    )
     declare_argument(make, "--params", Path, "parameter file of one joint, in place of its default (TOML)")
     for name, kinds in _working_point_inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
         text = "; ".join(f"{kind.title}: {_input_meaning(kind, name)}" for kind in kinds)
         text += "" if first else " (default: 0)"
         declare_argument(make, option_flag(name), float, text, nargs="+" if first else None)
-    declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+    declare_output(make, "--out", OUTPUT_FOLDER, "folder to write", default=Path("dist"))
 
 
 def _run_modelica(args: argparse.Namespace) -> CommandResult:
@@ -41,10 +43,14 @@ def _run_modelica(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _judge_working_points(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Plausibility:
+def _judge_working_points(
+    parameter_file: ParameterFile, working_points: dict[str, list[tuple[float, ...]]]
+) -> Plausibility:
     """Judge the stiffness of the user's joint at its working points."""
-    judgement = judge_file(file, [point[0] for point in points.get(file.joint, [])] or None)
-    return judgement.with_warnings(warn_missing_members(file))
+    judgement = judge_joint_stiffness(
+        parameter_file, [point[0] for point in working_points.get(parameter_file.joint, [])] or None
+    )
+    return judgement.with_warnings(warn_missing_members(parameter_file))
 
 
 def _working_point_inputs() -> dict[str, list[JointKind]]:
@@ -53,8 +59,8 @@ def _working_point_inputs() -> dict[str, list[JointKind]]:
     return {name: [kind for kind in KINDS.values() if name in kind.working_point] for name in names}
 
 
-def _input_meaning(kind: JointKind, name: str) -> str:
-    variable = kind.variables[name]
+def _input_meaning(kind: JointKind, input_name: str) -> str:
+    variable = kind.variables[input_name]
     return f"{variable.doc} [{variable.unit}]"
 
 

@@ -17,7 +17,7 @@ from jointfmu.quantity.units import conversion_factor
 from ...api.joint import Joint
 from ...api.make import make_from_drawing
 from ...common.joint_parts import load_tool_module
-from ...common.pressure import judge_file
+from ...common.pressure import judge_joint_stiffness
 from ...common.shown import align_columns, fact_document, format_facts
 from ...inputs.catalogue import CatalogueColumn, CatalogueEntry
 from ...inputs.drawing.part import NewJointCommand
@@ -27,10 +27,10 @@ from ..outputs import declare_output
 from . import declare_option
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare `jointfmu new`, with a sub-command for each joint and for each table."""
     text = "make the parameter file of a joint from the data on its drawing"
-    top = commands.add_parser("new", help=text, description=format_sentence(text))
+    top = command_parsers.add_parser("new", help=text, description=format_sentence(text))
     things = top.add_subparsers(dest="thing", required=True, metavar="JOINT", parser_class=Parser)
     for kind in KINDS.values():
         if module := load_tool_module(kind, "new"):
@@ -39,12 +39,12 @@ def add(commands: SubParsers) -> None:
         declare_command(things, name, partial(_run_table, rows), f"print the table of known {name}")
 
 
-def _declare_joint(joint_parsers: SubParsers, name: str, joint_command: NewJointCommand) -> None:
+def _declare_joint(joint_parsers: SubParsers, joint_name: str, joint_command: NewJointCommand) -> None:
     """Declare the sub-command of one joint."""
     sub = declare_command(
-        joint_parsers, name, partial(_run_new, joint_command), f"make {joint_command.description}"
+        joint_parsers, joint_name, partial(_run_new, joint_command), f"make {joint_command.description}"
     )
-    sub.example = f"new {name} {joint_command.example} --out my.toml"
+    sub.example = f"new {joint_name} {joint_command.example} --out my.toml"
     for option in joint_command.options:
         declare_option(sub, option)
     declare_argument(sub, "--name", str, "name of the parameter set (default: made of its sizes)")
@@ -60,7 +60,7 @@ def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> Comman
         joint = replace(joint, file=replace(joint.file, name=args.name))
     if args.out:
         joint.save(args.out, force=args.force)
-    judgement = judge_file(joint.file).with_warnings(joint.notes)
+    judgement = judge_joint_stiffness(joint.file).with_warnings(joint.notes)
     end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
     return CommandResult(
         document=_joint_document(joint)
@@ -111,7 +111,7 @@ _FINISH_COLUMNS = {
 
 
 def _iterate_table_rows(
-    name: str, column_scales: Mapping[str, tuple[str, float]], source: str
+    table_name: str, column_scales: Mapping[str, tuple[str, float]], source: str
 ) -> Iterator[dict[str, object]]:
     """Yield the rows of `materials` or `finishes`.
 
@@ -120,7 +120,7 @@ def _iterate_table_rows(
     """
     from ...inputs.drawing.tables import read_table
 
-    for row in read_table(name).values():
+    for row in read_table(table_name).values():
         numbers = {
             head: round(row.numbers[column].value * scale, 9)
             for head, (column, scale) in column_scales.items()
@@ -159,10 +159,10 @@ PRINTED_TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
 """{name of a table: function that yields its rows}."""
 
 
-def add_catalogue(commands: SubParsers) -> None:
+def add_catalogue(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu catalogue` with its options."""
     sub = declare_command(
-        commands, "catalogue", _run_catalogue, "list the bought joints that jointfmu new knows"
+        command_parsers, "catalogue", _run_catalogue, "list the bought joints that jointfmu new knows"
     )
     text = "part of the name, for example CSG-17, csg25-100 or csg 25 100"
     declare_argument(sub, "words", str, text, "WORD", nargs="*")
@@ -184,9 +184,9 @@ def _run_catalogue(args: argparse.Namespace) -> CommandResult:
     return CommandResult(document=[_entry_document(COLUMNS, item) for item in found], lines=lines)
 
 
-def _contains_words(words: Sequence[str], name: str) -> bool:
+def _contains_words(words: Sequence[str], entry_name: str) -> bool:
     """Return whether a name contains the joined words. Case, signs and spaces are ignored."""
-    searched, plain_name = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), name))
+    searched, plain_name = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), entry_name))
     return searched in plain_name
 
 

@@ -19,10 +19,10 @@ from ..command import CommandResult, SubParsers, declare_argument, declare_comma
 _TABLE_HEAD = ("name", "default", "unit", "allowed", "meaning")
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu parameters` with its options."""
     text = "list the parameters of an FMU, a joint or an interface law"
-    sub = declare_command(commands, "parameters", _run_parameters, text)
+    sub = declare_command(command_parsers, "parameters", _run_parameters, text)
     text = f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})"
     declare_argument(sub, "name", str, text, choices=[*MODELS, *KINDS, *LAWS])
     source = sub.add_mutually_exclusive_group()
@@ -60,9 +60,9 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _load_joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
+def _load_joint_file(fmu_or_joint_name: str, args: argparse.Namespace) -> ParameterFile:
     """Load the parameter file of an FMU or joint: that of `--params`, or the default with `--law`."""
-    joint = MODELS[name].joint if name in MODELS else name
+    joint = MODELS[fmu_or_joint_name].joint if fmu_or_joint_name in MODELS else fmu_or_joint_name
     if args.params:
         return load_parameter_file(args.params, joint)
     if args.law and args.law not in KINDS[joint].laws:
@@ -72,10 +72,10 @@ def _load_joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
     return load_default(joint, args.law)
 
 
-def _parameter_document(name: str, parameter_field: Field[Any], value: Any) -> dict[str, Any]:
+def _parameter_document(parameter_name: str, parameter_field: Field[Any], value: Any) -> dict[str, Any]:
     """JSON object of one parameter: name, meaning, default, unit, lower and upper limit, allowed values."""
     meta = parameter_field.metadata
-    row = {"name": name, "meaning": meta["doc"], "default": value}
+    row = {"name": parameter_name, "meaning": meta["doc"], "default": value}
     if "allowed" in meta:
         return row | {"unit": None, "allowed": list(meta["allowed"])}
     interval = meta["interval"]

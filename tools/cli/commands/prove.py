@@ -7,7 +7,7 @@ import argparse
 from dataclasses import asdict
 from pathlib import Path
 
-from jointfmu.files.outputs import FOLDER
+from jointfmu.files.outputs import OUTPUT_FOLDER
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_parameter_file
 
@@ -21,16 +21,16 @@ from ..command import CommandResult, SubParsers, declare_argument, declare_comma
 from ..outputs import declare_output
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu prove` with its options."""
     text = "run the experiments stored in an FMU (FMI-LS-REF) and compare with its reference results"
-    sub = declare_command(commands, "prove", _run_prove, text)
+    sub = declare_command(command_parsers, "prove", _run_prove, text)
     declare_argument(sub, "fmu", Path, "path of the FMU", "FMU")
     text = f"simulator that runs the FMU: {', '.join(IMPORTERS)}"
     choices = list(IMPORTERS)
     declare_argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
     text = "folder for the files of the FMI cross-check, written if all experiments pass"
-    declare_output(sub, "--listing", FOLDER, text)
+    declare_output(sub, "--listing", OUTPUT_FOLDER, text)
     text = "parameter file from which start values and reference results are computed, in place of those in "
     declare_argument(sub, "--against", Path, text + "the FMU")
 
@@ -78,10 +78,10 @@ def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedContents:
     raise ValueError(f"{fmu}: does not have the variables of {models}, the FMUs of {path}")
 
 
-def add_validate(commands: SubParsers) -> None:
+def add_validate(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu validate` with its options."""
     sub = declare_command(
-        commands, "validate", _run_validate, "compare computed results with all published numbers"
+        command_parsers, "validate", _run_validate, "compare computed results with all published numbers"
     )
     text = "also compare the measured natural frequencies, by finite elements (half a minute)"
     sub.add_argument("--frequencies", action="store_true", help=text)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.files.outputs import PICTURE
+from jointfmu.files.outputs import PICTURE_FILE
 from jointfmu.files.writing import write_text
 
 from ...common import columns, plots
@@ -28,10 +28,10 @@ MAX_PRINTED_ROWS = 24
 """Largest number of points of a ramp that are printed on a terminal."""
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu ramp` with its options."""
     text = "run an FMU along a load ramp and print its outputs, or in load cycles and print the energy loss"
-    drive = declare_command(commands, "ramp", _run_command, text)
+    drive = declare_command(command_parsers, "ramp", _run_command, text)
     declare_argument(drive, "fmu", Path, "path of the FMU", "FMU")
     declare_argument(drive, "--input", str, "input to vary", required=True)
     declare_argument(drive, "--to", float, "ramp: last value of the input (SI); the first is zero")
@@ -52,7 +52,7 @@ def add(commands: SubParsers) -> None:
     declare_settings(drive)
     declare_output(drive, "--csv", columns.TABLE_FILE_KIND, "write every point to a file")
     declare_output(
-        drive, "--plot", PICTURE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
+        drive, "--plot", PICTURE_FILE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
     )
 
 
@@ -98,26 +98,28 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
 
 
 def _select_columns(
-    result: ramp.RampResult, varied_input: str, output_names: list[str] | None
+    ramp_result: ramp.RampResult, varied_input: str, output_names: list[str] | None
 ) -> ramp.RampResult:
     """Select the varied input and the requested outputs. Raises ValueError for an unknown output."""
-    if unknown := [name for name in output_names or () if name not in result.columns]:
-        raise ValueError(f"--columns {unknown[0]}: unknown output, allowed are {', '.join(result.columns)}")
-    selected = list(dict.fromkeys([varied_input, *(output_names or result.columns)]))
+    if unknown := [name for name in output_names or () if name not in ramp_result.columns]:
+        raise ValueError(
+            f"--columns {unknown[0]}: unknown output, allowed are {', '.join(ramp_result.columns)}"
+        )
+    selected = list(dict.fromkeys([varied_input, *(output_names or ramp_result.columns)]))
     return replace(
-        result,
-        columns={name: result.columns[name] for name in selected},
-        units={name: result.units[name] for name in selected},
+        ramp_result,
+        columns={name: ramp_result.columns[name] for name in selected},
+        units={name: ramp_result.units[name] for name in selected},
     )
 
 
-def _format_points(result: ramp.RampResult) -> list[str]:
+def _format_points(ramp_result: ramp.RampResult) -> list[str]:
     """Format up to MAX_PRINTED_ROWS points of a ramp, first and last included, in display units."""
-    count = next(iter(result.columns.values())).size
+    count = next(iter(ramp_result.columns.values())).size
     indices = np.unique(np.linspace(0, count - 1, min(count, MAX_PRINTED_ROWS)).round().astype(int))
     columns = []
-    for name, values in result.columns.items():
-        unit, size = plots.choose_unit(result.units[name], values)
+    for name, values in ramp_result.columns.items():
+        unit, size = plots.choose_unit(ramp_result.units[name], values)
         columns.append(
             [
                 f"{name}{'' if unit == '1' else f' [{unit}]'}",
@@ -128,13 +130,13 @@ def _format_points(result: ramp.RampResult) -> list[str]:
     return [*align_columns([*zip(*columns, strict=True)], 0), *more]
 
 
-def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
+def _draw_ramp(figure: "Figure", ramp_result: ramp.RampResult) -> None:
     """Draw every output over the varied input."""
-    (driven, x), *outputs = result.columns.items()
-    x_unit, x_size = plots.choose_unit(result.units[driven], x)
+    (driven, x), *outputs = ramp_result.columns.items()
+    x_unit, x_size = plots.choose_unit(ramp_result.units[driven], x)
     axes = figure.subplots(math.ceil(len(outputs) / 3), min(len(outputs), 3), squeeze=False).ravel()
     for panel, (name, y) in zip(axes, outputs, strict=False):
-        unit, size = plots.choose_unit(result.units[name], y)
+        unit, size = plots.choose_unit(ramp_result.units[name], y)
         panel.plot(x_size * x, size * y, color=plots.BLUE)
         panel.set_ylabel(f"{name} [{unit}]")
         panel.set_xlabel(f"{driven} [{x_unit}]")
@@ -161,7 +163,7 @@ def _run_loops(args: argparse.Namespace) -> CommandResult:
 
 def _loops_document(fmu: Path, hysteresis: loops.HysteresisLoops) -> dict[str, object]:
     """JSON object of load cycles. Forces act on the joint and are positive in the direction of motion."""
-    rows = hysteresis.compute_rows()
+    rows = hysteresis.compute_loop_results()
     for row, loop in zip(rows, hysteresis.loops, strict=True):
         row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.cycle_start}
     names = {"motion": hysteresis.motion_name, "force": hysteresis.force_name, "sign": hysteresis.force_sign}
@@ -191,11 +193,11 @@ def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, cyclic_path
     left.set_xlabel(f"{hysteresis.motion_name} [{motion}]")
     left.set_ylabel(f"{'-' if hysteresis.force_sign < 0.0 else ''}{hysteresis.force_name} [{force}]")
     left.legend(loc="lower right")
-    rows = [loop.compute_row() for loop in cycles]
+    rows = [loop.compute_results() for loop in cycles]
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
     )
-    unit, size = plots.choose_unit(hysteresis.row_units["secant_stiffness"], stiffness)
+    unit, size = plots.choose_unit(hysteresis.result_units["secant_stiffness"], stiffness)
     for axes, y, label in (
         (middle, loss, "energy loss per cycle [J]"),
         (right, size * stiffness, f"secant stiffness [{unit}]"),

@@ -3,22 +3,22 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.outputs import HTML_PAGE
+from jointfmu.files.outputs import HTML_FILE
 
 from ...api.make import load
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu report` with its options."""
     text = "write a page about one joint: curves, loops, friction, sources of the numbers, validity"
-    make = declare_command(commands, "report", _run_report, text)
+    make = declare_command(command_parsers, "report", _run_report, text)
     declare_argument(
         make, "file", Path, "parameter file (TOML), or name of an FMU, a joint or a catalogue entry"
     )
     declare_argument(make, "--fmu", str, "FMU of the joint that the page describes (default: the first)")
-    declare_output(make, "--out", HTML_PAGE, "page to write (.html; default: FILE.html in this folder)")
+    declare_output(make, "--out", HTML_FILE, "page to write (.html; default: FILE.html in this folder)")
 
 
 def _run_report(args: argparse.Namespace) -> CommandResult:

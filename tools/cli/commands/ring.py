@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files.outputs import PICTURE
+from jointfmu.files.outputs import PICTURE_FILE
 from jointfmu.files.writing import write_text
 from jointfmu.mechanics.stable_steps import largest_stable_steps
 
@@ -20,10 +20,10 @@ from ..outputs import declare_output
 from . import save_panels
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu ring` with its options."""
     text = "simulate a joint with a body on it and find resonance and damping over load or amplitude"
-    ring = declare_command(commands, "ring", _run_ring, text)
+    ring = declare_command(command_parsers, "ring", _run_ring, text)
     declare_argument(
         ring, "system", str, f"{', '.join(list_system_names())}, or a system's file (TOML)", "SYSTEM"
     )
@@ -39,7 +39,7 @@ def add(commands: SubParsers) -> None:
     declare_argument(ring, "--amplitude", float, text)
     declare_settings(ring)
     declare_output(ring, "--csv", columns.TABLE_FILE_KIND, "write the table to a file")
-    declare_output(ring, "--plot", PICTURE, "draw resonance and decay (.png, .svg)")
+    declare_output(ring, "--plot", PICTURE_FILE, "draw resonance and decay (.png, .svg)")
 
 
 def _run_ring(args: argparse.Namespace) -> CommandResult:

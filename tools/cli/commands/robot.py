@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.files.outputs import (
-    EXCHANGE_TEXT,
-    FOLDER,
+    EXCHANGE_FILE,
+    OUTPUT_FOLDER,
     PARAMETER_FILE,
-    PICTURE,
+    PICTURE_FILE,
     PROGRAM_MARK,
     check_output,
     check_outputs,
@@ -27,10 +27,10 @@ MAX_PAYLOAD = 1e4
 """Largest allowed payload [kg]."""
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu robot` with its options."""
     text = "add elastic drives to joints of a robot (MJCF, URDF)"
-    sub = declare_command(commands, "robot", run, text)
+    sub = declare_command(command_parsers, "robot", run, text)
     several: dict[str, Any] = {"nargs": "+", "action": "extend"}
     declare_argument(sub, "robot", Path, "robot file, MJCF or URDF", "ROBOT")
     text = "joint and its drive: a name of the catalogue or a parameter file"
@@ -50,7 +50,7 @@ def add(commands: SubParsers) -> None:
     sub.add_argument("--plugin", action="store_true", help=text)
     text = "also write one FMU of all axes at the pose, and its system file"
     sub.add_argument("--fmu", action="store_true", help=text)
-    declare_output(sub, "--out", FOLDER, "folder to write", required=True)
+    declare_output(sub, "--out", OUTPUT_FOLDER, "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> CommandResult:
@@ -60,24 +60,24 @@ def run(args: argparse.Namespace) -> CommandResult:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MAX_PAYLOAD:g}] kg")
     pictures = args.out / "frequencies.png", args.out / "payload.png"
     plots.check_picture(pictures[0])
-    check_outputs(pictures, PICTURE, args.force)
+    check_outputs(pictures, PICTURE_FILE, args.force)
     written = args.out / f"{args.robot.stem}_elastic.xml"
     models = [written, *([args.out / f"{args.robot.stem}_plugin.xml"] if args.plugin else [])]
     check_input_overwrite(models, args, ("out",))
-    check_outputs(models, EXCHANGE_TEXT, args.force)
+    check_outputs(models, EXCHANGE_FILE, args.force)
     with require_package("read robots", "mujoco"):
         import mujoco  # noqa: F401
     from ...api import load
     from ...exchange.robots import elastic, poses
     from ...exchange.robots import pictures as drawn
-    from ...exchange.robots.names import check_names, make_identifier
+    from ...exchange.robots.names import check_plugin_names, make_identifier
     from ...joints.harmonic_drive.transmission import make_transmission
 
     spec = elastic.read_robot(args.robot)
     loaded = {name: load(name).file for name in dict.fromkeys(names.values())}  # axes may share a drive
     files = {joint: loaded[name] for joint, name in names.items()}
     if args.plugin or args.fmu:
-        check_names(files)
+        check_plugin_names(files)
     if args.fmu:
         outputs = [
             *(make_identifier(file.name) for file in files.values()),
@@ -102,12 +102,12 @@ def run(args: argparse.Namespace) -> CommandResult:
     more = []
     with require_package("compile", "mujoco"):
         if args.plugin:
-            more += _write_plugin_robot(args, spec, axes, files)
+            more += _write_robot_with_plugins(args, spec, axes, files)
         if args.fmu:
             more += _write_axes_system(args, model, axes, files, pose, tip)
     longest = poses.find_largest_stable_step(model, axes, pose)
     weight, jacobian = poses.compute_torques(model, axes, pose, args.payload, tip)
-    plain, plain_sunk = poses.compute_sag(
+    plain, plain_sunk = poses.compute_weight_deflection(
         model, axes, pose, args.payload, tip, [axis.spring for axis in axes]
     )
     under = list(zip(axes, weight.tolist(), strict=True))
@@ -154,18 +154,20 @@ def run(args: argparse.Namespace) -> CommandResult:
     return CommandResult(document=facts, lines=_format_results(facts, model))
 
 
-def _write_plugin_robot(args: argparse.Namespace, spec: Any, axes: Any, drive_files: Any) -> list[Path]:
+def _write_robot_with_plugins(args: argparse.Namespace, spec: Any, axes: Any, drive_files: Any) -> list[Path]:
     """Write the robot with MuJoCo plugins, and compile the plugins; returns the paths."""
-    from ...exchange.robots import elastic, plugged
+    from ...exchange.robots import elastic, plugin_robot
 
     elastic.make_folders_absolute(spec, args.robot)
     written = args.out / f"{args.robot.stem}_plugin.xml"
-    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{plugged.format_plugin_robot(spec, axes, drive_files)}")
-    return [written, *plugged.compile_plugins(drive_files, args.out).values()]
+    write_text(
+        written, f"<!-- {PROGRAM_MARK} -->\n{plugin_robot.format_robot_with_plugins(spec, axes, drive_files)}"
+    )
+    return [written, *plugin_robot.compile_plugins(drive_files, args.out).values()]
 
 
 def _write_axes_system(
-    args: argparse.Namespace, model: Any, axes: Any, drive_files: Any, pose: Any, tip: int
+    args: argparse.Namespace, model: Any, axes: Any, drive_files: Any, pose: Any, tip_body_index: int
 ) -> list[Path]:
     """Write the system file of the axes, the parameter files of their drives, and the FMUs.
 
@@ -183,7 +185,9 @@ def _write_axes_system(
         write_parameter_text(args.out / f"{name}.toml", text)
     write_parameter_text(
         written,
-        axes_system.format_axes_system(args.robot.stem, model, axes, drive_files, pose, args.payload, tip),
+        axes_system.format_axes_system(
+            args.robot.stem, model, axes, drive_files, pose, args.payload, tip_body_index
+        ),
     )
     return [written, *build_system(assemble_system(read_system(written)), args.out, force=args.force)]
 

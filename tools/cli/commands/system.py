@@ -3,7 +3,14 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.outputs import ARCHIVE, EXCHANGE_TEXT, FOLDER, PICTURE, check_output, check_outputs
+from jointfmu.files.outputs import (
+    ARCHIVE_FILE,
+    EXCHANGE_FILE,
+    OUTPUT_FOLDER,
+    PICTURE_FILE,
+    check_output,
+    check_outputs,
+)
 from jointfmu.files.writing import write_text
 
 from ...common import columns
@@ -14,19 +21,19 @@ from ..outputs import declare_output
 from . import save_panels
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu system` with its options."""
     text = "build a system of joints and bodies: FMUs, SSP archives and a Modelica model"
-    make = declare_command(commands, "system", _run_system, text)
+    make = declare_command(command_parsers, "system", _run_system, text)
     declare_argument(make, "file", str, f"system file (TOML), or {', '.join(list_system_names())}", "FILE")
-    declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+    declare_output(make, "--out", OUTPUT_FOLDER, "folder to write", default=Path("dist"))
     text = "also build one FMU of the whole system: NAME.fmu, FMI 2.0 and 3.0"
     make.add_argument("--fmu", action="store_true", help=text)
     declare_output(
         make, "--csv", columns.TABLE_FILE_KIND, "simulate the system and write all connected outputs"
     )
     text = "simulate the system and draw the joint loads; for an arm also wind-up and tip error (.png, .svg)"
-    declare_output(make, "--plot", PICTURE, text)
+    declare_output(make, "--plot", PICTURE_FILE, text)
 
 
 def _run_system(args: argparse.Namespace) -> CommandResult:
@@ -44,11 +51,11 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
         if (args.csv or args.plot) and (warning := _warn_long_step(described, *step)):
             raise ValueError(f"{args.file}: {warning}; allowed is a shorter one, or neither --csv nor --plot")
         written = args.out / "modelica" / f"{model_name(described)}.mo"
-        check_output(written, EXCHANGE_TEXT, args.force)
+        check_output(written, EXCHANGE_FILE, args.force)
         if whole:
             from ...systems.fmu.build import build_system, fmu_paths
 
-            check_outputs(fmu_paths(whole.make_model().title, args.out), ARCHIVE, args.force)
+            check_outputs(fmu_paths(whole.make_model().title, args.out), ARCHIVE_FILE, args.force)
         built = ssp.build_systems(args.out, [described], force=args.force)
         if whole:
             built += build_system(whole, args.out, force=args.force)
@@ -69,7 +76,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
             heads = [(name, units[name]) for name in run]
             write_text(args.csv, columns.format_table(heads, list(run.values()), digits=12))
         if args.plot:
-            save_panels(args.plot, systems.system_panels(described, run), systems.MOTION_SIZE)
+            save_panels(args.plot, systems.system_panels(described, run), systems.MOTION_FIGURE_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
     notes = [f"warning: {text}" for text in (_warn_long_step(described, *step),) if text]
     texts = [str(path) for path in paths]
@@ -77,7 +84,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
     return CommandResult(document=document, lines=[f"built {path}" for path in texts], notes=notes)
 
 
-def _warn_long_step(system: System, largest_step: float, joint: str) -> str:
+def _warn_long_step(system: System, largest_step: float, joint_name: str) -> str:
     """Format a warning if the system's interval is longer than the largest stable step; else empty.
 
     largest_step : largest stable step [s] of a co-simulation
@@ -86,4 +93,4 @@ def _warn_long_step(system: System, largest_step: float, joint: str) -> str:
     if system.interval <= largest_step:
         return ""
     stated = f"experiment.interval = {system.interval:g} s is longer than {largest_step:.3g} s"
-    return f"{stated}, the largest stable step of {joint} for a parallel (Jacobi) master"
+    return f"{stated}, the largest stable step of {joint_name} for a parallel (Jacobi) master"

@@ -7,14 +7,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.outputs import FOLDER, PICTURE
+from jointfmu.files.outputs import OUTPUT_FOLDER, PICTURE_FILE
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...common import columns
 from ...common.options import option_flag
-from ...common.pressure import judge_file
+from ...common.pressure import judge_joint_stiffness
 from ..command import (
     CommandResult,
     Parser,
@@ -46,10 +46,10 @@ DEPRECATED_SWEEP = (
 )
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu uncertainty` with its options."""
     text = "compute uncertainty bands of a joint or an FMU from uncertain parameters"
-    study = declare_command(commands, "uncertainty", _run_uncertainty, text)
+    study = declare_command(command_parsers, "uncertainty", _run_uncertainty, text)
     study.epilog = DISTRIBUTIONS_HELP
     joints = f"one of {', '.join(KINDS)}, or the path of an FMU"
     declare_argument(study, "subject", str, joints, "JOINT|FMU", nargs="?")
@@ -60,7 +60,7 @@ def add(commands: SubParsers) -> None:
     declare_argument(study, "--input", str, "input of the FMU to vary")
     declare_argument(study, "--step", float, "step of the ramp of an FMU (SI)")
     declare_output(study, "--csv", columns.TABLE_FILE_KIND, "write the bands to a file")
-    declare_output(study, "--plot", PICTURE, "draw bands and sensitivity indices (.png, .svg)")
+    declare_output(study, "--plot", PICTURE_FILE, "draw bands and sensitivity indices (.png, .svg)")
     _declare_execution(study, "folder that keeps all runs; the same command resumes")
 
 
@@ -76,17 +76,17 @@ def _declare_sampling(parser: Parser, defaults: str) -> None:
 
 def _declare_execution(parser: Parser, folder_help: str, **options: Any) -> None:
     """Declare the options for the folder of the runs, and where they are done."""
-    declare_output(parser, "--out", FOLDER, folder_help, allow_force=False, **options)
+    declare_output(parser, "--out", OUTPUT_FOLDER, folder_help, allow_force=False, **options)
     workers = parser.add_mutually_exclusive_group()
     declare_argument(workers, "--scheduler", str, "dask scheduler of a cluster, tls://HOST:PORT", "ADDRESS")
     declare_argument(workers, "--workers", int, "largest number of local processes (default: one per core)")
 
 
-def load_stated_file(joint: str | None, params: Path | None) -> ParameterFile:
+def load_stated_file(joint_name: str | None, params: Path | None) -> ParameterFile:
     """Load the parameter file of `--params`, or the default of JOINT; ValueError if both are missing."""
-    if params is None and joint is None:
+    if params is None and joint_name is None:
         raise ValueError(f"JOINT or --params FILE is missing; JOINT is one of {', '.join(KINDS)}")
-    return load_parameter_file(params, joint) if params else load_default(str(joint))
+    return load_parameter_file(params, joint_name) if params else load_default(str(joint_name))
 
 
 def _is_fmu(subject: str | None) -> bool:
@@ -170,7 +170,7 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         task = problem.state_problem(file, distributions, args.to, points)
         A, B = propagate.sample_designs(task, count, args.seed)
         assert isinstance(task.evaluator, JointRamp)
-        judgement = judge_file(task.evaluator.file, report.table_loads(task))
+        judgement = judge_joint_stiffness(task.evaluator.file, report.table_loads(task))
     indices = None
     with _study_folder(task, count, args.seed, args.out):
         bands = propagate.compute_bands(task, A, execution)
@@ -202,10 +202,10 @@ def _count_runs(samples: "SampledOutputs", out: Path) -> tuple[dict[str, object]
     return {"out": str(out), "runs": count, "now": new, "failed": failed}, line
 
 
-def add_sweep(commands: SubParsers) -> None:
+def add_sweep(command_parsers: SubParsers) -> None:
     """Declare the deprecated command `jointfmu sweep` with its options."""
     text = "deprecated name of jointfmu uncertainty FMU --out FOLDER"
-    many = declare_command(commands, "sweep", _run_sweep, text)
+    many = declare_command(command_parsers, "sweep", _run_sweep, text)
     many.epilog = DISTRIBUTIONS_HELP
     declare_argument(many, "fmu", Path, "path of the FMU", "FMU")
     _declare_sampling(many, f"default: {FMU_SAMPLES}")

@@ -13,8 +13,8 @@ from jointfmu.quantity import Array
 
 from .placing import Placement, Springs, comment_header
 
-MATRIX27, STIFFNESS, DAMPING = 27, 4, 5
-_UPPER_TRIANGLE = np.triu_indices(12)
+MATRIX27_TYPE_NUMBER, STIFFNESS_MATRIX_OPTION, DAMPING_MATRIX_OPTION = 27, 4, 5
+_UPPER_TRIANGLE_INDICES = np.triu_indices(12)
 
 
 def format_springs(springs: Springs, placement: Placement, comment_lines: Sequence[str]) -> str:
@@ -28,7 +28,7 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     first = placement.first_number
     first_set = placement.first_set_number
     units = placement.units
-    count = len(springs.nodes)
+    count = len(springs.node_labels)
     stiffness = placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m"))
     damping = placement.assign_to_axes(
         units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
@@ -36,14 +36,14 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     sets: dict[tuple[str, ...], int] = {}
     reals = [_real_constant_set(sets, row, first_set) for row in (*stiffness, *damping)]
     types = np.repeat([first_set, first_set + 1], count)
-    pairs = np.vstack([springs.nodes, springs.nodes])
+    pairs = np.vstack([springs.node_labels, springs.node_labels])
     rows = zip(types, reals, range(first, first + 2 * count), pairs, strict=True)
     lines = [
         *comment_header(comment_lines, "!"),
         "/PREP7",
         *(_format_nodes(springs, placement) if placement.has_own_nodes else []),
-        *_format_element_type(first_set, STIFFNESS),
-        *_format_element_type(first_set + 1, DAMPING),
+        *_format_element_type(first_set, STIFFNESS_MATRIX_OPTION),
+        *_format_element_type(first_set + 1, DAMPING_MATRIX_OPTION),
         *_format_real_constants(sets),
         f"EBLOCK,19,SOLID,{first + 2 * count - 1:10d},{2 * count:10d}",
         "(19i10)",
@@ -59,7 +59,7 @@ def upper_triangle(spring_values: Array) -> Array:
     axes = np.arange(3)
     matrix[axes, axes] = matrix[axes + 6, axes + 6] = spring_values
     matrix[axes, axes + 6] = matrix[axes + 6, axes] = -spring_values
-    return np.asarray(matrix[_UPPER_TRIANGLE])
+    return np.asarray(matrix[_UPPER_TRIANGLE_INDICES])
 
 
 def _real_constant_set(
@@ -72,7 +72,7 @@ def _real_constant_set(
 
 
 def _format_real_constants(numbers_by_values: dict[tuple[str, ...], int]) -> Iterable[str]:
-    sizes = (len(numbers_by_values), max(numbers_by_values.values()), _UPPER_TRIANGLE[0].size, 7)
+    sizes = (len(numbers_by_values), max(numbers_by_values.values()), _UPPER_TRIANGLE_INDICES[0].size, 7)
     yield ",".join(["RLBLOCK", *(f"{size:8d}" for size in sizes)])
     yield from ("(2i8,6g16.9)", "(7g16.9)")
     for values, number in numbers_by_values.items():
@@ -82,28 +82,28 @@ def _format_real_constants(numbers_by_values: dict[tuple[str, ...], int]) -> Ite
 
 
 def _format_element_type(type_number: int, matrix_option: int) -> Iterable[str]:
-    yield f"ET,{type_number:9d},{MATRIX27:4d}"
+    yield f"ET,{type_number:9d},{MATRIX27_TYPE_NUMBER:4d}"
     yield f"KEYOP,{type_number:9d},{2:3d},{0:9d}"
     yield f"KEYOP,{type_number:9d},{3:3d},{matrix_option:9d}"
 
 
 def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
     coordinates = placement.model_coordinates(springs.position)
-    yield f"NBLOCK,6,SOLID,{springs.nodes.max():10d},{springs.nodes.size:10d}"
+    yield f"NBLOCK,6,SOLID,{springs.node_labels.max():10d},{springs.node_labels.size:10d}"
     yield "(3i9,6e21.13e3)"
     for side in (0, 1):
-        for node, xyz in zip(springs.nodes[:, side], coordinates, strict=True):
+        for node, xyz in zip(springs.node_labels[:, side], coordinates, strict=True):
             yield f"{node:9d}{0:9d}{0:9d}" + "".join(_format_exponential(v) for v in xyz)
     yield "N,R5.3,LOC,       -1,"
     for side in (0, 1):
-        labels = np.sort(springs.nodes[:, side])
+        labels = np.sort(springs.node_labels[:, side])
         yield f"CMBLOCK,JOINT_SIDE_{side + 1},NODE,{labels.size:8d}"
         yield "(8i10)"
         yield from (_format_integers(labels[i : i + 8]) for i in range(0, labels.size, 8))
 
 
-def _format_integers(values: Iterable[int]) -> str:
-    return "".join(f"{v:10d}" for v in values)
+def _format_integers(integers: Iterable[int]) -> str:
+    return "".join(f"{v:10d}" for v in integers)
 
 
 def _format_exponential(value: float) -> str:

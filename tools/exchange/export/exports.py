@@ -50,7 +50,7 @@ class LoadCurve:
 
     meaning: str
     columns: Sequence[Variable]
-    name: str
+    table_name: str
     compute_table: "Callable[[Any, Any, float], LoadTable]"
 
 
@@ -80,25 +80,27 @@ class Exports:
         return {name: f"{item.metadata['doc']} [{item.metadata['unit']}]" for name, item in declared}
 
 
-def exports_of(joint: str) -> Exports:
+def exports_of(joint_name: str) -> Exports:
     """Exports that a joint offers."""
-    module = load_tool_module(KINDS[joint], "export")
+    module = load_tool_module(KINDS[joint_name], "export")
     exports: Exports = module.EXPORTS if module else Exports()
     return exports
 
 
-def joints_with(content: str) -> list[str]:
+def joints_with_content(content: str) -> list[str]:
     """Names of the joints that offer a content: springs, contact or curve."""
     return [joint for joint in KINDS if getattr(exports_of(joint), content)]
 
 
-def require_content(joint: str, content: str) -> Any:
+def require_content(joint_name: str, content: str) -> Any:
     """Return a joint's springs, contact or curve. Raises ValueError if the joint does not offer it."""
-    exports = exports_of(joint)
+    exports = exports_of(joint_name)
     if content in exports.missing_reasons:
-        raise ValueError(f"the {content} of a {joint} cannot be exported: {exports.missing_reasons[content]}")
+        raise ValueError(
+            f"the {content} of a {joint_name} cannot be exported: {exports.missing_reasons[content]}"
+        )
     if not getattr(exports, content):
         raise ValueError(
-            f"{content} of a {joint} cannot be written; allowed is a {', '.join(joints_with(content))}"
+            f"{content} of a {joint_name} cannot be written; allowed is a {', '.join(joints_with_content(content))}"
         )
     return getattr(exports, content)

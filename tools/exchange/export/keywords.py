@@ -52,7 +52,7 @@ def format_springs(
                 name = f"JOINT_{symbol}{'XYZ'[axis]}_{number}"
                 lines.append(f"*ELEMENT, TYPE={keyword}2, ELSET={name}")
                 for pair in members:
-                    lines.append(f"{element}, {springs.nodes[pair, 0]}, {springs.nodes[pair, 1]}")
+                    lines.append(f"{element}, {springs.node_labels[pair, 0]}, {springs.node_labels[pair, 1]}")
                     element += 1
                 lines += [f"*{keyword}, ELSET={name}", f"{axis + 1}, {axis + 1}", value]
     return "\n".join(lines) + "\n"
@@ -62,12 +62,12 @@ def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
     coordinates = placement.model_coordinates(springs.position)
     for side in (0, 1):
         yield f"*NODE, NSET=JOINT_SIDE_{side + 1}"
-        for node, xyz in zip(springs.nodes[:, side], coordinates, strict=True):
+        for node, xyz in zip(springs.node_labels[:, side], coordinates, strict=True):
             yield f"{node}, " + ", ".join(f"{v:.12E}" for v in xyz)
 
 
 def format_contact(
-    table: LoadTable, units: UnitSet, comment_lines: Sequence[str], max_rows: int | None = None
+    load_table: LoadTable, unit_set: UnitSet, comment_lines: Sequence[str], max_rows: int | None = None
 ) -> str:
     """Format a surface interaction JOINT with the pressure over the overclosure.
 
@@ -76,8 +76,10 @@ def format_contact(
 
     Raises ValueError if the table has more rows.
     """
-    x, p, k = table.rows[-1]
-    rows = np.vstack([table.rows[:, :2], [x + EXTRAPOLATED_OVERCLOSURE, p + k * EXTRAPOLATED_OVERCLOSURE]])
+    x, p, k = load_table.rows[-1]
+    rows = np.vstack(
+        [load_table.rows[:, :2], [x + EXTRAPOLATED_OVERCLOSURE, p + k * EXTRAPOLATED_OVERCLOSURE]]
+    )
     if max_rows is not None and len(rows) > max_rows:
         raise InputRefusal(
             f"the table has {len(rows)} rows, CalculiX holds {max_rows}; state a larger error", "error"
@@ -86,6 +88,6 @@ def format_contact(
         *comment_header(comment_lines, "**"),
         "*SURFACE INTERACTION, NAME=JOINT",
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR",
-        *(f"{units.convert(y, 'Pa'):.10E}, {units.convert(s, 'm'):.10E}" for s, y in rows.tolist()),
+        *(f"{unit_set.convert(y, 'Pa'):.10E}, {unit_set.convert(s, 'm'):.10E}" for s, y in rows.tolist()),
     ]
     return "\n".join(lines) + "\n"

@@ -41,13 +41,13 @@ class NodePairs:
     """
 
     path: Path
-    nodes: NDArray[np.int64]
+    node_labels: NDArray[np.int64]
     position: Array
     area: Array
     pressure: Array | None
 
 
-def read_pairs(path: str | Path) -> NodePairs:
+def read_node_pairs(path: str | Path) -> NodePairs:
     """Read node pairs from a CSV file. The origin of x and y is arbitrary.
 
     Raises ValueError, one line with file and node: a file that `columns.read_columns` cannot read, a missing
@@ -83,14 +83,14 @@ def _read_node_labels(table: Columns, column_name: str) -> NDArray[np.int64]:
 
 def _check_values(
     table: Columns,
-    nodes: NDArray[np.int64],
+    node_labels: NDArray[np.int64],
     column_name: str,
-    value: Array,
+    column_values: Array,
     is_invalid: NDArray[np.bool_],
-    reason: str,
+    refusal_reason: str,
 ) -> None:
     if np.any(is_invalid):
         raise ValueError(
-            f"{table.path}: {column_name} = {value[is_invalid][0]:g} (SI) at node "
-            f"{nodes[is_invalid][0, 0]}: {reason}"
+            f"{table.path}: {column_name} = {column_values[is_invalid][0]:g} (SI) at node "
+            f"{node_labels[is_invalid][0, 0]}: {refusal_reason}"
         )

@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import conversion_factor, replace_symbols
 from jointfmu.version import __version__
 
-T = TypeVar("T", float, NDArray[np.float64])
+ValueType = TypeVar("T", float, NDArray[np.float64])
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class UnitSet:
     name: str
     symbols: Mapping[str, str]
 
-    def convert(self, value: T, unit: str) -> T:
+    def convert(self, value: ValueType, unit: str) -> ValueType:
         """Convert a value from an SI unit to the unit of this set."""
         return value * conversion_factor(unit, self.symbol(unit))
 
@@ -56,7 +56,7 @@ class Springs:
     open_pairs           : number of open pairs, which are left out
     """
 
-    nodes: NDArray[np.int64]
+    node_labels: NDArray[np.int64]
     position: Array
     area: Array
     pressure: Array
@@ -64,7 +64,7 @@ class Springs:
     K_t: Array
     C_n: Array
     C_t: Array
-    totals: dict[str, float]
+    joint_totals: dict[str, float]
     stiffness_correction: float
     open_pairs: int
 
@@ -85,7 +85,7 @@ class Placement:
     """
 
     units: UnitSet = SI_UNIT_SET
-    normal: str = "z"
+    normal_axis: str = "z"
     first_number: int = 1
     first_set_number: int = 1
     has_own_nodes: bool = True
@@ -93,13 +93,13 @@ class Placement:
     def model_coordinates(self, position: Array) -> Array:
         """Coordinates (n, 3) in the model, in its units, of positions (n, 2) [m] in the joint's plane."""
         placed = np.zeros((len(position), 3))
-        placed[:, AXIS_ORDER[self.normal][:2]] = self.units.convert(position, "m")
+        placed[:, AXIS_ORDER[self.normal_axis][:2]] = self.units.convert(position, "m")
         return placed
 
-    def assign_to_axes(self, tangential: Array, normal: Array) -> Array:
+    def assign_to_axes(self, tangential_values: Array, normal_values: Array) -> Array:
         """Assign tangential (n) and normal (n) values to the model's axes x, y, z; returns (n, 3)."""
-        placed = np.stack([tangential] * 3, axis=1)
-        placed[:, AXIS_ORDER[self.normal][2]] = normal
+        placed = np.stack([tangential_values] * 3, axis=1)
+        placed[:, AXIS_ORDER[self.normal_axis][2]] = normal_values
         return placed
 
 

@@ -109,13 +109,25 @@ def decimate_curve(
     size = np.maximum(np.abs(load), min_reference[0])
     size = np.where(size > 0.0, size, np.inf)
 
-    def error_ratio(i: int, j: int) -> float:
-        slope = (load[j] - load[i]) / (displacement[j] - displacement[i])
-        line = load[i] + slope * (displacement[i : j + 1] - displacement[i])
-        loads = float(np.max(np.abs(line - load[i : j + 1]) / size[i : j + 1])) / max_error
+    def error_ratio(first_point: int, last_point: int) -> float:
+        slope = (load[last_point] - load[first_point]) / (
+            displacement[last_point] - displacement[first_point]
+        )
+        line = load[first_point] + slope * (
+            displacement[first_point : last_point + 1] - displacement[first_point]
+        )
+        loads = (
+            float(
+                np.max(np.abs(line - load[first_point : last_point + 1]) / size[first_point : last_point + 1])
+            )
+            / max_error
+        )
         if not np.isfinite(stiffness_error):
             return loads
-        return max(loads, float(np.max(np.abs(slope / stiffness[i : j + 1] - 1.0))) / stiffness_error)
+        return max(
+            loads,
+            float(np.max(np.abs(slope / stiffness[first_point : last_point + 1] - 1.0))) / stiffness_error,
+        )
 
     stops = {*fixed_points, displacement.size - 1}
     index = decimate(stops, lambda i, j: error_ratio(i, j) <= 1.0)
@@ -136,10 +148,10 @@ def _interpolation_errors(
     slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
     cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
 
-    def largest_error(approximate: Array, exact: Array, min_reference_value: float) -> float:
-        size = np.maximum(np.abs(exact), min_reference_value)
+    def largest_error(interpolated_values: Array, exact_values: Array, min_reference_value: float) -> float:
+        size = np.maximum(np.abs(exact_values), min_reference_value)
         positive = size > 0.0
-        return float(np.max(np.abs(approximate - exact)[positive] / size[positive]))
+        return float(np.max(np.abs(interpolated_values - exact_values)[positive] / size[positive]))
 
     straight = (
         largest_error(np.interp(displacement, rows[:, 0], rows[:, 1]), load, min_reference[0]),
@@ -191,44 +203,44 @@ def format_springs_csv(springs: Springs, placement: Placement, comment_lines: Se
     damping = placement.assign_to_axes(springs.C_t, springs.C_n)
     values = [*springs.position.T, springs.area, springs.pressure, *stiffness.T, *damping.T]
     return format_columns_csv(
-        [*springs.nodes.T, *values],
+        [*springs.node_labels.T, *values],
         [*LABEL_COLUMN_HEADS, *SPRING_COLUMN_HEADS],
         placement.units,
         comment_lines,
     )
 
 
-def format_contact_csv(table: LoadTable, units: UnitSet, comment_lines: Sequence[str]) -> str:
+def format_contact_csv(load_table: LoadTable, unit_set: UnitSet, comment_lines: Sequence[str]) -> str:
     """Format a contact law as CSV: overclosure, pressure, stiffness per area."""
     heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
-    return format_columns_csv([*table.rows.T], heads, units, comment_lines)
+    return format_columns_csv([*load_table.rows.T], heads, unit_set, comment_lines)
 
 
 def format_columns_csv(
-    values: Sequence[Column], heads: ColumnHeads, units: UnitSet, comment_lines: Sequence[str]
+    values: Sequence[Column], column_heads: ColumnHeads, unit_set: UnitSet, comment_lines: Sequence[str]
 ) -> str:
     """Format columns (n) of SI values as CSV in other units."""
     converted = [
-        column if unit == "1" else units.convert(column, unit)
-        for column, (_, unit) in zip(values, heads, strict=True)
+        column if unit == "1" else unit_set.convert(column, unit)
+        for column, (_, unit) in zip(values, column_heads, strict=True)
     ]
-    names = [(name, units.symbol(unit)) for name, unit in heads]
+    names = [(name, unit_set.symbol(unit)) for name, unit in column_heads]
     return format_table(
         names, converted, digits=SIGNIFICANT_DIGITS, header_lines=comment_header(comment_lines, "#")
     )
 
 
-def format_modelica_table(table: Array, name: str, comment_lines: Sequence[str]) -> str:
+def format_modelica_table(table_rows: Array, table_name: str, comment_lines: Sequence[str]) -> str:
     """Format a table (n, columns) of SI values as the table `table_name` in a text file of Modelica.
 
     The first column must be ascending.
     """
-    body = format_rows(table.T, [SIGNIFICANT_DIGITS] * table.shape[1], delimiter=" ")
+    body = format_rows(table_rows.T, [SIGNIFICANT_DIGITS] * table_rows.shape[1], delimiter=" ")
     return "\n".join(
         [
             "#1",
             *comment_header(comment_lines, "#"),
-            f"double {name}({table.shape[0]},{table.shape[1]})",
+            f"double {table_name}({table_rows.shape[0]},{table_rows.shape[1]})",
             *body,
             "",
         ]

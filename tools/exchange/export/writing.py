@@ -18,7 +18,7 @@ class ExportedFile:
     """Content of an exported file, facts about it for the user, and warnings."""
 
     text: str
-    facts: dict[str, object]
+    facts_by_name: dict[str, object]
     warnings: tuple[str, ...] = ()
 
 
@@ -48,7 +48,11 @@ _CONTACT_WRITERS: dict[str, tuple[Callable[[tables.LoadTable, UnitSet, list[str]
 
 
 def export_springs(
-    file_format: str, file: ParameterFile, working_point: object, mesh: NodePairs | None, placement: Placement
+    file_format: str,
+    parameter_file: ParameterFile,
+    working_point: object,
+    node_pairs: NodePairs | None,
+    placement: Placement,
 ) -> ExportedFile:
     """Export springs and dashpots of a joint between node pairs.
 
@@ -57,18 +61,20 @@ def export_springs(
 
     Raises ValueError if the joint offers no springs, or they do not fit the node pairs.
     """
-    field, where = require_content(file.joint, "springs")(file.values, working_point, mesh, placement)
+    field, where = require_content(parameter_file.joint, "springs")(
+        parameter_file.values, working_point, node_pairs, placement
+    )
     units = placement.units
     sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in field.totals.items())
     about = [
-        f"springs of a {KINDS[file.joint].title} between node pairs, linear about a working point",
-        f"parameters: {file.name} ({file.joint})",
+        f"springs of a {KINDS[parameter_file.joint].title} between node pairs, linear about a working point",
+        f"parameters: {parameter_file.name} ({parameter_file.joint})",
         f"working point: {where}",
         f"units: {units.name}",
         f"pairs: {len(field.nodes)}, left out because they are open: {field.open_pairs}",
         f"sums over the pairs, SI: {sums}",
         f"stiffness multiplied by {field.stiffness_correction:.9g} to add up to the joint's",
-        f"the joint's normal is the model's {placement.normal}",
+        f"the joint's normal is the model's {placement.normal_axis}",
     ]
     write, notes = _SPRING_WRITERS[file_format]
     facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.stiffness_correction}
@@ -76,17 +82,19 @@ def export_springs(
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
 
 
-def export_contact(file_format: str, file: ParameterFile, units: UnitSet, max_error: float) -> ExportedFile:
+def export_contact(
+    file_format: str, parameter_file: ParameterFile, unit_set: UnitSet, max_error: float
+) -> ExportedFile:
     """Export the interface's pressure over its approach, for a contact of two surfaces.
 
     Raises ValueError if the joint does not offer it.
     """
-    curve, more = require_content(file.joint, "contact")(file.values)
+    curve, more = require_content(parameter_file.joint, "contact")(parameter_file.values)
     table = tables.tabulate_law(curve, max_error)
     about = [
         "normal contact of the rough interface: pressure over overclosure from first touch",
-        f"parameters: {file.name} ({file.joint})",
-        f"units: {units.name}",
+        f"parameters: {parameter_file.name} ({parameter_file.joint})",
+        f"units: {unit_set.name}",
         f"straight lines keep to the law's pressure within {table.linear_errors[0]:.2g}, to its "
         "stiffness within "
         f"{table.linear_errors[1]:.2g},",
@@ -95,44 +103,50 @@ def export_contact(file_format: str, file: ParameterFile, units: UnitSet, max_er
         *more,
     ]
     write, notes = _CONTACT_WRITERS[file_format]
-    return ExportedFile(write(table, units, [*about, *notes]), _table_facts(table))
+    return ExportedFile(write(table, unit_set, [*about, *notes]), _table_facts(table))
 
 
 def export_curve(
-    file_format: str, file: ParameterFile, working_point: object, units: UnitSet, max_error: float
+    file_format: str,
+    parameter_file: ParameterFile,
+    working_point: object,
+    unit_set: UnitSet,
+    max_error: float,
 ) -> ExportedFile:
     """Export the load over the displacement of the complete joint, with its stiffness.
 
     Raises ValueError if the joint does not offer the curve, or if the working point is missing.
     """
-    load: LoadCurve = require_content(file.joint, "curve")
-    table = load.compute_table(file.values, working_point, max_error)
+    load: LoadCurve = require_content(parameter_file.joint, "curve")
+    table = load.compute_table(parameter_file.values, working_point, max_error)
     heads = [(v.name, v.unit) for v in load.columns]
-    about = [load.meaning, f"parameters: {file.name} ({file.joint})"]
+    about = [load.meaning, f"parameters: {parameter_file.name} ({parameter_file.joint})"]
     if working_point is not None:
         about.append(f"working point: {working_point}")
     about += [
-        "columns: " + ", ".join(f"{n} [{units.symbol(u)}]" for n, u in heads),
+        "columns: " + ", ".join(f"{n} [{unit_set.symbol(u)}]" for n, u in heads),
         f"straight lines keep to the load within {table.linear_errors[0]:.2g}, to the stiffness within "
         f"{table.linear_errors[1]:.2g};",
         f"the monotone cubic of Fritsch and Butland within {table.monotone_cubic_errors[0]:.2g} and "
         f"{table.monotone_cubic_errors[1]:.2g}",
     ]
     if file_format == "modelica":
-        facts = {"table": load.name, **_table_facts(table)}
+        facts = {"table": load.table_name, **_table_facts(table)}
         return ExportedFile(
-            tables.format_modelica_table(table.rows, load.name, about), facts, _stiffness_warnings(table)
+            tables.format_modelica_table(table.rows, load.table_name, about),
+            facts,
+            _stiffness_warnings(table),
         )
     return ExportedFile(
-        tables.format_columns_csv([*table.rows.T], heads, units, about),
+        tables.format_columns_csv([*table.rows.T], heads, unit_set, about),
         _table_facts(table),
         _stiffness_warnings(table),
     )
 
 
-def _stiffness_warnings(table: tables.LoadTable) -> tuple[str, ...]:
+def _stiffness_warnings(load_table: tables.LoadTable) -> tuple[str, ...]:
     """Warn if the slope of the table differs from the stiffness by more than MAX_STIFFNESS_ERROR."""
-    straight, cubic = table.linear_errors[1], table.monotone_cubic_errors[1]
+    straight, cubic = load_table.linear_errors[1], load_table.monotone_cubic_errors[1]
     if straight <= tables.MAX_STIFFNESS_ERROR:
         return ()
     return (
@@ -141,11 +155,11 @@ def _stiffness_warnings(table: tables.LoadTable) -> tuple[str, ...]:
     )
 
 
-def _table_facts(table: tables.LoadTable) -> dict[str, object]:
+def _table_facts(load_table: tables.LoadTable) -> dict[str, object]:
     return {
-        "rows": len(table.rows),
-        "error": table.linear_errors[0],
-        "stiffness_error": table.linear_errors[1],
-        "error_monotone": table.monotone_cubic_errors[0],
-        "stiffness_error_monotone": table.monotone_cubic_errors[1],
+        "rows": len(load_table.rows),
+        "error": load_table.linear_errors[0],
+        "stiffness_error": load_table.linear_errors[1],
+        "error_monotone": load_table.monotone_cubic_errors[0],
+        "stiffness_error_monotone": load_table.monotone_cubic_errors[1],
     }

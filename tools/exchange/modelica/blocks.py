@@ -28,10 +28,10 @@ _FORCE_INPUT_NOTE = (
 _MOTION_INPUT_NOTE = "It takes motion and gives force, so it belongs between inertias."
 
 
-def interface_terms(model: Model) -> dict[str, object]:
+def interface_template_variables(model: Model) -> dict[str, object]:
     """Template variables of the partial block with an FMU's inputs and outputs."""
 
-    def connector_rows(variables: Sequence[Variable]) -> list[dict[str, object]]:
+    def list_connectors(variables: Sequence[Variable]) -> list[dict[str, object]]:
         """Name, unit, meaning and vertical position of each connector on one side of the block."""
         return [
             {
@@ -44,11 +44,11 @@ def interface_terms(model: Model) -> dict[str, object]:
             for v, y in zip(variables, _connector_heights(variables), strict=True)
         ]
 
-    inputs, outputs = connector_rows(model.inputs), connector_rows(model.outputs)
+    inputs, outputs = list_connectors(model.inputs), list_connectors(model.outputs)
     return {"name": model.name, "doc": escape_string(model.doc), "inputs": inputs, "outputs": outputs}
 
 
-def wrapper_terms(model: Model) -> dict[str, object]:
+def wrapper_template_variables(model: Model) -> dict[str, object]:
     """Template variables of the model that connects an FMU to flanges."""
     flanges = find_terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
@@ -73,7 +73,7 @@ def wrapper_terms(model: Model) -> dict[str, object]:
         "doc": escape_string(f"{model.name} as an imported FMU, between flanges"),
         "note": note,
         "parameters": parameters,
-        "terminals": [_flange_terms(t, _port_positions(model)) for t in flanges],
+        "terminals": [_flange_template_variables(t, _port_positions(model)) for t in flanges],
     }
 
 
@@ -97,7 +97,9 @@ def _connector_heights(variables: Sequence[Variable]) -> list[int]:
     return [round(90 - (i + 0.5) * 180 / len(variables)) for i in range(len(variables))]
 
 
-def _flange_terms(terminal: Terminal, port_positions: Mapping[str, tuple[float, float]]) -> dict[str, object]:
+def _flange_template_variables(
+    terminal: Terminal, port_positions: Mapping[str, tuple[float, float]]
+) -> dict[str, object]:
     """Template variables of a flange with its adaptor.
 
     Potential, rate and force of the terminal are connected to p, pder and f of the adaptor.

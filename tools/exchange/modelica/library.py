@@ -9,22 +9,22 @@ from types import ModuleType
 
 from jinja2 import Environment
 from jointfmu_fmu_src.folders import find_asset
-from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
+from jointfmu_fmu_src.partners.laws import CONTROL_POINT_COUNT
 from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
-from jointfmu.files.outputs import EXCHANGE_TEXT, PROGRAM_MARK, check_output
+from jointfmu.files.outputs import EXCHANGE_FILE, PROGRAM_MARK, check_output
 from jointfmu.files.writing import write_files
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import flat_fields
-from jointfmu.quantity.smooth import STEP_COEFFICIENTS
+from jointfmu.quantity.smooth import SMOOTH_STEP_COEFFICIENTS
 from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
 from ...systems.system import System, load_systems
-from .blocks import interface_terms, wrapper_terms
+from .blocks import interface_template_variables, wrapper_template_variables
 from .records import (
     TABLE_TOLERANCE,
     ModelicaComponent,
@@ -65,7 +65,7 @@ class _LibraryJoint:
     templates : templates of the joint
     """
 
-    kind: JointKind
+    joint_kind: JointKind
     file: ParameterFile
     component: ModelicaComponent
     records: Mapping[WorkingPoint, ModelicaRecord]
@@ -90,7 +90,7 @@ def write_library(
     working_points : {joint: working points}, in place of the default working points
     force          : replace a library of this name that jointfmu did not write
     """
-    check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_TEXT, force)
+    check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_FILE, force)
     return write_files(folder / LIBRARY_NAME, render_library(file, working_points))
 
 
@@ -108,15 +108,17 @@ def render_library(
     packages = {
         "Examples": _render_examples(joints, shared),
         "Components": _render_components(joints)
-        | _render_plain_classes(shared, "Components", _PARTNER_COMPONENTS, points=CONTROL_POINTS, comb=comb),
-        "Wrappers": {name: model.render(wrapper_terms(fmu)) for name, fmu in MODELS.items()},
-        "Interfaces": {name: block.render(interface_terms(fmu)) for name, fmu in MODELS.items()},
+        | _render_joint_independent_classes(
+            shared, "Components", _PARTNER_COMPONENTS, points=CONTROL_POINT_COUNT, comb=comb
+        ),
+        "Wrappers": {name: model.render(wrapper_template_variables(fmu)) for name, fmu in MODELS.items()},
+        "Interfaces": {name: block.render(interface_template_variables(fmu)) for name, fmu in MODELS.items()},
         "Data": _render_records(joints),
-        "Functions": _render_plain_classes(
-            shared, "Functions", _FUNCTION_NAMES, step=[round(a) for a in STEP_COEFFICIENTS]
+        "Functions": _render_joint_independent_classes(
+            shared, "Functions", _FUNCTION_NAMES, step=[round(a) for a in SMOOTH_STEP_COEFFICIENTS]
         ),
     }
-    notes = [escape_string(joint.component.note) for joint in joints if joint.component.note]
+    notes = [escape_string(joint.component.package_note) for joint in joints if joint.component.package_note]
     common = {"version": __version__, "notes": notes, "example": next(iter(MODELS))}
     out = {
         "package.mo": shared.get_template("package.mo").render(common, tolerance=f"{TABLE_TOLERANCE:g}"),
@@ -130,24 +132,28 @@ def render_library(
 
 
 def _collect_joint(
-    kind: JointKind,
-    module: ModuleType,
+    joint_kind: JointKind,
+    modelica_module: ModuleType,
     file: ParameterFile | None,
     working_points: Sequence[WorkingPoint] | None,
 ) -> _LibraryJoint:
     """Collect parameters, component, records and templates of a joint."""
-    component: ModelicaComponent = module.COMPONENT
-    is_given = file is not None and file.joint == kind.name
-    joint_file = file if file and is_given else load_default(kind.name)
+    component: ModelicaComponent = modelica_module.COMPONENT
+    is_given = file is not None and file.joint == joint_kind.name
+    joint_file = file if file and is_given else load_default(joint_kind.name)
     used_points = tuple(working_points or (*_start_working_point(joint_file), *component.working_points))
     found: Sequence[ModelicaRecord]
     if is_given:
         found = component.make_records(joint_file, used_points)
     else:
-        found = _default_records(kind.name, module, used_points)
+        found = _default_records(joint_kind.name, modelica_module, used_points)
     records = dict(zip(used_points, found, strict=True))
     return _LibraryJoint(
-        kind, joint_file, component, records, template_environment(Path(str(module.__file__)).parent)
+        joint_kind,
+        joint_file,
+        component,
+        records,
+        template_environment(Path(str(modelica_module.__file__)).parent),
     )
 
 
@@ -171,7 +177,7 @@ def _render_package_order(names: Mapping[str, object]) -> str:
     return "\n".join(names) + "\n"
 
 
-def _render_plain_classes(
+def _render_joint_independent_classes(
     shared_templates: Environment, package: str, names: Sequence[str], **terms: object
 ) -> dict[str, str]:
     """Render classes that do not depend on a joint: {class: text}."""
@@ -184,7 +190,7 @@ def _render_components(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
         name, model = joint.component.name, MODELS[joint.component.name]
         classes[name] = joint.templates.get_template(f"Components/{name}.mo").render(
             joint.component.make_template_texts(joint.record),
-            meta=_parameter_meanings(joint.kind),
+            meta=_parameter_meanings(joint.joint_kind),
             docs={v.name: v.doc for v in (*model.inputs, *model.outputs)},
             html=_render_documentation(model, joint.file),
             record=joint.record.name,
@@ -201,7 +207,7 @@ def _render_records(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
     for joint in joints:
         base = joint.component.base_record
         extended = joint.templates.get_template(f"Data/{base}.mo")
-        bases[base] = extended.render(meta=_parameter_meanings(joint.kind))
+        bases[base] = extended.render(meta=_parameter_meanings(joint.joint_kind))
         filled = joint.templates.get_template("Data/record.mo")
         for record in joint.records.values():
             if record.name in {other.component.base_record for other in joints}:
@@ -209,13 +215,13 @@ def _render_records(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
                     f"name = {joint.file.name!r}: the library has a class {record.name}; "
                     "expected another name"
                 )
-            tables[record.name] = filled.render(record.template_terms(base), version=__version__)
+            tables[record.name] = filled.render(record.template_variables(base), version=__version__)
     return bases | tables
 
 
 def _render_examples(joints: Sequence[_LibraryJoint], shared_templates: Environment) -> dict[str, str]:
     """Render the shipped systems: {class: text}."""
-    by_kind = {joint.kind.name: joint for joint in joints}
+    by_kind = {joint.joint_kind.name: joint for joint in joints}
     classes = {}
     for system in load_systems().values():
         for joint in joints:
@@ -233,10 +239,10 @@ def render_system(system: System) -> str:
 
 
 def _find_record(
-    joints: Mapping[str, _LibraryJoint], kind: str, file: ParameterFile, working_point: WorkingPoint
+    joints: Mapping[str, _LibraryJoint], joint_kind: str, file: ParameterFile, working_point: WorkingPoint
 ) -> ModelicaRecord | None:
     """Find the record of the library with a joint's parameters at a working point; None if there is none."""
-    joint = joints[kind]
+    joint = joints[joint_kind]
     special = joint.component.component_only_parameters
     same = all(
         joint.file.values_by_name.get(name) == value
@@ -246,11 +252,11 @@ def _find_record(
     return joint.records.get(working_point, joint.record if not working_point else None) if same else None
 
 
-def _parameter_meanings(kind: JointKind) -> dict[str, str]:
+def _parameter_meanings(joint_kind: JointKind) -> dict[str, str]:
     """Meanings of the parameters of all laws of a joint: {structured name: meaning}."""
     return {
         name: escape_string(item.metadata["doc"])
-        for parameters in kind.laws.values()
+        for parameters in joint_kind.laws.values()
         for name, item in flat_fields(parameters)
         if "doc" in item.metadata
     }

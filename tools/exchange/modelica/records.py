@@ -114,11 +114,11 @@ def decimate_curve(
         (0.0, 0.0) if reference_node < 0 else (curve.load[reference_node], curve.stiffness[reference_node])
     )
 
-    def reproduces(i: int, j: int) -> bool:
-        accurate = _segment_error(curve, i, j, floor) <= TABLE_TOLERANCE
-        return accurate and (segment_fits is None or segment_fits(i, j))
+    def is_reproduced_by_quintic(start_node: int, end_node: int) -> bool:
+        accurate = _segment_error(curve, start_node, end_node, floor) <= TABLE_TOLERANCE
+        return accurate and (segment_fits is None or segment_fits(start_node, end_node))
 
-    index = decimate(stops, reproduces)
+    index = decimate(stops, is_reproduced_by_quintic)
     worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
     before = np.concatenate([[curve.stiffness_slope_start[0]], curve.stiffness_slope_end[index[1:] - 1]])
     after = np.concatenate([curve.stiffness_slope_start[index[:-1]], [curve.stiffness_slope_end[-1]]])
@@ -126,20 +126,20 @@ def decimate_curve(
     return InterpolationTable(np.column_stack(columns), worst)
 
 
-def _segment_error(curve: Curve, i: int, j: int, min_reference: tuple[float, float]) -> float:
+def _segment_error(curve: Curve, start_node: int, end_node: int, min_reference: tuple[float, float]) -> float:
     """Largest relative error of load and stiffness if one quintic leads from node i to node j.
 
     min_reference : smallest load and stiffness to which the errors are relative
     """
-    ends = [i, j]
+    ends = [start_node, end_node]
     quintic = Curve(
         curve.displacement[ends],
         curve.load[ends],
         curve.stiffness[ends],
-        curve.stiffness_slope_start[i : i + 1],
-        curve.stiffness_slope_end[j - 1 : j],
+        curve.stiffness_slope_start[start_node : start_node + 1],
+        curve.stiffness_slope_end[end_node - 1 : end_node],
     )
-    x = curve.displacement[i : j + 1]
+    x = curve.displacement[start_node : end_node + 1]
     points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _SAMPLE_FRACTIONS).ravel()])
     worst = 0.0
     for exact, approximate, reference in zip(
@@ -178,7 +178,7 @@ class ModelicaRecord:
         """Largest load of the table [N or N.m]."""
         return float(self.table.rows[-1, 1])
 
-    def template_terms(self, base_record: str) -> dict[str, object]:
+    def template_variables(self, base_record: str) -> dict[str, object]:
         """Template variables of the record.
 
         base_record : name of the record that it extends
@@ -221,7 +221,7 @@ class ModelicaComponent:
     working_points: Sequence[WorkingPoint] = ((),)
     make_records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[ModelicaRecord]]
     make_template_texts: Callable[[ModelicaRecord], Mapping[str, str]]
-    note: str = ""
+    package_note: str = ""
     flanges: Sequence[str] = ("flange_a", "flange_b")
     system_parameters: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
     fixed_input_parameters: Mapping[str, str] = field(default_factory=dict)

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from jinja2 import Environment
-from jointfmu_fmu_src.joint_parts.terminals import ROTATIONAL
-from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
+from jointfmu_fmu_src.joint_parts.terminals import ROTATIONAL_FLANGE_CLASS
+from jointfmu_fmu_src.partners.laws import CONTROL_POINT_COUNT
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -27,14 +27,14 @@ RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord 
 """(kind of joint, parameter file, working point) -> record of the library; None if it has no such record."""
 
 
-class Declaration(NamedTuple):
+class ComponentDeclaration(NamedTuple):
     """Declaration of a component: type, name, modifications, position (x, y) on the diagram."""
 
     type: str
     name: str
     modifications: str
-    x: int
-    y: int
+    diagram_x: int
+    diagram_y: int
 
 
 def render_system_model(
@@ -51,7 +51,7 @@ def render_system_model(
     connected = find_connections(system)
     positions = _diagram_positions(system, connected)
     records: list[dict[str, object]] = []
-    declarations: list[Declaration] = []
+    declarations: list[ComponentDeclaration] = []
     lines: list[tuple[str, str, str]] = []
 
     def declare(component_type: str, name: str, modifications: Iterable[str], neighbour: str = "") -> None:
@@ -59,8 +59,10 @@ def render_system_model(
         x, y = positions[neighbour or name]
         if neighbour:
             x += _COLUMN_SPACING
-            y -= _ROW_SPACING * sum((declared.x, declared.y) == (x, y) for declared in declarations)
-        declarations.append(Declaration(component_type, name, ", ".join(modifications), x, y))
+            y -= _ROW_SPACING * sum(
+                (declared.diagram_x, declared.diagram_y) == (x, y) for declared in declarations
+            )
+        declarations.append(ComponentDeclaration(component_type, name, ", ".join(modifications), x, y))
         positions[name] = (x, y)
 
     def connect(start_flange: str, end_flange: str) -> None:
@@ -82,7 +84,9 @@ def render_system_model(
         if other_flange is None:
             support = f"{flange.replace('.', '_')}_held"
             domain = (
-                "Rotational" if end.flange and end.flange.connector_class == ROTATIONAL else "Translational"
+                "Rotational"
+                if end.flange and end.flange.connector_class == ROTATIONAL_FLANGE_CLASS
+                else "Translational"
             )
             declare(f"{_MECHANICS_PACKAGE}.{domain}.Components.Fixed", support, [], end.component.name)
             other_flange = f"{support}.flange"
@@ -97,7 +101,7 @@ def render_system_model(
         stop=format_number(system.stop_time),
         interval=format_number(system.interval),
         about=escape_html(f"{system.description}."),
-        sources=_format_sources(system),
+        sources=_format_value_sources(system),
     )
 
 
@@ -111,7 +115,7 @@ def _flange_name(end: ConnectionEnd) -> str | None:
     assert end.component
     name = end.component.name
     if end.is_load:
-        (first, *_) = end.members
+        (first, *_) = end.variables_by_member
         return f"{name}.flange" if end.component.model_name == "AngleProfile" else f"{name}_{first}.flange"
     assert end.flange
     shaft = end.flange.name.removeprefix("flange")
@@ -157,7 +161,7 @@ def _joint_modifications(
     (record,) = component.make_records(file, [point])
     name = f"{system_component.name[0].upper()}{system_component.name[1:]}Data"
     title = escape_string(f"{file.name}, of {system_component.name}")
-    records.append(record.template_terms(component.base_record) | {"name": name, "title": title})
+    records.append(record.template_variables(component.base_record) | {"name": name, "title": title})
     return [f"data={name}()"], changes
 
 
@@ -165,7 +169,7 @@ def _format_numbers(values: Mapping[str, Any], names: Iterable[str] | None = Non
     return [f"{key}={format_number(value)}" for key, value in values.items() if names is None or key in names]
 
 
-def _format_states(*names: str) -> list[str]:
+def _format_state_modifications(*names: str) -> list[str]:
     return [f"{name}(fixed=true, start=0, nominal={_NOMINAL_VALUES[name]})" for name in names]
 
 
@@ -177,7 +181,7 @@ def _declare_inertia(system_component: Part, declare: DeclareFunction, connect: 
     declare(
         f"{_MECHANICS_PACKAGE}.Rotational.Components.Inertia",
         system_component.name,
-        [*_format_numbers(system_component.values, ("J",)), *_format_states("phi", "w")],
+        [*_format_numbers(system_component.values, ("J",)), *_format_state_modifications("phi", "w")],
     )
     weight = {key: system_component.values.get(key, 0.0) for key in ("m", "l")}
     if all(weight.values()):
@@ -193,7 +197,9 @@ def _create_source_declarer(
 
     def declare_source(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
         values = system_component.values
-        points = [format_number(values[f"p{k}"]) for k in range(1, CONTROL_POINTS + 1) if f"p{k}" in values]
+        points = [
+            format_number(values[f"p{k}"]) for k in range(1, CONTROL_POINT_COUNT + 1) if f"p{k}" in values
+        ]
         modifications = _format_numbers(
             {key: value for key, value in values.items() if not key[1:].isdigit()}
         )
@@ -212,7 +218,7 @@ _PARTNER_DECLARERS: dict[str, Callable[[Part, DeclareFunction, ConnectFunction],
     "TranslationalMass": lambda part, declare, _: declare(
         f"{_MECHANICS_PACKAGE}.Translational.Components.Mass",
         part.name,
-        [*_format_numbers(part.values, ("m",)), *_format_states("s", "v")],
+        [*_format_numbers(part.values, ("m",)), *_format_state_modifications("s", "v")],
     ),
     "TorqueProfile": _create_source_declarer("Load", "Rotational", "Torque", "tau"),
     "ForceProfile": _create_source_declarer("Load", "Translational", "Force", "f"),
@@ -241,7 +247,7 @@ def _diagram_positions(
     }
 
 
-def _format_sources(system: System) -> str:
+def _format_value_sources(system: System) -> str:
     rows = "".join(
         f"<tr><td><code>{part.name}.{name}</code></td><td>{format_number(value)} "
         f"{part.units[name].replace('.', ' ')}</td><td>{escape_html(part.sources[name])}</td></tr>\n"

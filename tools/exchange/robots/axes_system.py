@@ -11,10 +11,10 @@ from jointfmu.quantity import Array
 
 from .elastic import ElasticAxis
 from .names import make_identifier
-from .plugged import find_spring_fmu
+from .plugin_robot import find_two_flange_fmu
 from .poses import compute_link_inertia, compute_torques
 
-WEIGHT_DURATION = 0.5
+WEIGHT_RAMP_DURATION = 0.5
 """Time [s] in which the weight is applied."""
 STOP_TIME = 2.0
 """Stop time [s] of the experiment."""
@@ -29,7 +29,7 @@ def format_axes_system(
     drive_files: Mapping[str, ParameterFile],
     pose: Array,
     payload: float,
-    tip: int,
+    tip_body: int,
 ) -> str:
     """Format the system file.
 
@@ -41,8 +41,8 @@ def format_axes_system(
     drive_files : {joint: parameter file of its drive}
     payload     : mass [kg] at the body `tip_body`
     """
-    load, _ = compute_torques(model, axes, pose, payload, tip)
-    link_inertias = np.diag(compute_link_inertia(model, axes, pose, payload, tip))
+    load, _ = compute_torques(model, axes, pose, payload, tip_body)
+    link_inertias = np.diag(compute_link_inertia(model, axes, pose, payload, tip_body))
     stiffness = np.array([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
     step = 2.0 * np.pi / STEPS_PER_PERIOD * float(np.sqrt(link_inertias / stiffness).min())
     wires, sections = [], []
@@ -56,13 +56,13 @@ def format_axes_system(
         sections += [
             f'[{name}_motor]\nmodel = "AngleProfile"',
             _format_entry("height", 0.0, "rad", "the motor holds; its input phi_in turns it"),
-            f'\n[{name}_drive]\nmodel = "{find_spring_fmu(file)}"',
+            f'\n[{name}_drive]\nmodel = "{find_two_flange_fmu(file)}"',
             f'parameters = "{make_identifier(file.name)}.toml"',
             f'\n[{name}_link]\nmodel = "RotationalInertia"',
             _format_entry("J", J, "kg.m2", "what the axis turns at the pose, the others held"),
             f'\n[{name}_weight]\nmodel = "TorqueProfile"',
             _format_entry("ramp_height", torque, "N.m", "of the weight at the pose"),
-            _format_entry("ramp_duration", WEIGHT_DURATION, "s", "slow beside the axes' periods"),
+            _format_entry("ramp_duration", WEIGHT_RAMP_DURATION, "s", "slow beside the axes' periods"),
             "",
         ]
     pose_text = ", ".join(

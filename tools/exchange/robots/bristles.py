@@ -24,47 +24,49 @@ NO_CONTROL_INPUT = 16
 
 
 def lugre_parameters(
-    drive: Transmission, inertia: float, step: float
+    drive: Transmission, motor_inertia: float, step: float
 ) -> tuple[float, float, float, float, float]:
     """Parameters of the attribute `lugre`, for a motor inertia [kg.m2] and a time step [s].
 
     Returns stiffness [N.m/rad], damping [N.m.s/rad], dry and static friction [N.m], Stribeck speed [rad/s].
     """
-    stiffness = min(drive.static_friction / drive.presliding_angle, inertia / step**2)
-    damping = max(2.0 * float(np.sqrt(stiffness * inertia)) - drive.viscous_friction, 0.0)
+    stiffness = min(drive.static_friction / drive.presliding_angle, motor_inertia / step**2)
+    damping = max(2.0 * float(np.sqrt(stiffness * motor_inertia)) - drive.viscous_friction, 0.0)
     return stiffness, damping, drive.dry_friction, drive.static_friction, drive.stribeck_speed
 
 
-def presliding_angle(drive: Transmission, inertia: float, step: float) -> float:
+def presliding_angle(drive: Transmission, motor_inertia: float, step: float) -> float:
     """Motor angle [rad] at which friction reaches 1 - 1/e of its limit; at least the value of the drive."""
-    return drive.static_friction / lugre_parameters(drive, inertia, step)[0]
+    return drive.static_friction / lugre_parameters(drive, motor_inertia, step)[0]
 
 
-def is_stable(option: Any) -> bool:
+def is_integrator_stable(simulation_options: Any) -> bool:
     """Whether the integrator in MuJoCo's options is stable with bristles."""
     import mujoco
 
-    return bool(option.integrator != mujoco.mjtIntegrator.mjINT_RK4)
+    return bool(simulation_options.integrator != mujoco.mjtIntegrator.mjINT_RK4)
 
 
-def format_friction(drive: Transmission, joint: str, inertia: float, step: float) -> str:
+def format_friction(drive: Transmission, joint: str, motor_inertia: float, step: float) -> str:
     """MJCF element of the motor friction, a child of `<actuator>`."""
-    lugre = " ".join(f"{number:.9g}" for number in lugre_parameters(drive, inertia, step))
+    lugre = " ".join(f"{number:.9g}" for number in lugre_parameters(drive, motor_inertia, step))
     return (
         f'<dcmotor name="friction" joint={quoteattr(joint)} input="none" resistance="1" motorconst="0 0" '
         f'saturation="{drive.static_friction:.9g} 0 0" lugre="{lugre}"/>'
     )
 
 
-def add_friction(spec: Any, drive: Transmission, joint: str, inertia: float, step: float) -> None:
+def add_friction(robot_spec: Any, drive: Transmission, joint: str, motor_inertia: float, step: float) -> None:
     """Add the dry friction of a drive to the motor joint of an MjSpec."""
     import mujoco
 
-    actuator = spec.add_actuator(name=f"{joint}_friction", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    actuator = robot_spec.add_actuator(
+        name=f"{joint}_friction", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+    )
     actuator.set_to_dcmotor(
         motorconst=[0.0, 0.0],
         resistance=1.0,
         saturation=[drive.static_friction, 0.0, 0.0],
-        lugre=lugre_parameters(drive, inertia, step),
+        lugre=lugre_parameters(drive, motor_inertia, step),
         ctrlspec=NO_CONTROL_INPUT,
     )

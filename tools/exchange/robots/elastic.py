@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files.reading import check_regular
+from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity import Array
 
 from . import bristles
-from .fitted import FittedSpring, fit_spring
 from .mjcf import check_version
+from .spring_fit import FittedSpring, fit_spring
 from .transmission import Transmission
 
 MOTOR_SUFFIX = "_motor"
@@ -22,9 +22,9 @@ MOTOR_BODY_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
 _MAX_JOINTS_PER_BODY = 6
 """Largest number of joints of a body in MuJoCo [1]."""
-_REVERSAL_RATIO = 1e-6
+_TORQUE_REVERSAL_RATIO = 1e-6
 """Torque reversal over the rated torque [1], for the stiffness of small vibrations."""
-_SMALL_MASS = 1e-12
+_MOTOR_BODY_MASS = 1e-12
 """Mass [kg] and inertia [kg.m2] of the bodies that carry the motors; the rotors are armatures."""
 
 
@@ -48,7 +48,7 @@ class ElasticAxis:
 
     def stiffness(self, torque: float) -> float:
         """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
-        reversal = float(np.copysign(_REVERSAL_RATIO * self.drive.rated_torque, torque))
+        reversal = float(np.copysign(_TORQUE_REVERSAL_RATIO * self.drive.rated_torque, torque))
         before, after = self.drive.compute_wind_up([torque, torque - reversal])
         return reversal / float(before - after)
 
@@ -67,7 +67,7 @@ def read_robot(path: str | Path) -> Any:
     import mujoco
 
     check_version()
-    check_regular(path, "a robot (MJCF or URDF)")
+    check_regular_file(path, "a robot (MJCF or URDF)")
     try:
         spec = mujoco.MjSpec.from_file(str(path))
         spec.compiler.fusestatic = False  # keep the tool frames of a URDF, which are fixed links
@@ -78,14 +78,14 @@ def read_robot(path: str | Path) -> Any:
     return spec
 
 
-def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
+def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
     """Make the elastic axes of the joints in `drives`, in the order of the robot.
 
     Raises ValueError for a name that is not a hinge of the robot.
     """
     import mujoco
 
-    model = spec.compile()
+    model = robot_spec.compile()
     hinges = [model.joint(i) for i in range(model.njnt) if model.jnt_type[i] == mujoco.mjtJoint.mjJNT_HINGE]
     known = [joint.name for joint in hinges]
     for name in drives:
@@ -106,7 +106,7 @@ def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis
                     "no armature in the file; the rotor inertia is set equal to the inertia that the axis "
                     "moves"
                 )
-            if drive.static_friction and bristles.is_stable(model.opt):
+            if drive.static_friction and bristles.is_integrator_stable(model.opt):
                 angle = bristles.presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
                 if angle > 1.01 * drive.presliding_angle:
                     notes.append(
@@ -134,7 +134,7 @@ def compute_mass_matrix(model: Any, pose: Array) -> Array:
     return np.array(columns)
 
 
-def add_drives(spec: Any, axes_with_drive: list[ElasticAxis], has_springs: bool = True) -> Any:
+def add_drives(robot_spec: Any, axes_with_drive: list[ElasticAxis], has_springs: bool = True) -> Any:
     """Copy the robot, add motors and drives (tendons, see `mjcf`), and move the actuators to the motors.
 
     Keyframes are omitted: they have no positions for the motors.
@@ -142,7 +142,7 @@ def add_drives(spec: Any, axes_with_drive: list[ElasticAxis], has_springs: bool 
     axes_with_drive : axes that get a motor and a drive
     has_springs     : whether to add the drives and the friction of the motors
     """
-    elastic_spec, model = spec.copy(), spec.compile()
+    elastic_spec, model = robot_spec.copy(), robot_spec.compile()
     for key in [*elastic_spec.keys]:
         elastic_spec.delete(key)
     for i, axis in enumerate(axes_with_drive):
@@ -152,7 +152,7 @@ def add_drives(spec: Any, axes_with_drive: list[ElasticAxis], has_springs: bool 
         if not has_springs:
             continue
         motor.damping = [axis.drive.viscous_friction, 0.0, 0.0]
-        if not bristles.is_stable(elastic_spec.option):
+        if not bristles.is_integrator_stable(elastic_spec.option):
             motor.frictionloss = axis.drive.dry_friction
         elif axis.drive.static_friction:
             bristles.add_friction(
@@ -177,10 +177,10 @@ def _list_tendons(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[fl
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], zero, limit
 
 
-def _add_motor_body(spec: Any, name: str) -> Any:
+def _add_motor_body(robot_spec: Any, name: str) -> Any:
     """Add a body to the world for motors; its joints move no other body, so rotors act as armatures do."""
-    body = spec.worldbody.add_body(name=name)
-    body.mass, body.inertia, body.explicitinertial = _SMALL_MASS, [_SMALL_MASS] * 3, True
+    body = robot_spec.worldbody.add_body(name=name)
+    body.mass, body.inertia, body.explicitinertial = _MOTOR_BODY_MASS, [_MOTOR_BODY_MASS] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     return body
 
@@ -273,7 +273,7 @@ def find_body(model: Any, name: str | None, axes_with_drive: list[ElasticAxis]) 
     return end
 
 
-def make_folders_absolute(spec: Any, path: Path) -> None:
+def make_folders_absolute(robot_spec: Any, path: Path) -> None:
     """Make the folders of meshes and textures absolute, so that the robot can be saved elsewhere."""
     for name in ("meshdir", "texturedir"):
-        setattr(spec, name, str((path.parent / getattr(spec, name)).resolve()))
+        setattr(robot_spec, name, str((path.parent / getattr(robot_spec, name)).resolve()))

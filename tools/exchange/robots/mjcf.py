@@ -16,7 +16,7 @@ from jointfmu.quantity import Array
 from jointfmu.version import __version__
 
 from .bristles import format_friction, presliding_angle
-from .fitted import FittedSpring, fit_spring
+from .spring_fit import FittedSpring, fit_spring
 from .transmission import RAMP_POINTS, Transmission, loop_area
 
 PRESCRIBED_ARMATURE = 1e12
@@ -29,7 +29,7 @@ LINK_FREQUENCY = 60.0
 """Natural frequency [Hz] of the link in the written file, with locked motor; defines its inertia."""
 WIND_UP_TOLERANCE = 0.03
 """Relative tolerance [1] of the wind-up at the largest fit torque."""
-AREA_TOLERANCE = 0.05
+LOOP_AREA_TOLERANCE = 0.05
 """Relative tolerance [1] of the area of the hysteresis loop."""
 
 
@@ -50,7 +50,7 @@ class FitErrors:
         if self.area is None:
             yield "loop: none, the drive has no hysteresis"
         else:
-            yield _format_verdict(f"area of the loop at {torque:g} N.m", self.area, AREA_TOLERANCE)
+            yield _format_verdict(f"area of the loop at {torque:g} N.m", self.area, LOOP_AREA_TOLERANCE)
 
 
 def _format_verdict(quantity: str, relative_error: float, tolerance: float) -> str:

@@ -15,7 +15,7 @@ def make_identifier(name: str) -> str:
     )
 
 
-def check_names(drive_files: Mapping[str, ParameterFile]) -> None:
+def check_plugin_names(drive_files: Mapping[str, ParameterFile]) -> None:
     """Raise ValueError if two drives have the same name but different parameters: one name is one plugin.
 
     drive_files : {joint: parameter file of its drive}

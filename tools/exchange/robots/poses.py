@@ -8,7 +8,7 @@ import numpy as np
 from jointfmu.quantity import Array
 
 from .elastic import ElasticAxis, compute_mass_matrix
-from .fitted import FittedSpring
+from .spring_fit import FittedSpring
 
 if TYPE_CHECKING:
     from mujoco import MjModel
@@ -20,7 +20,7 @@ def find_dofs(model: "MjModel", axes: Sequence[ElasticAxis]) -> list[int]:
 
 
 def compute_torques(
-    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
 ) -> tuple[Array, Array]:
     """Static drive torques (n) [N.m] under weight, and the Jacobian (3, n) [m/rad] of the body `tip_body`.
 
@@ -32,32 +32,32 @@ def compute_torques(
     data.qpos[:] = pose
     mujoco.mj_forward(model, data)
     jacobian = np.zeros((3, model.nv))
-    mujoco.mj_jac(model, data, jacobian, None, data.xpos[tip], tip)
+    mujoco.mj_jac(model, data, jacobian, None, data.xpos[tip_body], tip_body)
     indices = find_dofs(model, axes)
     weight = -data.qfrc_bias + jacobian.T @ (payload * model.opt.gravity)
     return weight[indices], jacobian[:, indices]
 
 
 def compute_link_inertia(
-    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
 ) -> Array:
     """Mass matrix (n, n) [kg.m2] of the links without rotors, with a payload (point mass) [kg] at the tip."""
     indices = find_dofs(model, axes)
-    _, jacobian = compute_torques(model, axes, pose, payload, tip)
+    _, jacobian = compute_torques(model, axes, pose, payload, tip_body)
     mass = compute_mass_matrix(model, pose)[np.ix_(indices, indices)] - np.diag(model.dof_armature[indices])
     return np.asarray(mass + payload * jacobian.T @ jacobian)
 
 
 def compute_frequencies(
-    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
 ) -> Array:
     """Natural frequencies (n) [Hz], ascending, at a pose under weight, with locked motors and other joints.
 
     (K - omega^2 M) x = 0 with the tangent stiffness K of the drives and the mass matrix M of the links
     without rotors; the payload is a point mass. The geometric stiffness of the weight is neglected.
     """
-    load, _ = compute_torques(model, axes, pose, payload, tip)
-    mass = compute_link_inertia(model, axes, pose, payload, tip)
+    load, _ = compute_torques(model, axes, pose, payload, tip_body)
+    mass = compute_link_inertia(model, axes, pose, payload, tip_body)
     scale = 1.0 / np.sqrt([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
     squares = np.linalg.eigvalsh(scale[:, None] * mass * scale)
     return np.asarray(np.sort(1.0 / (2.0 * np.pi * np.sqrt(squares))))
@@ -77,19 +77,19 @@ def find_largest_stable_step(model: "MjModel", axes: Sequence[ElasticAxis], pose
     return float(2.0 / np.sqrt(np.linalg.eigvalsh(scale[:, None] * mobility * scale)[-1]))
 
 
-def compute_sag(
+def compute_weight_deflection(
     model: "MjModel",
     axes: Sequence[ElasticAxis],
     pose: Array,
     payload: float,
-    tip: int,
+    tip_body: int,
     springs: Sequence[FittedSpring] | None = None,
 ) -> tuple[Array, float]:
     """Wind-ups (n) [rad] under weight at a pose with locked motors, and the tip displacement [m] they cause.
 
     springs : fitted springs (n) to use instead of the laws of the drives
     """
-    load, jacobian = compute_torques(model, axes, pose, payload, tip)
+    load, jacobian = compute_torques(model, axes, pose, payload, tip_body)
     laws: Sequence[ElasticAxis | FittedSpring] = springs or axes
     x = np.array([law.solve_wind_up(t) for law, t in zip(laws, load.tolist(), strict=True)])
     return x, float(np.linalg.norm(jacobian @ x))

@@ -11,7 +11,7 @@ from .transmission import Transmission, loop_area
 
 RATED_SPEED = 209.44
 """Motor speed [rad/s] at which catalogues state the rated torque: 2000 rpm."""
-LIGHT_INERTIAL = (
+SMALL_INERTIAL_ELEMENT = (
     '<inertial><mass value="0.001"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>'
     "</inertial>"
 )
@@ -29,7 +29,7 @@ def format_urdf(drive: Transmission, torque: float) -> tuple[str, None, list[str
             else []
         ),
         f"the damping of the wind-up, {drive.damping:.4g} N.m.s/rad",
-        *_omitted_friction(drive),
+        *_list_omitted_friction(drive),
         *drive.omitted_effects,
     ]
     about = [
@@ -42,7 +42,7 @@ def format_urdf(drive: Transmission, torque: float) -> tuple[str, None, list[str
     return f'<?xml version="1.0"?>\n{format_xml_comment(about)}{_format_robot(drive)}', None, lacks
 
 
-def _omitted_friction(drive: Transmission) -> Iterator[str]:
+def _list_omitted_friction(drive: Transmission) -> Iterator[str]:
     """Texts on omitted friction effects: Stribeck effect and presliding."""
     if drive.static_friction > drive.dry_friction:
         difference, speed = drive.static_friction - drive.dry_friction, drive.stribeck_speed
@@ -55,9 +55,9 @@ def _format_robot(drive: Transmission) -> str:
     """URDF element `robot` of a drive."""
     ratio, max_torque = abs(drive.ratio), drive.max_torque
     return f"""<robot name={quoteattr(drive.name)}>
-  <link name="base">{LIGHT_INERTIAL}</link>
-  <link name="output">{LIGHT_INERTIAL}</link>
-  <link name="rotor">{LIGHT_INERTIAL}</link>
+  <link name="base">{SMALL_INERTIAL_ELEMENT}</link>
+  <link name="output">{SMALL_INERTIAL_ELEMENT}</link>
+  <link name="rotor">{SMALL_INERTIAL_ELEMENT}</link>
   <joint name="link" type="continuous">
     <parent link="base"/>
     <child link="output"/>

@@ -6,7 +6,7 @@ from . import mjcf, urdf
 from .transmission import Transmission
 
 
-def write_drive(
+def format_drive(
     robot_format: str, drive: Transmission, torque: float | None
 ) -> tuple[str, list[str], dict[str, object]]:
     """Format a drive for a robot format (MJCF, URDF); springs are fitted up to a torque.

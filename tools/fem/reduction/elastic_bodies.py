@@ -18,7 +18,7 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import MAX_MODES, ElasticBodies
 from jointfmu.quantity import Array
 
-from ..whole_joint import AXES, LinearJoint
+from ..whole_joint import COORDINATE_AXES, LinearJoint
 from .patch_work import (
     FrictionPoints,
     LinearContact,
@@ -47,7 +47,7 @@ MAX_DISPLACEMENT_CORRECTION = 10.0
 
 
 def reduce_bodies(
-    linear_joint: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
+    linear_joint: LinearJoint, reduced_joint: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> ElasticBodies:
     """Modes of the bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
 
@@ -57,25 +57,25 @@ def reduce_bodies(
 
     Raises RuntimeError if a body can move freely.
     """
-    joint = linear_joint.joint
-    interface = joint.interface
+    joint = linear_joint.joint_model
+    interface = joint.contact_interface
     bolts = joint.bolt_positions - interface.centroid
-    motions, deformed = compute_states(linear_joint, spring, normal_stiffness, preload)
+    motions, deformed = compute_states(linear_joint, reduced_joint, normal_stiffness, preload)
     fields = _energy_modes(linear_joint, deformed, motions)
     stretch = joint.elongation_matrix.T @ fields
-    patches = spring.patches
-    start = spring.preloaded_approach(preload, 0.0)
-    point_stiffness = spring.curve.derivatives(start, 1)[1]
-    patch_approach = spring.contact.patch_approach(start)
-    ratio = spring.friction.foundation().stiffness_ratio
-    patch_shear = ratio * spring.curve.derivatives(patch_approach, 1)[1]
+    patches = reduced_joint.patches
+    start = reduced_joint.preloaded_approach(preload, 0.0)
+    point_stiffness = reduced_joint.curve.derivatives(start, 1)[1]
+    patch_approach = reduced_joint.contact.patch_approach(start)
+    ratio = reduced_joint.friction_law.foundation().stiffness_ratio
+    patch_shear = ratio * reduced_joint.curve.derivatives(patch_approach, 1)[1]
     x, y = patches.position.T
-    traces = [joint.relative_displacement_matrix(axis) @ fields for axis in AXES]
-    springs, area = interface.quadrature_area * normal_stiffness, spring.joint.A_0
+    traces = [joint.relative_displacement_matrix(axis) @ fields for axis in COORDINATE_AXES]
+    springs, area = interface.quadrature_area * normal_stiffness, reduced_joint.joint.A_0
     opening = _match_stiffness(
-        averaging_matrix(joint, spring.points.position, normal_stiffness) @ traces[2],
-        _rigid_opening(spring.points.position),
-        area * spring.points.area_share * point_stiffness,
+        averaging_matrix(joint, reduced_joint.points.position, normal_stiffness) @ traces[2],
+        _rigid_opening(reduced_joint.points.position),
+        area * reduced_joint.points.area_share * point_stiffness,
         _rigid_opening(interface.centred_position),
         traces[2],
         springs,
@@ -85,7 +85,10 @@ def reduce_bodies(
     shears = ShearStates(
         (combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear_joint.body_matrix @ deformation)).T
     )
-    law, approach = spring.friction.foundation(), approach_at_stiffness(spring, normal_stiffness)
+    law, approach = (
+        reduced_joint.friction_law.foundation(),
+        approach_at_stiffness(reduced_joint, normal_stiffness),
+    )
     surface = FrictionPoints(
         interface.quadrature_area, approach, rigid_displacement_matrix(interface.centred_position)
     )

@@ -16,7 +16,7 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from jointfmu.mechanics.footprint.distribution import FrictionPatches
-from jointfmu.mechanics.footprint.patch_reduction import CIRCLE_POINTS
+from jointfmu.mechanics.footprint.patch_reduction import SLIDER_CIRCLE_POINTS
 from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
@@ -91,7 +91,7 @@ class FrictionWork:
     cycle_loss      : (s) [J] energy loss per cycle with this amplitude
     """
 
-    forces: Array
+    friction_forces: Array
     stick_forces: Array
     cycle_loss: Array
 
@@ -99,7 +99,7 @@ class FrictionWork:
     def residual_scales(self) -> tuple[Array, Array, Array]:
         """Divisors of the errors of forces, stick forces (s, 3 + k) and losses (s), for equal weights."""
         return (
-            _force_scale(self.forces),
+            _force_scale(self.friction_forces),
             _force_scale(self.stick_forces),
             np.maximum(self.cycle_loss, MIN_DISPLACEMENT * np.max(self.cycle_loss)),
         )
@@ -285,7 +285,7 @@ class PatchFit:
         actual = assemble_friction_work(friction, self.sliders.point_area, displacement)
         target = self.target_work
         pairs = (
-            (actual.forces, target.forces),
+            (actual.friction_forces, target.friction_forces),
             (actual.stick_forces, target.stick_forces),
             (actual.cycle_loss, target.cycle_loss),
         )
@@ -378,7 +378,7 @@ def place_sliders(
 
     Returns the sliders (c m), and their displacement (2 c m, k) [1] by the rotation of the patches.
     """
-    circle = CIRCLE_POINTS if np.any(patches.radius) else 0.0 * CIRCLE_POINTS[:1]
+    circle = SLIDER_CIRCLE_POINTS if np.any(patches.radius) else 0.0 * SLIDER_CIRCLE_POINTS[:1]
     offset = circle[:, None] * patches.radius[:, None]
     count, (x, y) = len(circle), offset.reshape(-1, 2).T[:, :, None]
     slider_rotations = np.tile(modal_rotations, (count, 1))
@@ -410,7 +410,7 @@ def evaluate_friction(
 
 
 def assemble_friction_work(
-    friction: MonotonicFriction, point_area: Array, displacement: Array
+    monotonic_friction: MonotonicFriction, point_area: Array, displacement: Array
 ) -> FrictionWork:
     """Generalised forces and loss of the friction of n points.
 
@@ -419,21 +419,24 @@ def assemble_friction_work(
     """
     forces, stick_forces = (
         np.concatenate(
-            [point_area * slope * shift for shift in (friction.displacement_x, friction.displacement_y)],
+            [
+                point_area * slope * shift
+                for shift in (monotonic_friction.displacement_x, monotonic_friction.displacement_y)
+            ],
             axis=1,
         )
         @ displacement
-        for slope in (friction.secant_stiffness, friction.stick_stiffness)
+        for slope in (monotonic_friction.secant_stiffness, monotonic_friction.stick_stiffness)
     )
-    return FrictionWork(forces, stick_forces, friction.cycle_loss @ point_area)
+    return FrictionWork(forces, stick_forces, monotonic_friction.cycle_loss @ point_area)
 
 
-def stick_stiffness_matrix(friction: MonotonicFriction, point_area: Array) -> Array:
+def stick_stiffness_matrix(monotonic_friction: MonotonicFriction, point_area: Array) -> Array:
     """Stick stiffness (w, w) [N/m, N, N.m] of points with areas (n) [m2] for each pair of w states."""
     return np.asarray(
         sum(
-            (point_area * friction.stick_stiffness * shift) @ shift.T
-            for shift in (friction.displacement_x, friction.displacement_y)
+            (point_area * monotonic_friction.stick_stiffness * shift) @ shift.T
+            for shift in (monotonic_friction.displacement_x, monotonic_friction.displacement_y)
         )
     )
 

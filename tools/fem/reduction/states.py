@@ -19,7 +19,7 @@ from jointfmu.joints.bolted_joint.law import working_preload
 from jointfmu.quantity import Array
 
 from ..elasticity import Cholesky
-from ..whole_joint import AXES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
+from ..whole_joint import COORDINATE_AXES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
 from .patch_work import MIN_DISPLACEMENT
 
 SHEAR_MOTION_RATIOS = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
@@ -35,7 +35,7 @@ EQUILIBRIUM_ITERATIONS = 3
 
 
 def compute_states(
-    linear_joint: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
+    linear_joint: LinearJoint, reduced_joint: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> tuple[Array, Array]:
     """Compute the states of a joint under motions of side 2, which start from the preloaded joint.
 
@@ -48,9 +48,11 @@ def compute_states(
 
     Raises RuntimeError if a body can move freely.
     """
-    cells = CellLoads.from_joint(linear_joint.joint, spring, normal_stiffness)
-    joint_states = CellJoint.from_cells(
-        cells, linear_joint.joint.bolt_positions - linear_joint.joint.interface.centroid, preload
+    cells = UnitLoadResponse.from_joint(linear_joint.joint_model, reduced_joint, normal_stiffness)
+    joint_states = CellwiseJoint.from_cells(
+        cells,
+        linear_joint.joint_model.bolt_positions - linear_joint.joint_model.contact_interface.centroid,
+        preload,
     )
     motions = np.array(list(joint_states.generate_motions()))
     deformation = cells.unit_load_displacement @ np.stack(
@@ -58,13 +60,13 @@ def compute_states(
     )
     sheared = ~np.any(motions[:, 2:5], axis=1)
     deformation[:, sheared] = refine_equilibrium(
-        linear_joint, spring, normal_stiffness, motions[sheared], deformation[:, sheared]
+        linear_joint, reduced_joint, normal_stiffness, motions[sheared], deformation[:, sheared]
     )
     return motions, deformation
 
 
 @dataclass(frozen=True)
-class CellLoads:
+class UnitLoadResponse:
     """Response of the bodies to unit loads on the n cells of the contact and on the b bolts.
 
     joint_model            : finite-element model of the joint
@@ -75,34 +77,34 @@ class CellLoads:
     unit_load_displacement : (unknowns, 3 n + b) [m/N] under unit loads
     """
 
-    joint: JointFiniteElements
-    spring: BoltedJointSpring
+    joint_model: JointFiniteElements
+    reduced_joint: BoltedJointSpring
     normal_stiffness: Array
     averaging_operators: sp.csr_matrix
     unit_load_displacement: Array
 
     @classmethod
     def from_joint(
-        cls, joint: JointFiniteElements, spring: BoltedJointSpring, normal_stiffness: Array
-    ) -> "CellLoads":
+        cls, joint_model: JointFiniteElements, reduced_joint: BoltedJointSpring, normal_stiffness: Array
+    ) -> "UnitLoadResponse":
         """Compute the displacement under all unit loads. Raises RuntimeError if a body can move freely."""
-        means = averaging_matrix(joint, spring.points.position, normal_stiffness)
-        stretch = sp.csr_matrix(joint.elongation_matrix.T)
+        means = averaging_matrix(joint_model, reduced_joint.points.position, normal_stiffness)
+        stretch = sp.csr_matrix(joint_model.elongation_matrix.T)
         loads = sp.vstack(
-            [*(means @ joint.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
+            [*(means @ joint_model.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
         ).tocsr()
-        first, _ = joint.bodies
+        first, _ = joint_model.bodies
         displacement = np.zeros(loads.shape[::-1])
         displacement1, displacement2 = np.split(displacement, [first.unknown_count])
-        _solve_body(joint, 0, loads[:, : first.unknown_count], displacement1)
-        if joint.is_mirrored:
+        _solve_body(joint_model, 0, loads[:, : first.unknown_count], displacement1)
+        if joint_model.is_mirrored:
             sign = np.repeat([1.0, -1.0, 1.0], (means.shape[0], 2 * means.shape[0], stretch.shape[0]))
             np.multiply(displacement1, sign, out=displacement2)
             for axis, mirror_sign in enumerate(MIRROR_SIGNS):
                 displacement2[axis::3] *= mirror_sign
         else:
-            _solve_body(joint, 1, loads[:, first.unknown_count :], displacement2)
-        return cls(joint, spring, normal_stiffness, loads, displacement)
+            _solve_body(joint_model, 1, loads[:, first.unknown_count :], displacement2)
+        return cls(joint_model, reduced_joint, normal_stiffness, loads, displacement)
 
 
 def _solve_body(
@@ -119,7 +121,7 @@ def _solve_body(
 
 
 def averaging_matrix(
-    joint: JointFiniteElements, cell_centres: Array, normal_stiffness: Array
+    joint_model: JointFiniteElements, cell_centres: Array, normal_stiffness: Array
 ) -> sp.csr_matrix:
     """Averaging matrix (n, q) [1] over cells of the contact, weighted by the normal stiffness (q) [Pa/m].
 
@@ -128,7 +130,7 @@ def averaging_matrix(
 
     cell_centres : (n, 2) [m] of the cells
     """
-    interface = joint.interface
+    interface = joint_model.contact_interface
     position = interface.centred_position
     cell = cKDTree(cell_centres).query(position)[1]
     weight = interface.quadrature_area * np.maximum(normal_stiffness, 1e-6 * normal_stiffness.max())
@@ -142,7 +144,7 @@ def averaging_matrix(
 
 
 @dataclass(frozen=True)
-class CellJoint:
+class CellwiseJoint:
     """Joint with the interface law in n cells and b bolts, for monotonic motions of side 2.
 
     reduced_joint      : the reduced joint; it gives the law
@@ -152,17 +154,21 @@ class CellJoint:
     preload            : [N] per bolt
     """
 
-    spring: BoltedJointSpring
+    reduced_joint: BoltedJointSpring
     compliance: Array
     rigid_displacement: Array
     preload_approach: Array
     preload: float
 
     @classmethod
-    def from_cells(cls, cell_loads: CellLoads, bolt_positions: Array, preload: float) -> "CellJoint":
+    def from_cells(
+        cls, unit_load_response: UnitLoadResponse, bolt_positions: Array, preload: float
+    ) -> "CellwiseJoint":
         """Joint preloaded by bolts at positions (b, 2) [m], with the compliance of its cells."""
-        spring = cell_loads.spring
-        compliance = np.asarray(cell_loads.averaging_operators @ cell_loads.unit_load_displacement)
+        spring = unit_load_response.reduced_joint
+        compliance = np.asarray(
+            unit_load_response.averaging_operators @ unit_load_response.unit_load_displacement
+        )
         x, y = spring.points.position.T
         n, b = x.size, len(bolt_positions)
         rigid = np.zeros((3 * n + b, 6))
@@ -179,9 +185,9 @@ class CellJoint:
         Forces are changes from the preloaded joint. The order is: opening (n), displacement along x (n),
         displacement along y (n), elongation of the bolts (b).
         """
-        spring, n = self.spring, self.preload_approach.size
+        spring, n = self.reduced_joint, self.preload_approach.size
         joint, area = spring.joint, spring.joint.A_0 * spring.points.area_share
-        foundation = spring.friction.foundation()
+        foundation = spring.friction_law.foundation()
         ratio = foundation.stiffness_ratio
         slip_ratio = foundation.friction_coefficient / foundation.stiffness_ratio
         approach = self.preload_approach - displacements[:n]
@@ -195,8 +201,8 @@ class CellJoint:
         softening = (tangent - secant) / size**2
         preload = np.full(displacements.size - 3 * n, float(working_preload(joint, self.preload)))
         bolts, elongation = spring.bolts, displacements[3 * n :]
-        bolt = bolts.tangent(preload, elongation)
-        pull = bolts.stiffness * (elongation + bolts.gap(preload, elongation))
+        bolt = bolts.tangent_stiffness(preload, elongation)
+        pull = bolts.stiffness * (elongation + bolts.head_gap(preload, elongation))
         force = np.concatenate([-area * (p - p_preload), area * secant * u, area * secant * v, pull])
         diagonal = [area * k, area * (secant + softening * u * u), area * (secant + softening * v * v), bolt]
         return force, CellTangent(np.concatenate(diagonal), area * softening * u * v)
@@ -233,8 +239,10 @@ class CellJoint:
 
     def generate_motions(self) -> Iterator[Array]:
         """Generate motions (6) [m, rad] of side 2 into slip and opening: along each axis, then along all."""
-        joint, K = self.spring.joint, np.diag(self.stiffness())
-        radius = np.sqrt(self.spring.points.area_share @ np.sum(self.spring.points.position**2, axis=1))
+        joint, K = self.reduced_joint.joint, np.diag(self.stiffness())
+        radius = np.sqrt(
+            self.reduced_joint.points.area_share @ np.sum(self.reduced_joint.points.position**2, axis=1)
+        )
         clamping = joint.n_bolts * float(working_preload(joint, self.preload))
         load = clamping * np.array([joint.mu, joint.mu, 1.0, radius, radius, joint.mu * radius])
         unit = load / K
@@ -265,15 +273,15 @@ class CellTangent:
         return product
 
 
-def approach_at_stiffness(spring: BoltedJointSpring, normal_stiffness: Array) -> Array:
+def approach_at_stiffness(reduced_joint: BoltedJointSpring, normal_stiffness: Array) -> Array:
     """Approach (q) [m] at which the interface law has the normal stiffness (q) [Pa/m]."""
-    curve = spring.curve
+    curve = reduced_joint.curve
     return np.interp(normal_stiffness, curve.derivatives(curve.displacement, 1)[1], curve.displacement)
 
 
 def refine_equilibrium(
     linear_joint: LinearJoint,
-    spring: BoltedJointSpring,
+    reduced_joint: BoltedJointSpring,
     normal_stiffness: Array,
     motions: Array,
     negative_deformation: Array,
@@ -287,11 +295,11 @@ def refine_equilibrium(
     Each iteration uses the stiffness of the preloaded joint. Slip only lowers the stiffness, so the iteration
     converges. A state whose step grows (its contact closes) is not changed.
     """
-    joint = linear_joint.joint
-    law = spring.friction.foundation()
-    preloaded = approach_at_stiffness(spring, normal_stiffness)
-    interface, curve = joint.interface, spring.curve
-    relative = [joint.relative_displacement_matrix(axis) for axis in AXES]
+    joint = linear_joint.joint_model
+    law = reduced_joint.friction_law.foundation()
+    preloaded = approach_at_stiffness(reduced_joint, normal_stiffness)
+    interface, curve = joint.contact_interface, reduced_joint.curve
+    relative = [joint.relative_displacement_matrix(axis) for axis in COORDINATE_AXES]
     stretch = sp.csr_matrix(joint.elongation_matrix)
     rigid = linear_joint.rigid_displacement @ motions.T
     prescribed = [rows @ rigid for rows in (*relative, stretch.T)]

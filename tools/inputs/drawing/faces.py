@@ -100,7 +100,7 @@ class HeightRange(NamedTuple):
     Rz: float
 
 
-def add_faces(sheet: ParameterSheet, options: DrawingOptions) -> HeightRange:
+def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> HeightRange:
     """Add the parameters of materials, friction and roughness of the two faces to a parameter sheet.
 
     Raises ValueError, one line: unknown names, roughness not stated or stated twice, a bad number or scan.
@@ -109,28 +109,32 @@ def add_faces(sheet: ParameterSheet, options: DrawingOptions) -> HeightRange:
     for prefix, material in zip(("side1", "side2"), pair, strict=True):
         for name in ("E", "nu"):
             known = material.numbers[name]
-            sheet.add(f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}")
+            parameter_sheet.add(
+                f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}"
+            )
     soft = min(pair, key=lambda material: material.numbers["H"].value)
     if options["hardness"] is None:
         known = soft.numbers["H"]
-        sheet.add("H", known.value, known.kind, f"{soft.title}: {known.source}")
+        parameter_sheet.add("H", known.value, known.kind, f"{soft.title}: {known.source}")
     else:
-        sheet.add_drawing_value("H", parse_number("hardness", options["hardness"], "MPa", "Pa"))
+        parameter_sheet.add_drawing_value("H", parse_number("hardness", options["hardness"], "MPa", "Pa"))
     if options["mu"] is None:
-        sheet.add("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
-        sheet.set_range("mu", *DEFAULT_MU_LIMITS)
+        parameter_sheet.add("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
+        parameter_sheet.set_range("mu", *DEFAULT_MU_LIMITS)
     else:
         mu = parse_number("mu", options["mu"], "1", "1")
         if mu > MAX_MU:
             raise ValueError(
                 f"--mu = {options['mu']!r} is outside (0, {MAX_MU:g}]: coefficient of friction of metals"
             )
-        sheet.add_drawing_value("mu", mu)
-    sheet.add("traction_ratio", 0.1, "estimate", "vibration far below slip")
-    return _add_roughness(sheet, read_faces(options), options["longest_wave"])
+        parameter_sheet.add_drawing_value("mu", mu)
+    parameter_sheet.add("traction_ratio", 0.1, "estimate", "vibration far below slip")
+    return _add_roughness(parameter_sheet, read_faces(options), options["longest_wave"])
 
 
-def _add_roughness(sheet: ParameterSheet, faces: tuple[Face, Face], longest_wave: str | None) -> HeightRange:
+def _add_roughness(
+    parameter_sheet: ParameterSheet, faces: tuple[Face, Face], longest_wave: str | None
+) -> HeightRange:
     """Add the roughness of both faces together: height, slope, Hurst exponent, longest wave."""
     h, low, high = (
         float(roughness.combine_heights(*(getattr(face, name) for face in faces)))
@@ -138,40 +142,42 @@ def _add_roughness(sheet: ParameterSheet, faces: tuple[Face, Face], longest_wave
     )
     texts = "; ".join(f"side {i + 1}: {face.height_source}" for i, face in enumerate(faces))
     spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the range of the finish" if high > low else ""
-    sheet.add(
+    parameter_sheet.add(
         "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
     )
-    sheet.add(
+    parameter_sheet.add(
         "gamma", roughness.PERSSON_GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)"
     )
     longest = max((face.longest_wave for face in faces), key=lambda known: known.value)
     if longest_wave is None:
-        sheet.add_sourced_number("longest_wave", longest)
+        parameter_sheet.add_sourced_number("longest_wave", longest)
     else:
-        sheet.add_drawing_value("longest_wave", parse_number("longest_wave", longest_wave, "mm", "m"))
+        parameter_sheet.add_drawing_value(
+            "longest_wave", parse_number("longest_wave", longest_wave, "mm", "m")
+        )
     rough = max(faces, key=lambda face: face.Rq)
-    sheet.add_sourced_number("hurst", rough.hurst_exponent)
+    parameter_sheet.add_sourced_number("hurst", rough.hurst_exponent)
     slopes = [face.rms_slope for face in faces]
     value = float(roughness.combine_heights(*(known.value for known in slopes)))
-    sheet.add(
+    parameter_sheet.add(
         "slope", value, "estimate", "both sides together; " + "; ".join({known.source for known in slopes})
     )
-    _add_fractal_parameters(sheet)
+    _add_fractal_parameters(parameter_sheet)
     for i, face in enumerate(faces):
         kind = "estimate" if face.Rq_max > face.Rq_min else "user"
-        sheet.roughness |= {
+        parameter_sheet.roughness |= {
             f"{name}{i + 1}": (v, kind, face.height_source) for name, v in face.stated_heights.items()
         }
     return HeightRange(low, high, RZ_OVER_RA * rough.Rq / roughness.RQ_OVER_RA)
 
 
-def _add_fractal_parameters(sheet: ParameterSheet) -> None:
+def _add_fractal_parameters(parameter_sheet: ParameterSheet) -> None:
     """Add D and G of profiles of an isotropic surface with the same rms height, for laws that need them."""
-    h, wave, hurst = (sheet.value_of(name) for name in ("h", "longest_wave", "hurst"))
+    h, wave, hurst = (parameter_sheet.value_of(name) for name in ("h", "longest_wave", "hurst"))
     D, text = 2.0 - hurst, f"rms height {h:.3g} m of all waves up to {wave:g} m"
-    sheet.add("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
-    sheet.add("surface.G", fractal_roughness(D, h, wave), "derived", text)
-    sheet.add("surface.gamma", DEFAULT_FREQUENCY_RATIO, "estimate", "the usual value")
+    parameter_sheet.add("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
+    parameter_sheet.add("surface.G", fractal_roughness(D, h, wave), "derived", text)
+    parameter_sheet.add("surface.gamma", DEFAULT_FREQUENCY_RATIO, "estimate", "the usual value")
 
 
 def fractal_roughness(D: float, h: float, longest_wave: float) -> float:

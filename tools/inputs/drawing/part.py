@@ -66,28 +66,28 @@ class ParameterSheet:
     ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
     roughness: dict[str, tuple[float, str, str]] = field(default_factory=dict)
 
-    def add(self, name: str, value: Any, kind: str, source: str) -> None:
+    def add(self, parameter_name: str, value: Any, kind: str, source: str) -> None:
         """Add a parameter; with the prefix `inputs.`, the start value of an input."""
-        if name.startswith("inputs."):
-            self.inputs[name.removeprefix("inputs.")] = value
-        self.entries[name] = (value, kind, source)
+        if parameter_name.startswith("inputs."):
+            self.inputs[parameter_name.removeprefix("inputs.")] = value
+        self.entries[parameter_name] = (value, kind, source)
 
-    def set_range(self, name: str, low: float, high: float) -> None:
+    def set_range(self, parameter_name: str, low: float, high: float) -> None:
         """Set the lower and upper limit that the source of a parameter states."""
-        self.ranges[name] = (low, high)
+        self.ranges[parameter_name] = (low, high)
 
-    def add_drawing_value(self, name: str, value: object) -> None:
+    def add_drawing_value(self, parameter_name: str, value: object) -> None:
         """Add a parameter that the user states on the drawing."""
-        self.add(name, value, "user", "stated on the drawing")
+        self.add(parameter_name, value, "user", "stated on the drawing")
 
-    def add_sourced_number(self, name: str, number: SourcedNumber) -> None:
+    def add_sourced_number(self, parameter_name: str, number: SourcedNumber) -> None:
         """Add a parameter with the value and source of a tabulated number."""
-        self.add(name, number.value, number.kind, number.source)
+        self.add(parameter_name, number.value, number.kind, number.source)
 
-    def value_of(self, name: str) -> Any:
-        return self.entries[name][0]
+    def value_of(self, parameter_name: str) -> Any:
+        return self.entries[parameter_name][0]
 
-    def build_file(self, name: str) -> ParameterFile:
+    def build_file(self, parameter_set_name: str) -> ParameterFile:
         """Build the parameter file of that name. Parameters that the joint's law does not have are left out.
 
         Raises ValueError for a missing value, or for a value outside its allowed interval.
@@ -99,7 +99,7 @@ class ParameterSheet:
         entries = parameters | starts
         file = ParameterFile(
             self.joint,
-            name,
+            parameter_set_name,
             build_parameter_set(cls, {key: value for key, (value, _, _) in parameters.items()}),
             {key: kind for key, (_, kind, _) in entries.items()},
             {key: source for key, (_, _, source) in entries.items()},

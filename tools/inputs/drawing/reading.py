@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Sequence
 
-from jointfmu.quantity.units import KELVIN_AT_ZERO, LUBRICANT_TEMPERATURES, conversion_factor
+from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, LUBRICANT_TEMPERATURES, conversion_factor
 
 from ...common.options import option_flag
 
@@ -13,7 +13,7 @@ _NUMBER_PATTERN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)",
 
 
 def parse_number(
-    option: str, text: str, unit: str, target_unit: str, lower_bound: float | None = 0.0
+    option: str, number_text: str, unit: str, target_unit: str, lower_bound: float | None = 0.0
 ) -> float:
     """Parse the number of an option.
 
@@ -24,37 +24,37 @@ def parse_number(
 
     Raises ValueError for text that is not a number, a wrong unit, an infinite number, or one out of range.
     """
-    match = _NUMBER_PATTERN.fullmatch(text.strip())
+    match = _NUMBER_PATTERN.fullmatch(number_text.strip())
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
         example = "expected a number without a unit"
     if not match:
-        raise ValueError(f"{option_flag(option)} = {text!r} is not a number; {example}")
+        raise ValueError(f"{option_flag(option)} = {number_text!r} is not a number; {example}")
     try:
         value = float(match[1]) * conversion_factor(match[2] or unit, target_unit)
     except ValueError as error:
-        raise ValueError(f"{option_flag(option)} = {text!r}: {error}; {example}") from None
+        raise ValueError(f"{option_flag(option)} = {number_text!r}: {error}; {example}") from None
     if not math.isfinite(value) or (lower_bound is not None and not value > lower_bound):
         low = "-inf" if lower_bound is None else f"{lower_bound:g}"
-        raise ValueError(f"{option_flag(option)} = {text!r} is outside ({low}, inf)")
+        raise ValueError(f"{option_flag(option)} = {number_text!r} is outside ({low}, inf)")
     return value
 
 
-def parse_temperature(option: str, text: str) -> float:
+def parse_temperature(option: str, temperature_text: str) -> float:
     """Parse the temperature [K] of an option, stated in degC or with the unit K.
 
     Raises ValueError for text that is not a temperature, or outside the range of lubricants (LUBRICANTS).
     """
-    match = _TEMPERATURE_PATTERN.fullmatch(text.strip())
+    match = _TEMPERATURE_PATTERN.fullmatch(temperature_text.strip())
     if not match:
         raise ValueError(
-            f"{option_flag(option)} = {text!r} is not a temperature; expected 45, 45degC or 318.15K"
+            f"{option_flag(option)} = {temperature_text!r} is not a temperature; expected 45, 45degC or 318.15K"
         )
-    kelvin = float(match[1]) + (0.0 if match[2] == "K" else KELVIN_AT_ZERO)
+    kelvin = float(match[1]) + (0.0 if match[2] == "K" else CELSIUS_ZERO_IN_KELVIN)
     if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
-        low, high = (end - KELVIN_AT_ZERO for end in LUBRICANT_TEMPERATURES)
+        low, high = (end - CELSIUS_ZERO_IN_KELVIN for end in LUBRICANT_TEMPERATURES)
         raise ValueError(
-            f"{option_flag(option)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; write "
+            f"{option_flag(option)} = {temperature_text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; write "
             "kelvin as 318.15K"
         )
     return kelvin
@@ -62,7 +62,7 @@ def parse_temperature(option: str, text: str) -> float:
 
 def parse_numbers(
     option: str,
-    text: str,
+    numbers_text: str,
     unit: str,
     target_unit: str,
     *,
@@ -74,11 +74,11 @@ def parse_numbers(
 
     Raises ValueError for another count, and as `parse_number`.
     """
-    words = text.split(separator)
+    words = numbers_text.split(separator)
     if len(words) != count:
         example = separator.join(["200", "100"][:count])
         raise ValueError(
-            f"{option_flag(option)} = {text!r} has {len(words)} numbers, expected {count}, as in {example}"
+            f"{option_flag(option)} = {numbers_text!r} has {len(words)} numbers, expected {count}, as in {example}"
         )
     return [parse_number(option, word, unit, target_unit, lower_bound) for word in words]
 

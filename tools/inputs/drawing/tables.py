@@ -39,10 +39,10 @@ class TableRow:
 
 
 @cache
-def read_table(name: str) -> dict[str, TableRow]:
+def read_table(table_name: str) -> dict[str, TableRow]:
     """Read a table, `materials` or `finishes`: {name: row}."""
-    path, document = _read_document(name)
-    columns = {"materials": MATERIAL_COLUMNS, "finishes": FINISH_COLUMNS}[name]
+    path, document = _read_document(table_name)
+    columns = {"materials": MATERIAL_COLUMNS, "finishes": FINISH_COLUMNS}[table_name]
     rows = {}
     for title, body in document.items():
         plain = {key: body.pop(key) for key in ("also", "title")}
@@ -82,7 +82,7 @@ class Thread:
     """
 
     name: str
-    d: float
+    nominal_diameter: float
     pitch: float
     hole: float
     hexagon: float
@@ -98,7 +98,9 @@ def read_threads() -> dict[str, Thread]:
     mm = conversion_factor("mm", "m")
     return {
         name: Thread(
-            name, d=float(name[1:]) * mm, **{c: v * f for c, v, f in zip(names, values, columns, strict=True)}
+            name,
+            nominal_diameter=float(name[1:]) * mm,
+            **{c: v * f for c, v, f in zip(names, values, columns, strict=True)},
         )
         for name, values in document["rows"].items()
     }
@@ -139,10 +141,12 @@ MIN_LARGE_THREAD_DIAMETER = 16e-3
 
 def property_class_strength(property_class: str, stress_kind: str, thread: Thread) -> float:
     """Strength [Pa] of a property class, "yield" or "proof", for a thread."""
-    return read_property_classes()[property_class][stress_kind][int(thread.d > MIN_LARGE_THREAD_DIAMETER)]
+    return read_property_classes()[property_class][stress_kind][
+        int(thread.nominal_diameter > MIN_LARGE_THREAD_DIAMETER)
+    ]
 
 
-def _read_document(name: str) -> tuple[Path, dict[str, Any]]:
-    path = Path(str(files("jointfmu_models") / "tables" / f"{name}.toml"))
+def _read_document(table_name: str) -> tuple[Path, dict[str, Any]]:
+    path = Path(str(files("jointfmu_models") / "tables" / f"{table_name}.toml"))
     document = read_document(path, "a table")
     return path, {key: value for key, value in document.items() if key not in ("schema", "table")}

@@ -23,12 +23,12 @@ THREAD_FRICTION = 0.12
 
 def pitch_diameter(thread: Thread) -> float:
     """Pitch diameter d_2 [m] (ISO 724)."""
-    return thread.d - 0.64952 * thread.pitch
+    return thread.nominal_diameter - 0.64952 * thread.pitch
 
 
 def minor_diameter(thread: Thread) -> float:
     """Minor diameter d_3 [m] (ISO 724)."""
-    return thread.d - 1.22687 * thread.pitch
+    return thread.nominal_diameter - 1.22687 * thread.pitch
 
 
 def stress_area(thread: Thread) -> float:
@@ -37,7 +37,7 @@ def stress_area(thread: Thread) -> float:
 
 
 def bolt_compliance(
-    thread: Thread, grip: float, shank: float, head: str, thread_modulus: float | None = None
+    thread: Thread, grip: float, unthreaded_length: float, head_type: str, thread_modulus: float | None = None
 ) -> float:
     """Compliance delta_S [m/N] of a bolt: head, shank, free thread, engaged thread and nut (section 5.1.1).
 
@@ -46,16 +46,16 @@ def bolt_compliance(
     head_type         : "hexagon" (effective length 0.5 d) or "socket" (0.4 d)
     thread_modulus    : Young's modulus [Pa] of a tapped part; None: a nut with the modulus of the bolt
     """
-    nominal = 0.25 * np.pi * thread.d**2
+    nominal = 0.25 * np.pi * thread.nominal_diameter**2
     minor = 0.25 * np.pi * minor_diameter(thread) ** 2
-    length = {"hexagon": 0.5, "socket": 0.4}[head] * thread.d
+    length = {"hexagon": 0.5, "socket": 0.4}[head_type] * thread.nominal_diameter
     nut = (
-        0.4 * thread.d / (E_BOLT * nominal)
+        0.4 * thread.nominal_diameter / (E_BOLT * nominal)
         if thread_modulus is None
-        else 0.33 * thread.d / (thread_modulus * nominal)
+        else 0.33 * thread.nominal_diameter / (thread_modulus * nominal)
     )
-    free = grip - shank + 0.5 * thread.d
-    return float((length + shank) / (E_BOLT * nominal) + free / (E_BOLT * minor) + nut)
+    free = grip - unthreaded_length + 0.5 * thread.nominal_diameter
+    return float((length + unthreaded_length) / (E_BOLT * nominal) + free / (E_BOLT * minor) + nut)
 
 
 def cone_slope(grip: float, bearing_diameter: float, outer_diameter: float, is_tapped: bool) -> float:
@@ -70,9 +70,9 @@ def cone_slope(grip: float, bearing_diameter: float, outer_diameter: float, is_t
     return float(0.362 + 0.032 * np.log(0.5 * beta) + 0.153 * np.log(y))
 
 
-def cone_diameter(depth: float, bearing_diameter: float, slope: float) -> float:
+def cone_diameter(depth: float, bearing_diameter: float, tan_phi: float) -> float:
     """Diameter [m] of the deformation cone at a distance [m] below the head."""
-    return bearing_diameter + 2.0 * depth * slope
+    return bearing_diameter + 2.0 * depth * tan_phi
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +84,11 @@ class ClampedPart:
 
 
 def members_compliance(
-    layers: Sequence[ClampedPart],
+    clamped_parts: Sequence[ClampedPart],
     bearing_diameter: float,
     hole_diameter: float,
     outer_diameter: float,
-    slope: float,
+    tan_phi: float,
     is_tapped: bool,
 ) -> float:
     """Compliance delta_P [m/N] of the clamped parts: deformation cones, and a sleeve of diameter D_A.
@@ -99,18 +99,18 @@ def members_compliance(
     section of a cone from diameter D_1 to D_2 around a hole d_h has the compliance
     ln[(D_1 + d_h)(D_2 - d_h)/((D_1 - d_h)(D_2 + d_h))]/(pi E d_h tan phi).
     """
-    grip = sum(layer.thickness for layer in layers)
-    free = max(0.5 * (outer_diameter - bearing_diameter) / slope, 0.0)
-    ends = {0.0, grip, *np.cumsum([layer.thickness for layer in layers]).tolist(), free}
+    grip = sum(layer.thickness for layer in clamped_parts)
+    free = max(0.5 * (outer_diameter - bearing_diameter) / tan_phi, 0.0)
+    ends = {0.0, grip, *np.cumsum([layer.thickness for layer in clamped_parts]).tolist(), free}
     ends |= set() if is_tapped else {0.5 * grip, grip - free}
     heights = sorted(z for z in ends if 0.0 <= z <= grip)
-    total, layer_starts = 0.0, np.cumsum([0.0, *(layer.thickness for layer in layers)])
+    total, layer_starts = 0.0, np.cumsum([0.0, *(layer.thickness for layer in clamped_parts)])
     for low, high in pairwise(heights):
         middle = 0.5 * (low + high)
-        E = layers[int(np.searchsorted(layer_starts, middle)) - 1].E
+        E = clamped_parts[int(np.searchsorted(layer_starts, middle)) - 1].E
         D = [
             min(
-                cone_diameter(z if is_tapped else min(z, grip - z), bearing_diameter, slope),
+                cone_diameter(z if is_tapped else min(z, grip - z), bearing_diameter, tan_phi),
                 max(outer_diameter, hole_diameter * 1.001),
             )
             for z in (low, high)
@@ -123,7 +123,7 @@ def members_compliance(
                 * (max(D) - hole_diameter)
                 / ((min(D) - hole_diameter) * (max(D) + hole_diameter))
             )
-            total += float(term) / (np.pi * E * hole_diameter * slope)
+            total += float(term) / (np.pi * E * hole_diameter * tan_phi)
     return total
 
 
@@ -148,13 +148,19 @@ def embedding_depth(Rz: float, interface_count: int, is_tapped: bool) -> float:
     return thread + (1 if is_tapped else 2) * seat + interface_count * interface
 
 
-def shank_length(thread: Thread, grip: float, head: str, is_tapped: bool) -> float:
+def shank_length(thread: Thread, grip: float, head_type: str, is_tapped: bool) -> float:
     """Length [m] of the shank without thread inside the grip; the bolt ends two pitches beyond its nut.
 
     The thread length is that of ISO 4014 (2 d + 6 mm) and ISO 4762 (2 d + 12 mm), for bolts up to 125 mm.
     """
-    length = grip + (thread.d if is_tapped else 0.8 * thread.d + 2.0 * thread.pitch)
-    return float(np.clip(length - 2.0 * thread.d - {"hexagon": 6e-3, "socket": 12e-3}[head], 0.0, grip))
+    length = grip + (
+        thread.nominal_diameter if is_tapped else 0.8 * thread.nominal_diameter + 2.0 * thread.pitch
+    )
+    return float(
+        np.clip(
+            length - 2.0 * thread.nominal_diameter - {"hexagon": 6e-3, "socket": 12e-3}[head_type], 0.0, grip
+        )
+    )
 
 
 STRONGEST_CLASS = "12.9"
@@ -166,11 +172,11 @@ def proof_load(hole_diameter: float) -> tuple[float, str] | None:
 
     None if no bolt of the tables fits the hole.
     """
-    fitting = [thread for thread in read_threads().values() if thread.d < hole_diameter]
-    largest = max(read_threads().values(), key=lambda thread: thread.d)
-    if not fitting or hole_diameter > 1.2 * largest.d:
+    fitting = [thread for thread in read_threads().values() if thread.nominal_diameter < hole_diameter]
+    largest = max(read_threads().values(), key=lambda thread: thread.nominal_diameter)
+    if not fitting or hole_diameter > 1.2 * largest.nominal_diameter:
         return None
-    bolt = max(fitting, key=lambda thread: thread.d)
+    bolt = max(fitting, key=lambda thread: thread.nominal_diameter)
     load = property_class_strength(STRONGEST_CLASS, "proof", bolt) * stress_area(bolt)
     name = f"{bolt.name}, class {STRONGEST_CLASS} (ISO 898-1)"
     return load, f"the proof load of {name}, the largest bolt that passes the hole"

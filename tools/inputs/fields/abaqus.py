@@ -16,7 +16,7 @@ import numpy as np
 
 from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import NODE_COUNTS, FiniteElementMesh
+from .mesh import CELL_NODE_COUNTS, FiniteElementMesh
 from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
 PRESSURE_COLUMN, AREA_COLUMN = "CPRESS", "CNAREA"
@@ -35,10 +35,10 @@ class ListingRow(NamedTuple):
     column_values      : {column: value}; a vector has one column for each component
     """
 
-    location: str
-    frame: str
+    file_and_line: str
+    step_and_increment: str
     part_instance: str
-    node: int
+    node_number: int
     column_values: dict[str, float]
 
 
@@ -91,13 +91,13 @@ def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float)
 def _result_on_deck(
     path: Path,
     mesh_path: Path,
-    values: NodalValues,
+    listed_values: NodalValues,
     omits_open_nodes: bool,
     length_unit: float,
     pressure_unit: float,
 ) -> NodalResult:
     """Build the nodal result from listed pressures and the mesh of an input deck."""
-    instances = sorted({instance for instance, _ in values.pressure})
+    instances = sorted({instance for instance, _ in listed_values.pressure})
     if len(instances) > 1:
         text = (
             f"{path}: lists nodes of {len(instances)} parts ({', '.join(instances)}), "
@@ -105,7 +105,7 @@ def _result_on_deck(
         )
         raise InputRefusal(text, "beside")
     mesh = read_deck(mesh_path)
-    pressures = {node: value for (_, node), value in values.pressure.items()}
+    pressures = {node: value for (_, node), value in listed_values.pressure.items()}
     if stray := mesh.unknown_nodes(pressures):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {mesh_path}")
     return mesh.nodal_result(path, pressures, length_unit, pressure_unit, omits_open_nodes)
@@ -124,20 +124,22 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
         report = any(line.lstrip().startswith("Field Output") for line in lines)
         left_out |= not report
         for row in _report_rows(path, lines) if report else _data_file_rows(path, lines):
-            frame = frames.setdefault(row.frame, NodalValues({}, {}, {}))
-            key = row.part_instance, row.node
+            frame = frames.setdefault(row.step_and_increment, NodalValues({}, {}, {}))
+            key = row.part_instance, row.node_number
             for name, table in ((PRESSURE_COLUMN, frame.pressure), (AREA_COLUMN, frame.area)):
                 if (
                     name in row.column_values
                     and table.setdefault(key, row.column_values[name]) != row.column_values[name]
                 ):
-                    raise ValueError(f"{row.location}: node {row.node} has a second {name}, expected one")
+                    raise ValueError(
+                        f"{row.file_and_line}: node {row.node_number} has a second {name}, expected one"
+                    )
             if all(name in row.column_values for name in _COORDINATE_COLUMNS):
                 frame.position[key] = coordinates[key] = tuple(
                     row.column_values[name] for name in _COORDINATE_COLUMNS
                 )
             if PRESSURE_COLUMN in row.column_values:
-                last = row.frame
+                last = row.step_and_increment
     values = frames.get(last, NodalValues({}, {}, {}))
     return NodalValues(values.pressure, values.area, coordinates | values.position), left_out
 
@@ -172,7 +174,7 @@ def _report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
             head.append(text)
 
 
-def _column_names(location: str, head_lines: Sequence[str]) -> list[str]:
+def _column_names(file_and_line: str, head_lines: Sequence[str]) -> list[str]:
     """Read the column names in the head of a table: names in the first line, locations (@Loc 1) in the next.
 
     A name may be followed by the name of a contact pair, as in CPRESS  ASSEMBLY_A/ASSEMBLY_B.
@@ -187,25 +189,29 @@ def _column_names(location: str, head_lines: Sequence[str]) -> list[str]:
     count = sum(line.count("@Loc") for line in head_lines)
     if count not in (0, len(names)):
         raise ValueError(
-            f"{location}: has {count} columns, their names cannot be separated: {' '.join(words)}"
+            f"{file_and_line}: has {count} columns, their names cannot be separated: {' '.join(words)}"
         )
     columns = [_standard_name(name) for name in names]
     if columns.count(PRESSURE_COLUMN) > 1:
         raise ValueError(
-            f"{location}: has {columns.count(PRESSURE_COLUMN)} columns {PRESSURE_COLUMN}, expected one "
+            f"{file_and_line}: has {columns.count(PRESSURE_COLUMN)} columns {PRESSURE_COLUMN}, expected one "
             "contact pair"
         )
     return columns
 
 
-def _standard_name(name: str) -> str:
+def _standard_name(column_heading: str) -> str:
     """Standard name of a column: COOR1 for COORD.COOR1, CPRESS for CPRESS with a contact pair."""
-    first = name.split()[0]
+    first = column_heading.split()[0]
     return first.removeprefix("COORD.") if first.startswith("COORD.") else first
 
 
 def _parse_row(
-    location: str, frame: str, part_instance: str, columns: Sequence[str], row_words: Sequence[str]
+    file_and_line: str,
+    step_and_increment: str,
+    part_instance: str,
+    columns: Sequence[str],
+    row_words: Sequence[str],
 ) -> ListingRow:
     """Parse one row: a node and a number for each column. Raises ValueError for any other line."""
     numbers = row_words[-len(columns) :]
@@ -215,11 +221,15 @@ def _parse_row(
         or not all(map(NUMBER_PATTERN.fullmatch, numbers))
     ):
         raise ValueError(
-            f"{location}: {' '.join(row_words)!r} is not a row with a node and {' '.join(columns)}"
+            f"{file_and_line}: {' '.join(row_words)!r} is not a row with a node and {' '.join(columns)}"
         )
     values = [float(word.upper().replace("D", "E")) for word in numbers]
     return ListingRow(
-        location, frame, part_instance, int(row_words[0]), dict(zip(columns, values, strict=True))
+        file_and_line,
+        step_and_increment,
+        part_instance,
+        int(row_words[0]),
+        dict(zip(columns, values, strict=True)),
     )
 
 
@@ -281,7 +291,7 @@ def read_deck(path: Path) -> FiniteElementMesh:
             row = [*open_row, *(int(word) for word in words if word)]
         except ValueError:
             row = []
-        size = 1 + NODE_COUNTS.get(kind, 0)
+        size = 1 + CELL_NODE_COUNTS.get(kind, 0)
         open_row = row if words[-1] == "" and 0 < len(row) < size else []
         if not open_row and len(row) != size:
             raise ValueError(

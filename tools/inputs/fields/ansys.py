@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files.reading import check_regular
+from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity.refusal import InputRefusal
 
 from .mesh import FiniteElementMesh, missing_reader_error
@@ -149,7 +149,7 @@ def _parse_numbers(line: str) -> list[float] | None:
 
 
 def _classify_row(
-    column_names: list[str], row_numbers: list[float], location: str, previous_content: str
+    column_names: list[str], row_numbers: list[float], file_and_line: str, previous_content: str
 ) -> tuple[str, list[float]]:
     """Content of a row (see `_listing_rows`) and its relevant numbers, from the head of its table.
 
@@ -164,13 +164,13 @@ def _classify_row(
     if PRESSURE_COLUMN in column_names and "X" not in column_names:
         if len(row_numbers) != len(column_names):
             raise ValueError(
-                f"{location}: has {len(row_numbers)} numbers, its table {len(column_names)}: "
+                f"{file_and_line}: has {len(row_numbers)} numbers, its table {len(column_names)}: "
                 f"{' '.join(column_names)}"
             )
         return "pressure", [row_numbers[0], row_numbers[column_names.index(PRESSURE_COLUMN)]]
     if column_names[1:4] == ["X", "Y", "Z"]:
         if len(row_numbers) < 4:
-            raise ValueError(f"{location}: has {len(row_numbers)} numbers, expected NODE, X, Y and Z")
+            raise ValueError(f"{file_and_line}: has {len(row_numbers)} numbers, expected NODE, X, Y and Z")
         return "place", row_numbers[:4]
     return "", []
 
@@ -232,7 +232,7 @@ def _open_archive(path: Path) -> Any:
         import mapdl_archive
     except ImportError as error:
         raise missing_reader_error(path, error) from None
-    check_regular(path, "an ANSYS archive (CDWRITE)")
+    check_regular_file(path, "an ANSYS archive (CDWRITE)")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected an ANSYS archive (CDWRITE)")
     try:
@@ -245,28 +245,30 @@ def _open_archive(path: Path) -> Any:
     raise ValueError(f"{path}: mapdl-archive cannot read it ({reason}); expected NBLOCK and EBLOCK (CDWRITE)")
 
 
-def _convert_element(nodes: list[int], is_contact: bool) -> tuple[str, list[int]]:
+def _convert_element(node_numbers: list[int], is_contact: bool) -> tuple[str, list[int]]:
     """Cell type of meshio and nodes of an element, without repeated nodes; empty if it is not supported."""
     if is_contact:
-        return _convert_face([node for node in nodes if node])
-    if len(nodes) in _TETRA_CELLS:
-        return _TETRA_CELLS[len(nodes)], nodes
-    if len(nodes) not in (8, 20):
-        return "", nodes
-    kind, indices = _DEGENERATE_CELLS[len(nodes), _brick_shape(nodes)]
-    return kind, [nodes[i] for i in indices]
+        return _convert_face([node for node in node_numbers if node])
+    if len(node_numbers) in _TETRA_CELLS:
+        return _TETRA_CELLS[len(node_numbers)], node_numbers
+    if len(node_numbers) not in (8, 20):
+        return "", node_numbers
+    kind, indices = _DEGENERATE_CELLS[len(node_numbers), _brick_shape(node_numbers)]
+    return kind, [node_numbers[i] for i in indices]
 
 
-def _brick_shape(nodes: list[int]) -> str:
+def _brick_shape(node_numbers: list[int]) -> str:
     """Shape of a brick with corners I J K L M N O P, some of which may be repeated."""
-    triangle = nodes[2] == nodes[3]
-    if nodes[4] == nodes[5] == nodes[6] == nodes[7]:
+    triangle = node_numbers[2] == node_numbers[3]
+    if node_numbers[4] == node_numbers[5] == node_numbers[6] == node_numbers[7]:
         return "tetra" if triangle else "pyramid"
     return "wedge" if triangle else "brick"
 
 
-def _convert_face(nodes: list[int]) -> tuple[str, list[int]]:
+def _convert_face(node_numbers: list[int]) -> tuple[str, list[int]]:
     """Cell type of meshio and nodes of a contact face I J K L (M N O P); a triangle if K equals L."""
-    if len(nodes) in (4, 8) and nodes[2] == nodes[3]:
-        nodes = [nodes[i] for i in ((0, 1, 2) if len(nodes) == 4 else (0, 1, 2, 4, 5, 7))]
-    return {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}.get(len(nodes), ""), nodes
+    if len(node_numbers) in (4, 8) and node_numbers[2] == node_numbers[3]:
+        node_numbers = [
+            node_numbers[i] for i in ((0, 1, 2) if len(node_numbers) == 4 else (0, 1, 2, 4, 5, 7))
+        ]
+    return {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}.get(len(node_numbers), ""), node_numbers

@@ -10,10 +10,10 @@ from scipy.spatial import cKDTree
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import CORNER_COUNTS, nodal_areas
+from .mesh import FACE_CORNER_COUNTS, nodal_areas
 from .nodal_result import ContactField, NodalResult, NodeIndices
 
-AXES = "xyz"
+AXIS_NAMES = "xyz"
 PLANE_TOLERANCE = 1e-3
 """Largest distance of a node from the contact plane over the size of the contact [1]."""
 COINCIDENCE_TOLERANCE = 1e-6
@@ -41,8 +41,8 @@ class ContactPlane:
 
     def axis_indices(self) -> tuple[int, int, int]:
         """Indices of the joint's x, y and normal among the file's axes; ValueError if rows equals normal."""
-        n = AXES.index(self.normal_axis)
-        x = (n + 1) % 3 if self.bolt_row_axis is None else AXES.index(self.bolt_row_axis)
+        n = AXIS_NAMES.index(self.normal_axis)
+        x = (n + 1) % 3 if self.bolt_row_axis is None else AXIS_NAMES.index(self.bolt_row_axis)
         if x == n:
             raise ValueError(
                 f"rows = {self.bolt_row_axis!r} is also the normal; state one of the two other axes"
@@ -77,131 +77,135 @@ class ContactSurface:
         """File and number of a node of the contact, for messages."""
         return self.source_result.describe_node(int(self.node_indices[contact_node]))
 
-    def select_field(self, selected: NDArray[np.bool_]) -> ContactField:
+    def select_field(self, node_mask: NDArray[np.bool_]) -> ContactField:
         """Pressure field of the selected nodes, from a mask (n)."""
-        return ContactField(self.area[selected], self.position[selected], self.pressure[selected])
+        return ContactField(self.area[node_mask], self.position[node_mask], self.pressure[node_mask])
 
 
-def extract_surface(result: NodalResult, plane: ContactPlane) -> ContactSurface:
+def extract_surface(nodal_result: NodalResult, contact_plane: ContactPlane) -> ContactSurface:
     """Extract the contact surface from a nodal result.
 
     Raises ValueError with the node: no node has a pressure, a node lies off the plane, two nodes coincide, a
     pressure is negative or not finite, an area is not positive.
     """
-    inside = plane.project(result.position)
-    if result.area is not None:
-        index, area = np.arange(len(inside)), result.area
+    inside = contact_plane.project(nodal_result.position)
+    if nodal_result.area is not None:
+        index, area = np.arange(len(inside)), nodal_result.area
     else:
-        faces = _contact_faces(result, plane)
+        faces = _contact_faces(nodal_result, contact_plane)
         area = nodal_areas(inside, faces)
         index = np.unique(np.concatenate([block.ravel() for block in faces]))
-    pressure = result.pressure[index]
-    if result.omits_open_nodes:
+    pressure = nodal_result.pressure[index]
+    if nodal_result.omits_open_nodes:
         pressure = np.nan_to_num(pressure, nan=0.0)
-    contact = ContactSurface(result, index, area[index], inside[index], pressure)
+    contact = ContactSurface(nodal_result, index, area[index], inside[index], pressure)
     _check_surface(contact)
     return contact
 
 
-def _check_surface(contact: ContactSurface) -> None:
+def _check_surface(contact_surface: ContactSurface) -> None:
     """Raise ValueError for a pressure or area out of range, and for nodes that coincide."""
-    p = contact.pressure
+    p = contact_surface.pressure
     for invalid, text in (
         (~np.isfinite(p), "pressure = {p:g} is not a finite number"),
         (p < 0.0, "pressure = {p:g} Pa is outside [0, inf)"),
-        (~(contact.area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
+        (~(contact_surface.area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
     ):
         if np.any(invalid):
             i = int(np.argmax(invalid))
-            raise ValueError(f"{contact.describe_node(i)}: {text.format(p=p[i], a=contact.area[i])}")
-    size = float(np.max(np.ptp(contact.position, axis=0)))
-    coincident = cKDTree(contact.position).query_pairs(COINCIDENCE_TOLERANCE * size)
+            raise ValueError(
+                f"{contact_surface.describe_node(i)}: {text.format(p=p[i], a=contact_surface.area[i])}"
+            )
+    size = float(np.max(np.ptp(contact_surface.position, axis=0)))
+    coincident = cKDTree(contact_surface.position).query_pairs(COINCIDENCE_TOLERANCE * size)
     if coincident:
         first, second = min(coincident)
         raise ValueError(
-            f"{contact.describe_node(second)}: is at the same place as {contact.source_result.node_label} "
-            f"{contact.source_result.node_numbers[contact.node_indices[first]]}; give each position once"
+            f"{contact_surface.describe_node(second)}: is at the same place as {contact_surface.source_result.node_label} "
+            f"{contact_surface.source_result.node_numbers[contact_surface.node_indices[first]]}; give each position once"
         )
 
 
-def _contact_faces(result: NodalResult, plane: ContactPlane) -> list[NodeIndices]:
+def _contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> list[NodeIndices]:
     """Contact faces: faces in the plane of the nodes with pressure, of the bodies with pressure."""
-    loaded = np.flatnonzero(np.nan_to_num(result.pressure) != 0.0)
+    loaded = np.flatnonzero(np.nan_to_num(nodal_result.pressure) != 0.0)
     if not loaded.size:
-        raise ValueError(f"{result.path}: no node has a pressure")
-    _check_not_line(result, loaded)
-    axis = plane.axis_indices()[2]
-    height, size = result.position[:, axis], float(np.max(np.ptp(result.position, axis=0)))
+        raise ValueError(f"{nodal_result.path}: no node has a pressure")
+    _check_not_line(nodal_result, loaded)
+    axis = contact_plane.axis_indices()[2]
+    height, size = nodal_result.position[:, axis], float(np.max(np.ptp(nodal_result.position, axis=0)))
     level = float(np.median(height[loaded]))
     off_plane = np.abs(height - level) > PLANE_TOLERANCE * size
     if np.any(off_plane[loaded]):
         i = int(loaded[np.argmax(off_plane[loaded])])
         raise InputRefusal(
-            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m away from the plane "
-            f"{plane.normal_axis} = {level:.6g} m; the contact must be plane; state its normal",
+            f"{nodal_result.describe_node(i)}: lies {abs(height[i] - level):.3g} m away from the plane "
+            f"{contact_plane.normal_axis} = {level:.6g} m; the contact must be plane; state its normal",
             "normal",
         )
     candidate = ~off_plane & np.isin(
-        _body_of_node(result), _select_bodies(result, loaded, height - level, plane)
+        _body_of_node(nodal_result), _select_bodies(nodal_result, loaded, height - level, contact_plane)
     )
-    faces = [block[np.all(candidate[block], axis=1)] for block in result.faces]
-    faces = _drop_empty_midside_nodes(result, [block for block in faces if block.size])
+    faces = [block[np.all(candidate[block], axis=1)] for block in nodal_result.faces]
+    faces = _drop_empty_midside_nodes(nodal_result, [block for block in faces if block.size])
     used = np.zeros(len(height), dtype=bool)
     for block in faces:
         used[block] = True
     unused = loaded[~used[loaded] & candidate[loaded]]
     if unused.size:
         raise ValueError(
-            f"{result.describe_node(int(unused[0]))}: has a pressure and is on no face of the contact"
+            f"{nodal_result.describe_node(int(unused[0]))}: has a pressure and is on no face of the contact"
         )
     return faces
 
 
-def _check_not_line(result: NodalResult, loaded_nodes: NodeIndices) -> None:
+def _check_not_line(nodal_result: NodalResult, loaded_nodes: NodeIndices) -> None:
     """Raise ValueError if the contact is a line, as in a two-dimensional model."""
-    offset = result.position[loaded_nodes] - result.position[loaded_nodes[0]]
+    offset = nodal_result.position[loaded_nodes] - nodal_result.position[loaded_nodes[0]]
     farthest = offset[np.argmax(np.sum(offset**2, axis=1))]
     size = float(np.linalg.norm(farthest))
     distance = np.linalg.norm(np.cross(offset, farthest), axis=1) if size else np.zeros(1)
     if np.max(distance) <= PLANE_TOLERANCE * size**2:
         raise ValueError(
-            f"{result.path}: all nodes with pressure lie on one line, as in a two-dimensional or "
+            f"{nodal_result.path}: all nodes with pressure lie on one line, as in a two-dimensional or "
             "axisymmetric model; give the result of a three-dimensional model"
         )
 
 
-def _body_of_node(result: NodalResult) -> NDArray[np.int64]:
+def _body_of_node(nodal_result: NodalResult) -> NDArray[np.int64]:
     """Number of the body of each node; 0 if the result has no bodies."""
     return (
-        np.zeros(len(result.position), dtype=np.int64) if result.body_of_node is None else result.body_of_node
+        np.zeros(len(nodal_result.position), dtype=np.int64)
+        if nodal_result.body_of_node is None
+        else nodal_result.body_of_node
     )
 
 
 def _select_bodies(
-    result: NodalResult, loaded_nodes: NodeIndices, node_height: Array, plane: ContactPlane
+    nodal_result: NodalResult, loaded_nodes: NodeIndices, node_height: Array, contact_plane: ContactPlane
 ) -> list[int]:
     """Numbers of the bodies with pressure; only the bodies on `body_side` of the plane if a side is stated.
 
     A body lies above the plane if the mean height of its nodes is positive.
     """
-    body = _body_of_node(result)
+    body = _body_of_node(nodal_result)
     with_pressure: list[int] = np.unique(body[loaded_nodes]).tolist()
-    if plane.body_side is None:
+    if contact_plane.body_side is None:
         return with_pressure
-    sign = 1.0 if plane.body_side == "above" else -1.0
+    sign = 1.0 if contact_plane.body_side == "above" else -1.0
     selected = [
         number for number in with_pressure if sign * float(np.mean(node_height[body == number])) > 0.0
     ]
     if not selected:
-        raise ValueError(f"{result.path}: no body {plane.body_side} the plane has a pressure")
+        raise ValueError(f"{nodal_result.path}: no body {contact_plane.body_side} the plane has a pressure")
     return selected
 
 
-def _drop_empty_midside_nodes(result: NodalResult, faces: Sequence[NodeIndices]) -> list[NodeIndices]:
+def _drop_empty_midside_nodes(nodal_result: NodalResult, faces: Sequence[NodeIndices]) -> list[NodeIndices]:
     """Reduce quadratic faces to linear ones if no mid-side node has a value (some programs list corners)."""
-    has_value = np.isfinite(result.pressure)
-    midside = [block[:, CORNER_COUNTS[block.shape[1]] :].ravel() for block in faces]
+    has_value = np.isfinite(nodal_result.pressure)
+    midside = [block[:, FACE_CORNER_COUNTS[block.shape[1]] :].ravel() for block in faces]
     nodes = np.concatenate([*midside, np.empty(0, dtype=np.intp)])
     if nodes.size and not np.any(has_value[nodes]):
-        return [block[:, : CORNER_COUNTS[block.shape[1]]] for block in faces]
+        return [block[:, : FACE_CORNER_COUNTS[block.shape[1]]] for block in faces]
     return list(faces)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
 
-from .mesh import NODE_COUNTS, FiniteElementMesh
+from .mesh import CELL_NODE_COUNTS, FiniteElementMesh
 from .nodal_result import NodalResult
 
 CELL_TYPES = {
@@ -119,7 +119,7 @@ def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
             raise ValueError(
                 f"{path}: line {number + 1}: {line[:60]!r} is not an element of the format"
             ) from None
-        if len(nodes) == NODE_COUNTS.get(kind):
+        if len(nodes) == CELL_NODE_COUNTS.get(kind):
             cells.setdefault(kind, []).append([nodes[i] for i in NODE_ORDER.get(kind, range(len(nodes)))])
     return cells
 

@@ -32,8 +32,8 @@ _REPLACED_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
 
 
 def insert_field(
-    file: ParameterFile,
-    field: ContactField,
+    parameter_file: ParameterFile,
+    contact_field: ContactField,
     preload: float,
     field_source: str,
     moment_field: ContactField | None = None,
@@ -63,34 +63,38 @@ def insert_field(
     bolt force by more than the tolerance, if the two fields have different nodes, or if the moment of the
     pressure is far from the given moment.
     """
-    check_pressure_field(file.joint)
-    shape = pressure_shape(file.values, field, preload, moment_field, moment, force_tolerance)
-    reduction = reduce_field(
-        replace(file.values, A_0=float(np.sum(field.area))), shape, preload, nodal_pressures
+    check_pressure_field(parameter_file.joint)
+    shape = normalise_pressure_field(
+        parameter_file.values, contact_field, preload, moment_field, moment, force_tolerance
     )
-    initial = reduction.reduced_shape if shape.area_share.size > MAX_KEPT_NODES else None
+    reduction = reduce_field(
+        replace(parameter_file.values, A_0=float(np.sum(contact_field.area))), shape, preload, nodal_pressures
+    )
+    initial = reduction.reduced_distribution if shape.area_share.size > MAX_KEPT_NODES else None
     patches = reduce_patches(shape, MAX_PATCHES, initial)
-    lists = nodal_field_entries(reduction.reduced_shape) | nodal_field_entries(patches)
+    lists = nodal_field_entries(reduction.reduced_distribution) | nodal_field_entries(patches)
     new_values: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
-    new_values["A_0"] = float(np.sum(field.area))
+    new_values["A_0"] = float(np.sum(contact_field.area))
     if bolt_positions is not None:
-        positions = bolt_positions - field.centroid
+        positions = bolt_positions - contact_field.centroid
         bolt_means = position_means(positions)
         new_values |= {
             f"field.{name}": value for name, value in zip(BOLT_MEAN_NAMES, bolt_means, strict=True)
         }
         new_values |= {f"field.each_bolt_{a}": tuple(positions[:, i].tolist()) for i, a in enumerate("xy")}
-    old_values = {n: v for n, v in file.values_by_name.items() if not n.startswith(_REPLACED_PREFIXES)}
+    old_values = {
+        n: v for n, v in parameter_file.values_by_name.items() if not n.startswith(_REPLACED_PREFIXES)
+    }
     text = (
         f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for "
         f"{reduction.node_count} nodes"
     )
     return replace(
-        file,
-        values=build_parameter_set(type(file.values), old_values | new_values),
-        origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED_PREFIXES)}
+        parameter_file,
+        values=build_parameter_set(type(parameter_file.values), old_values | new_values),
+        origins={n: k for n, k in parameter_file.origins.items() if not n.startswith(_REPLACED_PREFIXES)}
         | dict.fromkeys(new_values, "derived"),
-        sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED_PREFIXES)}
+        sources={n: s for n, s in parameter_file.sources.items() if not n.startswith(_REPLACED_PREFIXES)}
         | dict.fromkeys(new_values, text)
         | {
             "A_0": f"{field_source}, sum of the nodal areas",
@@ -106,9 +110,9 @@ def _describe_moment_rule(moment_field: ContactField | None, moment: float | Non
     return f"from the field at {moment:g} N.m"
 
 
-def pressure_shape(
+def normalise_pressure_field(
     joint: BoltedInterface,
-    field: ContactField,
+    contact_field: ContactField,
     preload: float,
     moment_field: ContactField | None = None,
     moment: float | None = None,
@@ -120,18 +124,18 @@ def pressure_shape(
     force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =
     L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p is the centre of pressure.
     """
-    scale = _force_ratio(joint, field, preload, "the field", force_tolerance)
-    area = float(np.sum(field.area))
-    share, position = field.area / area, field.position - field.centroid
+    scale = _force_ratio(joint, contact_field, preload, "the field", force_tolerance)
+    area = float(np.sum(contact_field.area))
+    share, position = contact_field.area / area, contact_field.position - contact_field.centroid
     mean = preload * joint.n_bolts / area
-    equal = scale * field.pressure / mean
+    equal = scale * contact_field.pressure / mean
     if moment_field is None:
         tilt = joint.row_distance * moment_pressure(share, position[:, 1], equal)
         return PressureDistribution(share, position, equal, tilt)
     if moment is None or not np.isfinite(moment) or moment == 0.0:
         raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
     scale = _force_ratio(joint, moment_field, preload, "the field with a moment", force_tolerance)
-    _check_same_nodes(field, moment_field)
+    _check_same_nodes(contact_field, moment_field)
     added = scale * moment_field.pressure - mean * equal
     moment_ratio = area * float(share @ (added * position[:, 1])) / moment
     if not MOMENT_RATIO_RANGE[0] <= moment_ratio <= MOMENT_RATIO_RANGE[1]:
@@ -144,7 +148,11 @@ def pressure_shape(
 
 
 def _force_ratio(
-    joint: BoltedInterface, field: ContactField, preload: float, field_name: str, force_tolerance: float
+    joint: BoltedInterface,
+    contact_field: ContactField,
+    preload: float,
+    field_name: str,
+    force_tolerance: float,
 ) -> float:
     """Total bolt force over the force of the field [1]. ValueError if it differs from 1 by > tolerance."""
     if not 0.0 < force_tolerance < 1.0:
@@ -152,49 +160,56 @@ def _force_ratio(
     if not 0.0 < preload < np.inf:
         raise ValueError(f"preload = {preload:g} N is outside (0, inf)")
     expected = preload * joint.n_bolts
-    if not abs(field.force / expected - 1.0) <= force_tolerance:
+    if not abs(contact_field.force / expected - 1.0) <= force_tolerance:
         raise InputRefusal(
-            f"the force of {field_name} is {field.force:.6g} N, expected {expected:.6g} N within "
+            f"the force of {field_name} is {contact_field.force:.6g} N, expected {expected:.6g} N within "
             f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; with a larger "
             "tolerance the field is scaled to the bolt force",
             "force_tolerance",
         )
-    return expected / field.force
+    return expected / contact_field.force
 
 
-def _check_same_nodes(field: ContactField, moment_field: ContactField) -> None:
+def _check_same_nodes(contact_field: ContactField, moment_field: ContactField) -> None:
     """Raise ValueError if two fields have different nodes; the message names the first difference."""
-    if field.area.size != moment_field.area.size:
+    if contact_field.area.size != moment_field.area.size:
         raise ValueError(
             f"the field with a moment has {moment_field.area.size} nodes, "
-            f"expected those of the first: {field.area.size}"
+            f"expected those of the first: {contact_field.area.size}"
         )
-    size = float(np.ptp(field.position, axis=0).max())
-    differs = np.max(np.abs(moment_field.position - field.position), axis=1) > 1e-6 * size
-    differs |= np.abs(moment_field.area - field.area) > 1e-6 * np.max(field.area)
+    size = float(np.ptp(contact_field.position, axis=0).max())
+    differs = np.max(np.abs(moment_field.position - contact_field.position), axis=1) > 1e-6 * size
+    differs |= np.abs(moment_field.area - contact_field.area) > 1e-6 * np.max(contact_field.area)
     if np.any(differs):
         i = int(np.argmax(differs))
         raise ValueError(
             f"node {i + 1} of the field with a moment is at {moment_field.position[i].tolist()} m with "
-            f"{moment_field.area[i]:g} m2, expected {field.position[i].tolist()} m with {field.area[i]:g} m2"
+            f"{moment_field.area[i]:g} m2, expected {contact_field.position[i].tolist()} m with {contact_field.area[i]:g} m2"
         )
 
 
-def draw_field(field: ContactField, reduction: Reduction, path: str | Path) -> None:
+def draw_field(contact_field: ContactField, reduction: Reduction, path: str | Path) -> None:
     """Plot the pressure at all nodes next to the pressure at the reduced points, as .png or .svg."""
-    position = 1e3 * (field.position - field.centroid)
+    position = 1e3 * (contact_field.position - contact_field.centroid)
     width, height = np.ptp(position, axis=0)
     with plots.open_figure(path, (10.4, float(np.clip(4.6 * height / width, 3.0, 7.0)))) as figure:
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
-        size = 20.0 * field.area / np.max(field.area) * min(1.0, 3000.0 / field.area.size)
-        nodes = left.scatter(*position.T, c=1e-6 * field.pressure, s=size, cmap="viridis", lw=0.0)
+        size = (
+            20.0
+            * contact_field.area
+            / np.max(contact_field.area)
+            * min(1.0, 3000.0 / contact_field.area.size)
+        )
+        nodes = left.scatter(*position.T, c=1e-6 * contact_field.pressure, s=size, cmap="viridis", lw=0.0)
         figure.colorbar(nodes, ax=left, label="pressure [MPa]", shrink=0.85)
-        left.set_title(f"{field.area.size} nodes, {field.force / 1e3:.4g} kN", loc="left", fontsize=10)
-        shape = reduction.reduced_shape
-        mean = field.force / float(np.sum(field.area))
+        left.set_title(
+            f"{contact_field.area.size} nodes, {contact_field.force / 1e3:.4g} kN", loc="left", fontsize=10
+        )
+        shape = reduction.reduced_distribution
+        mean = contact_field.force / float(np.sum(contact_field.area))
         points = right.scatter(
             *(1e3 * shape.position.T),
-            c=1e-6 * mean * shape.preload_shape,
+            c=1e-6 * mean * shape.preload_pressure_ratio,
             s=np.clip(2000.0 * shape.area_share, 4.0, 400.0),
             cmap="viridis",
             alpha=0.75,

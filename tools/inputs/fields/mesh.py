@@ -28,7 +28,7 @@ LINEAR_FACES: dict[int, tuple[tuple[int, ...], ...]] = {
     9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)),
 }
 """{number of nodes of a face: corners of the linear faces into which it is divided}."""
-CORNER_COUNTS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
+FACE_CORNER_COUNTS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
 _GAUSS_POINT = 1.0 / np.sqrt(3.0)
 
 
@@ -94,7 +94,7 @@ VOLUME_CELLS: dict[str, tuple[int, _NodeTuples, _NodeTuples]] = {
 }
 """{cell type: (number of corners, corners of each face, edges in the order of their mid-side nodes)}."""
 SURFACE_CELLS = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
-NODE_COUNTS = SURFACE_CELLS | {
+CELL_NODE_COUNTS = SURFACE_CELLS | {
     name: corners + len(edges) for name, (corners, _, edges) in VOLUME_CELLS.items()
 }
 """{cell type: number of nodes}."""
@@ -127,7 +127,7 @@ def _cell_faces(cell_type: str) -> list[tuple[int, ...]]:
 
 def _unshared_faces(faces: NodeIndices, face_node_count: int) -> NodeIndices:
     """Select the faces that occur only once, from faces (k, nodes of a face)."""
-    keys = np.sort(faces[:, : CORNER_COUNTS[face_node_count]], axis=1)
+    keys = np.sort(faces[:, : FACE_CORNER_COUNTS[face_node_count]], axis=1)
     _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[count == 1])])
 
@@ -227,7 +227,7 @@ def faces_with_values(faces: Sequence[NodeIndices], nodal_values: Array) -> list
     """Faces whose corners all have a value, from nodal values (n) with NaN for none."""
     has_value = np.isfinite(nodal_values)
     selected = [
-        block[np.all(has_value[block[:, : CORNER_COUNTS[block.shape[1]]]], axis=1)] for block in faces
+        block[np.all(has_value[block[:, : FACE_CORNER_COUNTS[block.shape[1]]]], axis=1)] for block in faces
     ]
     return [block for block in selected if block.size]
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files.reading import check_regular
+from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
@@ -72,7 +72,7 @@ def _read_meshio(path: Path) -> Any:
         import meshio
     except ImportError as error:
         raise missing_reader_error(path, error) from None
-    check_regular(path, "a mesh with point data")
+    check_regular_file(path, "a mesh with point data")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected a mesh with point data")
     try:

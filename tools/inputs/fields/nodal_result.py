@@ -114,7 +114,9 @@ def read_csv(path: Path) -> NodalResult:
     )
 
 
-def csv_text(field: ContactField) -> str:
+def csv_text(contact_field: ContactField) -> str:
     """Text of a CSV file with a field in SI units; `read_csv` reads the same numbers to the last bit."""
     heads = [(name, next(iter(units))) for name, units in COLUMN_UNITS.items()]
-    return columns.format_table(heads, [*field.position.T, field.area, field.pressure])
+    return columns.format_table(
+        heads, [*contact_field.position.T, contact_field.area, contact_field.pressure]
+    )

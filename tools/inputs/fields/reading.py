@@ -40,7 +40,7 @@ class FieldReader:
     open_nodes      : treatment of nodes without pressure, one of OPEN_NODE_OPTIONS
     """
 
-    format: str | None = None
+    file_format: str | None = None
     length_unit: str | None = None
     pressure_unit: str | None = None
     point_data_name: str | None = None
@@ -87,8 +87,8 @@ class FieldReader:
 
     def _read_result(self, path: Path, companion_files: Sequence[Path]) -> NodalResult:
         """Read a nodal result with the reader of its format; ValueError for options that do not apply."""
-        format = self.format or FORMAT_BY_SUFFIX.get(path.suffix.lower(), "mesh")
-        if format == "mesh" and not self.format and not meshfile.is_format_supported(path):
+        format = self.file_format or FORMAT_BY_SUFFIX.get(path.suffix.lower(), "mesh")
+        if format == "mesh" and not self.file_format and not meshfile.is_format_supported(path):
             text = f"suffix {path.suffix!r} is of no format known here"
             raise InputRefusal(
                 f"{path}: {text}; state the format, one of {', '.join(FIELD_FORMATS)}", "format"
@@ -136,12 +136,12 @@ class FieldReader:
                 raise InputRefusal(text, name)
 
 
-def _check_no_open_nodes(surface: ContactSurface) -> None:
+def _check_no_open_nodes(contact_surface: ContactSurface) -> None:
     """Raise ValueError if a node has no pressure."""
-    open_nodes = np.flatnonzero(surface.pressure == 0.0)
+    open_nodes = np.flatnonzero(contact_surface.pressure == 0.0)
     if open_nodes.size:
         raise InputRefusal(
-            f"{surface.describe_node(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
-            f"{surface.area.size} nodes; state keep (they just touch) or drop (they never touch)",
+            f"{contact_surface.describe_node(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
+            f"{contact_surface.area.size} nodes; state keep (they just touch) or drop (they never touch)",
             "open",
         )

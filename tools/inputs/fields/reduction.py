@@ -41,7 +41,9 @@ GROUPS_PER_SUM = 2
 """Number of groups of nodes over number of independent sums [1]."""
 
 
-def recombine(values: Array, weights: Array, orthogonal_transform: Array) -> tuple[NodeIndices, Array]:
+def recombine(
+    function_values: Array, node_weights: Array, orthogonal_transform: Array
+) -> tuple[NodeIndices, Array]:
     """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
 
     function_values      : (n, d) of the functions at the nodes
@@ -50,18 +52,18 @@ def recombine(values: Array, weights: Array, orthogonal_transform: Array) -> tup
 
     Returns the indices of the nodes and their weights. Raises RuntimeError if round-off prevents a solution.
     """
-    selected, count = np.arange(len(values)), values.shape[1]
+    selected, count = np.arange(len(function_values)), function_values.shape[1]
     while selected.size > count:
         bounds = np.linspace(0, selected.size, min(GROUPS_PER_SUM * count, selected.size) + 1).astype(np.intp)
-        sums = [weights[a:b] @ values[a:b] for a, b in pairwise(bounds)]
+        sums = [node_weights[a:b] @ function_values[a:b] for a, b in pairwise(bounds)]
         vectors = (np.array(sums) @ orthogonal_transform).T
         factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
         node_factors = np.repeat(factors, np.diff(bounds))
         positive = node_factors > 0.0
         selected = selected[positive]
-        weights = (weights * node_factors)[positive]
-        values = values[positive]
-    return selected, weights
+        node_weights = (node_weights * node_factors)[positive]
+        function_values = function_values[positive]
+    return selected, node_weights
 
 
 RELATIVE_TOLERANCE = 1e-6
@@ -110,8 +112,8 @@ class Reduction:
         1
     """
 
-    reduced_shape: PressureDistribution
-    full_shape: PressureDistribution
+    reduced_distribution: PressureDistribution
+    full_distribution: PressureDistribution
     largest_deviation: float = 0.0
     test_case_count: int = 0
     max_tested_moment_ratio: float = 1.0
@@ -120,17 +122,17 @@ class Reduction:
     @property
     def point_count(self) -> int:
         """Number of reduced points."""
-        return int(self.reduced_shape.area_share.size)
+        return int(self.reduced_distribution.area_share.size)
 
     @property
     def node_count(self) -> int:
         """Number of nodes of the field."""
-        return int(self.full_shape.area_share.size)
+        return int(self.full_distribution.area_share.size)
 
 
 def reduce_field(
     joint: BoltedInterface,
-    pressure_shape: PressureDistribution,
+    normalised_pressure: PressureDistribution,
     preload: float,
     nodal_pressures: PressureFunction,
 ) -> Reduction:
@@ -145,21 +147,21 @@ def reduce_field(
 
     Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
     """
-    nodes = pressure_shape.area_share.size
+    nodes = normalised_pressure.area_share.size
     if nodes <= MAX_UNREDUCED_NODES:
-        return Reduction(pressure_shape, pressure_shape)
+        return Reduction(normalised_pressure, normalised_pressure)
     sums = SumFunctions.from_joint(joint, preload, nodal_pressures)
     # sorted by pressure, neighbouring nodes are close on the pressure curve: its evaluation is faster
-    order = np.argsort(round_to_digits(pressure_shape.preload_shape), kind="stable")
-    unrounded = pressure_shape.select_nodes(order)
-    pressure_shape = round_distribution(unrounded, ROUNDING_BITS)
+    order = np.argsort(round_to_digits(normalised_pressure.preload_pressure_ratio), kind="stable")
+    unrounded = normalised_pressure.select_nodes(order)
+    normalised_pressure = round_distribution(unrounded, ROUNDING_BITS)
     sample = np.random.default_rng(RANDOM_SEED).choice(
         nodes,
         min(SAMPLE_NODE_COUNT, nodes),
         replace=False,
-        p=sums.sample_probability(pressure_shape, max_moment_ratio(joint, pressure_shape)),
+        p=sums.sample_probability(normalised_pressure, max_moment_ratio(joint, normalised_pressure)),
     )
-    reduction = _search_points(sums, pressure_shape, pressure_shape.select_nodes(sample), unrounded)
+    reduction = _search_points(sums, normalised_pressure, normalised_pressure.select_nodes(sample), unrounded)
     if reduction is not None and (
         nodes > MAX_KEPT_NODES or reduction.largest_deviation <= RELATIVE_TOLERANCE
     ):
@@ -174,9 +176,9 @@ def reduce_field(
 
 def _search_points(
     sum_functions: SumFunctions,
-    rounded_shape: PressureDistribution,
-    sample_shape: PressureDistribution,
-    unrounded_shape: PressureDistribution,
+    rounded_distribution: PressureDistribution,
+    sample_distribution: PressureDistribution,
+    unrounded_distribution: PressureDistribution,
 ) -> Reduction | None:
     """Search points that keep the sums within LARGE_FIELD_TOLERANCE; None if there are none.
 
@@ -186,16 +188,16 @@ def _search_points(
     sample_distribution    : sample of these nodes, for finding the independent sums
     unrounded_distribution : normalised pressure at all nodes
     """
-    limit = max_moment_ratio(sum_functions.joint, rounded_shape)
+    limit = max_moment_ratio(sum_functions.joint, rounded_distribution)
     loads = random_load_cases(limit)
-    tests = int(np.clip(MAX_TEST_EVALUATIONS / rounded_shape.area_share.size, *TEST_LOAD_RANGE))
+    tests = int(np.clip(MAX_TEST_EVALUATIONS / rounded_distribution.area_share.size, *TEST_LOAD_RANGE))
     system = _SumSystem.from_loads(
         sum_functions,
-        rounded_shape,
-        unrounded_shape,
-        sample_shape,
+        rounded_distribution,
+        unrounded_distribution,
+        sample_distribution,
         sum_functions.compute_sums(
-            rounded_shape, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOADS)]
+            rounded_distribution, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOADS)]
         ),
     )
     best, best_deviation = None, LARGE_FIELD_TOLERANCE
@@ -203,23 +205,25 @@ def _search_points(
         points = system.find_points()
         if points is None:
             break
-        test_sums = sum_functions.compute_sums(rounded_shape, list(islice(loads, tests)))
+        test_sums = sum_functions.compute_sums(rounded_distribution, list(islice(loads, tests)))
         deviations = sum_functions.sum_deviations(points, test_sums)
         worst = float(np.max(deviations))
         if worst <= best_deviation:
             best, best_deviation = points, worst
         if worst <= ACCEPTED_DEVIATION_RATIO * RELATIVE_TOLERANCE:
             break
-        system.add_load_cases(test_sums.select(deviations > ADDED_CASE_DEVIATION_RATIO * RELATIVE_TOLERANCE))
+        system.add_load_cases(
+            test_sums.select_load_cases(deviations > ADDED_CASE_DEVIATION_RATIO * RELATIVE_TOLERANCE)
+        )
     if best is None:
         return None
-    deviation_beyond = _deviation_above_tested_moments(sum_functions, rounded_shape, best, limit)
-    return Reduction(best, unrounded_shape, best_deviation, tests, limit, deviation_beyond)
+    deviation_beyond = _deviation_above_tested_moments(sum_functions, rounded_distribution, best, limit)
+    return Reduction(best, unrounded_distribution, best_deviation, tests, limit, deviation_beyond)
 
 
 def _deviation_above_tested_moments(
     sum_functions: SumFunctions,
-    pressure_shape: PressureDistribution,
+    normalised_pressure: PressureDistribution,
     reduced_points: PressureDistribution,
     moment_limit: float,
 ) -> float:
@@ -230,7 +234,9 @@ def _deviation_above_tested_moments(
     loads = [LoadCase(p, sign * m, 0.0) for p in PRELOAD_RATIO_RANGE for m in moments for sign in (-1.0, 1.0)]
     return float(
         np.max(
-            sum_functions.sum_deviations(reduced_points, sum_functions.compute_sums(pressure_shape, loads))
+            sum_functions.sum_deviations(
+                reduced_points, sum_functions.compute_sums(normalised_pressure, loads)
+            )
         )
     )
 
@@ -249,9 +255,9 @@ class _SumSystem:
     """
 
     sum_functions: SumFunctions
-    rounded_shape: PressureDistribution
-    unrounded_shape: PressureDistribution
-    sample_shape: PressureDistribution
+    rounded_distribution: PressureDistribution
+    unrounded_distribution: PressureDistribution
+    sample_distribution: PressureDistribution
     mixing_matrix: Array
     load_sums: LoadSums
     balance_scale: Array
@@ -261,23 +267,35 @@ class _SumSystem:
     def from_loads(
         cls,
         sum_functions: SumFunctions,
-        rounded_shape: PressureDistribution,
-        unrounded_shape: PressureDistribution,
-        sample_shape: PressureDistribution,
+        rounded_distribution: PressureDistribution,
+        unrounded_distribution: PressureDistribution,
+        sample_distribution: PressureDistribution,
         load_sums: LoadSums,
     ) -> "_SumSystem":
         """System of the sums of `balance_functions`, and of the sums in initial load cases."""
-        scale = np.maximum(np.max(np.abs(balance_functions(rounded_shape)), axis=0), np.finfo(float).tiny)
-        mixing = np.random.default_rng(RANDOM_SEED).standard_normal(
-            (SKETCH_ROWS, sample_shape.area_share.size)
+        scale = np.maximum(
+            np.max(np.abs(balance_functions(rounded_distribution)), axis=0), np.finfo(float).tiny
         )
-        mixing *= np.sqrt(sample_shape.area_share / SKETCH_ROWS)
+        mixing = np.random.default_rng(RANDOM_SEED).standard_normal(
+            (SKETCH_ROWS, sample_distribution.area_share.size)
+        )
+        mixing *= np.sqrt(sample_distribution.area_share / SKETCH_ROWS)
         sketch = mixing @ np.concatenate(
-            [balance_functions(sample_shape) / scale, sum_functions.function_values(sample_shape, load_sums)],
+            [
+                balance_functions(sample_distribution) / scale,
+                sum_functions.function_values(sample_distribution, load_sums),
+            ],
             axis=1,
         )
         return cls(
-            sum_functions, rounded_shape, unrounded_shape, sample_shape, mixing, load_sums, scale, sketch
+            sum_functions,
+            rounded_distribution,
+            unrounded_distribution,
+            sample_distribution,
+            mixing,
+            load_sums,
+            scale,
+            sketch,
         )
 
     def add_load_cases(self, load_sums: LoadSums) -> None:
@@ -285,18 +303,18 @@ class _SumSystem:
         self.sketch_matrix = np.concatenate(
             [
                 self.sketch_matrix,
-                self.mixing_matrix @ self.sum_functions.function_values(self.sample_shape, load_sums),
+                self.mixing_matrix @ self.sum_functions.function_values(self.sample_distribution, load_sums),
             ],
             axis=1,
         )
         self.load_sums = self.load_sums.concatenate(load_sums)
 
-    def function_values(self, pressure_shape: PressureDistribution) -> Array:
+    def function_values(self, normalised_pressure: PressureDistribution) -> Array:
         """Values (n, r) of all functions at the nodes of a shape."""
         return np.concatenate(
             [
-                balance_functions(pressure_shape) / self.balance_scale,
-                self.sum_functions.function_values(pressure_shape, self.load_sums),
+                balance_functions(normalised_pressure) / self.balance_scale,
+                self.sum_functions.function_values(normalised_pressure, self.load_sums),
             ],
             axis=1,
         )
@@ -307,22 +325,24 @@ class _SumSystem:
         The nodes with the highest pressure (`find_peak_nodes`) are always kept, with their own share.
         """
         independent, turn = self._independent_sums()
-        fixed = find_peak_nodes(self.rounded_shape)
+        fixed = find_peak_nodes(self.rounded_distribution)
         try:
             candidates, share = self._select_groups(independent, turn, fixed)
             selected, share = recombine(self._selected_values(candidates, independent), share, turn)
         except RuntimeError:  # round-off
             return None
         selected = candidates[selected]
-        values = self.function_values(self.rounded_shape.select_nodes(selected))
+        values = self.function_values(self.rounded_distribution.select_nodes(selected))
         target = np.concatenate(
             [
-                self.rounded_shape.area_share @ balance_functions(self.rounded_shape) / self.balance_scale,
+                self.rounded_distribution.area_share
+                @ balance_functions(self.rounded_distribution)
+                / self.balance_scale,
                 self.load_sums.total_sums.ravel(),
             ]
         )
-        target -= self.rounded_shape.area_share[fixed] @ self.function_values(
-            self.rounded_shape.select_nodes(fixed)
+        target -= self.rounded_distribution.area_share[fixed] @ self.function_values(
+            self.rounded_distribution.select_nodes(fixed)
         )
         best, count = None, independent.size
         tolerance = ACCEPTED_DEVIATION_RATIO * LARGE_FIELD_TOLERANCE
@@ -336,8 +356,10 @@ class _SumSystem:
             selected, values = selected[fewer], values[fewer]
         if best is None:
             return None
-        points = self.unrounded_shape.select_nodes(np.concatenate([fixed, best[0]]))
-        return _correct_balance(points, np.concatenate([self.rounded_shape.area_share[fixed], best[1]]))
+        points = self.unrounded_distribution.select_nodes(np.concatenate([fixed, best[0]]))
+        return _correct_balance(
+            points, np.concatenate([self.rounded_distribution.area_share[fixed], best[1]])
+        )
 
     def _select_groups(
         self, function_indices: NodeIndices, orthogonal_transform: Array, fixed_nodes: NodeIndices
@@ -346,7 +368,7 @@ class _SumSystem:
 
         Returns the nodes of these groups and their shares.
         """
-        share = self.rounded_shape.area_share.copy()
+        share = self.rounded_distribution.area_share.copy()
         share[fixed_nodes] = 0.0
         group = np.arange(share.size) // nodes_per_group(share.size)
         old_share = np.asarray(np.bincount(group, share), dtype=np.float64)
@@ -355,7 +377,7 @@ class _SumSystem:
         np.subtract.at(
             sums,
             group[fixed_nodes],
-            self.rounded_shape.area_share[fixed_nodes, None]
+            self.rounded_distribution.area_share[fixed_nodes, None]
             * self._selected_values(fixed_nodes, function_indices),
         )
         selected, new_share = recombine(
@@ -369,10 +391,12 @@ class _SumSystem:
 
     def _group_sums(self, function_indices: NodeIndices) -> Array:
         """Sums (g, k) of the selected functions over groups of nodes."""
-        share, count = self.rounded_shape.area_share[:, None], self.balance_scale.size
+        share, count = self.rounded_distribution.area_share[:, None], self.balance_scale.size
         is_balance = function_indices < count
         load, function = np.divmod(function_indices[~is_balance] - count, 9)
-        values = (balance_functions(self.rounded_shape) / self.balance_scale)[:, function_indices[is_balance]]
+        values = (balance_functions(self.rounded_distribution) / self.balance_scale)[
+            :, function_indices[is_balance]
+        ]
         out = np.empty((self.load_sums.group_sums.shape[2], function_indices.size))
         out[:, is_balance] = np.add.reduceat(
             share * values, np.arange(0, share.size, nodes_per_group(share.size))
@@ -382,7 +406,7 @@ class _SumSystem:
 
     def _selected_values(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
         """Values (n, k) of the selected functions at nodes."""
-        shape, count = self.rounded_shape.select_nodes(node_indices), self.balance_scale.size
+        shape, count = self.rounded_distribution.select_nodes(node_indices), self.balance_scale.size
         is_balance = function_indices < count
         out = np.empty((node_indices.size, function_indices.size))
         out[:, is_balance] = (balance_functions(shape) / self.balance_scale)[:, function_indices[is_balance]]
@@ -399,13 +423,13 @@ class _SumSystem:
         return order[:count], solve_triangular(triangle[:count, :count], np.eye(count))
 
 
-def _correct_balance(pressure_shape: PressureDistribution, node_weights: Array) -> PressureDistribution:
+def _correct_balance(normalised_pressure: PressureDistribution, node_weights: Array) -> PressureDistribution:
     """Select the nodes with a weight > 0; make total share, centroid and mean pressures exact."""
-    points = pressure_shape.select_nodes(np.flatnonzero(node_weights > 0.0))
+    points = normalised_pressure.select_nodes(np.flatnonzero(node_weights > 0.0))
     share = node_weights[node_weights > 0.0] / np.sum(node_weights)
     return PressureDistribution(
         area_share=share,
         position=points.position - share @ points.position,
-        preload_shape=points.preload_shape / (share @ points.preload_shape),
-        moment_shape=points.moment_shape - share @ points.moment_shape,
+        preload_pressure_ratio=points.preload_pressure_ratio / (share @ points.preload_pressure_ratio),
+        moment_pressure_ratio=points.moment_pressure_ratio - share @ points.moment_pressure_ratio,
     )

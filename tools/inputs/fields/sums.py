@@ -39,16 +39,16 @@ class LoadCase(NamedTuple):
     opening_ratio: float
 
 
-def max_moment_ratio(joint: BoltedInterface, pressure_shape: PressureDistribution) -> float:
+def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistribution) -> float:
     """Largest moment at which the sums must be kept, over the moment that unloads a row of bolts [1].
 
     It is at most 1. It is smaller if nodes that carry the share MAX_OPENED_SHARE of the preload open earlier.
     """
-    force = pressure_shape.area_share * pressure_shape.preload_shape
+    force = normalised_pressure.area_share * normalised_pressure.preload_pressure_ratio
     loaded = force > 0.0
-    unloading = np.abs(pressure_shape.moment_shape[loaded]) * joint.row_bolts / joint.n_bolts
+    unloading = np.abs(normalised_pressure.moment_pressure_ratio[loaded]) * joint.row_bolts / joint.n_bolts
     with np.errstate(divide="ignore"):
-        opening_moment = pressure_shape.preload_shape[loaded] / unloading
+        opening_moment = normalised_pressure.preload_pressure_ratio[loaded] / unloading
     order = np.argsort(opening_moment)
     opened_force = np.cumsum(force[loaded][order])
     return float(min(opening_moment[order][np.searchsorted(opened_force, MAX_OPENED_SHARE)], 1.0))
@@ -76,7 +76,7 @@ def random_load_cases(moment_limit: float) -> Iterator[LoadCase]:
 
     sequence = qmc.Halton(3, seed=RANDOM_SEED)
     low, high = np.log(PRELOAD_RATIO_RANGE)
-    points = (point for _ in count() for point in sequence.random(LOADS_PER_DRAW))
+    points = (point for _ in count() for point in sequence.random(LOAD_CASES_PER_DRAW))
     for i, (a, b, c) in enumerate(points):
         opening = c * (1.0 + MAX_COMPRESSION_RATIO) - MAX_COMPRESSION_RATIO if i % 3 else 0.0
         yield LoadCase(
@@ -84,7 +84,7 @@ def random_load_cases(moment_limit: float) -> Iterator[LoadCase]:
         )
 
 
-LOADS_PER_DRAW = 64
+LOAD_CASES_PER_DRAW = 64
 """Number of load cases drawn in one call, which takes as long as a call for one load case."""
 COUPLING_TOLERANCE_FACTOR = 100.0
 """Tolerance of first and mixed moments over the tolerance of the other sums [1]."""
@@ -117,7 +117,7 @@ class LoadSums:
     total_sums: Array
     sum_scales: Array
 
-    def select(self, case_index: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadSums":
+    def select_load_cases(self, case_index: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadSums":
         """Select the sums in some of the load cases."""
         loads = tuple(self.load_cases[i] for i in np.arange(len(self.load_cases))[case_index])
         return LoadSums(
@@ -128,14 +128,14 @@ class LoadSums:
             self.sum_scales[case_index],
         )
 
-    def concatenate(self, other: "LoadSums") -> "LoadSums":
+    def concatenate(self, other_sums: "LoadSums") -> "LoadSums":
         """Concatenate the sums in the load cases of two objects."""
         return LoadSums(
-            self.load_cases + other.load_cases,
-            np.concatenate([self.opening, other.opening]),
-            np.concatenate([self.group_sums, other.group_sums]),
-            np.concatenate([self.total_sums, other.total_sums]),
-            np.concatenate([self.sum_scales, other.sum_scales]),
+            self.load_cases + other_sums.load_cases,
+            np.concatenate([self.opening, other_sums.opening]),
+            np.concatenate([self.group_sums, other_sums.group_sums]),
+            np.concatenate([self.total_sums, other_sums.total_sums]),
+            np.concatenate([self.sum_scales, other_sums.sum_scales]),
         )
 
 
@@ -153,7 +153,7 @@ class SumFunctions:
     """
 
     joint: BoltedInterface
-    curve: Curve
+    pressure_curve: Curve
     preload: float
     nodal_pressures: PressureFunction
     approach_table: tuple[Array, Array, Array]
@@ -170,13 +170,13 @@ class SumFunctions:
         return cls(joint, curve, preload, nodal_pressures, (p, np.cbrt(p), fine))
 
     def _preload_pressure(
-        self, pressure_shape: PressureDistribution, load_cases: Sequence[LoadCase]
+        self, normalised_pressure: PressureDistribution, load_cases: Sequence[LoadCase]
     ) -> Array:
         """Nodal pressure (m, n) [Pa] of each load case under preload and moment, before normal motion."""
         force = self.preload * np.array([load.preload_ratio for load in load_cases])
         moment = np.array([load.moment_ratio for load in load_cases]) * force
         moment *= self.joint.row_distance * self.joint.row_bolts
-        return self.nodal_pressures(self.joint, pressure_shape, force, moment)
+        return self.nodal_pressures(self.joint, normalised_pressure, force, moment)
 
     def _approach_and_stiffness(self, p: Array) -> tuple[Array, Array]:
         """Approach (...) [m] and stiffness per area [Pa/m] at a pressure (...) [Pa].
@@ -187,36 +187,38 @@ class SumFunctions:
         """
         pressure, root, approach = self.approach_table
         start = np.interp(p, pressure, approach)
-        closing = p < _CUBIC_PRESSURE_RATIO * self.curve.closing_end_load
+        closing = p < _CUBIC_PRESSURE_RATIO * self.pressure_curve.closing_end_load
         start[closing] = np.interp(np.cbrt(p[closing]), root, approach)
-        value, slope, curvature = self.curve.derivatives(start, 2)
-        curvature = np.where(start < self.curve.end[0], curvature, 0.0)
+        value, slope, curvature = self.pressure_curve.derivatives(start, 2)
+        curvature = np.where(start < self.pressure_curve.end_point[0], curvature, 0.0)
         step = np.divide(p - value, slope, out=np.zeros_like(p), where=slope > 0.0)
         return start + step, slope + curvature * step
 
-    def _approach(self, p: Array) -> Array:
+    def _approach_at_pressure(self, pressure: Array) -> Array:
         """Approach (...) [m] at a pressure (...) [Pa]."""
-        return self._approach_and_stiffness(p)[0]
+        return self._approach_and_stiffness(pressure)[0]
 
-    def compute_sums(self, pressure_shape: PressureDistribution, load_cases: Sequence[LoadCase]) -> LoadSums:
+    def compute_sums(
+        self, normalised_pressure: PressureDistribution, load_cases: Sequence[LoadCase]
+    ) -> LoadSums:
         """Compute the sums over all nodes of a normalised pressure distribution, in load cases."""
         pairs, index = np.unique([load[:2] for load in load_cases], axis=0, return_inverse=True)
         index = index.ravel()
         preloaded = [LoadCase(p, m, 0.0) for p, m in pairs]
-        group_size = nodes_per_group(pressure_shape.area_share.size)
-        blocks = list(_node_blocks(pressure_shape, len(load_cases), whole_groups=True))
+        group_size = nodes_per_group(normalised_pressure.area_share.size)
+        blocks = list(_node_blocks(normalised_pressure, len(load_cases), whole_groups=True))
         peak = np.max([np.max(self._preload_pressure(block, preloaded), axis=1) for block in blocks], axis=0)
-        max_opening = self._approach(peak) - self.curve.displacement[0]
+        max_opening = self._approach_at_pressure(peak) - self.pressure_curve.displacement[0]
         opening = np.array([load.opening_ratio for load in load_cases]) * max_opening[index]
         moved = np.flatnonzero(opening)
 
-        def block_sums(block: PressureDistribution) -> tuple[Array, Array]:
+        def block_sums(node_block: PressureDistribution) -> tuple[Array, Array]:
             """Group sums of one block of nodes: in the preloaded joint, and after the normal motion."""
-            p = self._preload_pressure(block, preloaded)
+            p = self._preload_pressure(node_block, preloaded)
             start, k = self._approach_and_stiffness(p)
-            preload_sums = _group_sums(block, p, k, group_size)
-            p_moved, k_moved = self.curve.derivatives(start[index[moved]] - opening[moved, None], 1)
-            return preload_sums, _group_sums(block, p_moved, k_moved, group_size)
+            preload_sums = _group_sums(node_block, p, k, group_size)
+            p_moved, k_moved = self.pressure_curve.derivatives(start[index[moved]] - opening[moved, None], 1)
+            return preload_sums, _group_sums(node_block, p_moved, k_moved, group_size)
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:  # numpy releases the global interpreter lock
             preload_blocks, moved_blocks = zip(*pool.map(block_sums, blocks), strict=True)
@@ -224,13 +226,13 @@ class SumFunctions:
         groups = preload_groups.copy()
         groups[moved] = np.concatenate(moved_blocks, axis=2)
         total, preload_total = np.sum(groups, axis=2), np.sum(preload_groups, axis=2)
-        radii = np.sqrt(pressure_shape.area_share @ pressure_shape.position**2)
+        radii = np.sqrt(normalised_pressure.area_share @ normalised_pressure.position**2)
         scale = _sum_scales(total, *radii)
         scale = np.where(opening[:, None] > 0.0, np.maximum(scale, _sum_scales(preload_total, *radii)), scale)
         groups /= scale[:, :, None]
         return LoadSums(tuple(load_cases), opening, groups, total / scale, scale)
 
-    def sample_probability(self, pressure_shape: PressureDistribution, moment_limit: float) -> Array:
+    def sample_probability(self, normalised_pressure: PressureDistribution, moment_limit: float) -> Array:
         """Probability (n) of each node to be in the sample: its mean share of the sums over load cases.
 
         When the joint is nearly open, few nodes carry the load: the sample needs more of them than their area
@@ -239,34 +241,36 @@ class SumFunctions:
         moment_limit : largest moment over the moment that unloads a row of bolts [1]
         """
         loads = [LoadCase(p, m * moment_limit, 0.0) for p in PRELOAD_RATIO_RANGE for m in (-1.0, 0.0, 1.0)]
-        start = self._approach(self._preload_pressure(pressure_shape, loads))
-        max_opening = np.max(start, axis=1) - self.curve.displacement[0]
-        probability = np.zeros(pressure_shape.area_share.size)
+        start = self._approach_at_pressure(self._preload_pressure(normalised_pressure, loads))
+        max_opening = np.max(start, axis=1) - self.pressure_curve.displacement[0]
+        probability = np.zeros(normalised_pressure.area_share.size)
         for ratio in (0.0, 0.3, 0.6, 0.85):
-            for values in self.curve.derivatives(start - (ratio * max_opening)[:, None], 1):
-                sums = pressure_shape.area_share * values
+            for values in self.pressure_curve.derivatives(start - (ratio * max_opening)[:, None], 1):
+                sums = normalised_pressure.area_share * values
                 probability += np.sum(sums / np.sum(sums, axis=1, keepdims=True), axis=0)
-        probability += np.sum(probability) * pressure_shape.area_share
+        probability += np.sum(probability) * normalised_pressure.area_share
         return probability / np.sum(probability)
 
-    def function_values(self, pressure_shape: PressureDistribution, load_sums: LoadSums) -> Array:
+    def function_values(self, normalised_pressure: PressureDistribution, load_sums: LoadSums) -> Array:
         """Values (c, m 9) of all functions at nodes, over their scale: 9 functions in m load cases."""
-        return self.selected_function_values(pressure_shape, load_sums, np.arange(load_sums.sum_scales.size))
+        return self.selected_function_values(
+            normalised_pressure, load_sums, np.arange(load_sums.sum_scales.size)
+        )
 
     def selected_function_values(
-        self, pressure_shape: PressureDistribution, load_sums: LoadSums, function_indices: NodeIndices
+        self, normalised_pressure: PressureDistribution, load_sums: LoadSums, function_indices: NodeIndices
     ) -> Array:
         """Values (c, k) of selected functions at nodes: k columns of `function_values`."""
         load, function = np.divmod(function_indices, 9)
         needed, index = np.unique(load, return_inverse=True)
         loads, opening = [load_sums.load_cases[i] for i in needed], load_sums.opening[needed, None]
-        out = np.empty((pressure_shape.area_share.size, function_indices.size))
+        out = np.empty((normalised_pressure.area_share.size, function_indices.size))
         factor, scale = np.array([0, 1, 2, 0, 1, 2, 3, 4, 5])[function], load_sums.sum_scales[load, function]
         first, columns_of = 0, [np.flatnonzero(function < 3), np.flatnonzero(function >= 3)]
-        for block in _node_blocks(pressure_shape, needed.size):
-            approach = self._approach(self._preload_pressure(block, loads)) - opening
+        for block in _node_blocks(normalised_pressure, needed.size):
+            approach = self._approach_at_pressure(self._preload_pressure(block, loads)) - opening
             factors, block_out = _moment_factors(block), out[first : first + block.area_share.size]
-            for columns, value in zip(columns_of, self.curve.derivatives(approach, 1), strict=True):
+            for columns, value in zip(columns_of, self.pressure_curve.derivatives(approach, 1), strict=True):
                 values = value.T[:, index[columns]] * factors[:, factor[columns]]
                 block_out[:, columns] = values / scale[columns]
             first += block.area_share.size
@@ -275,10 +279,10 @@ class SumFunctions:
     def sum_deviations(self, reduced_points: PressureDistribution, load_sums: LoadSums) -> Array:
         """Largest deviation (m) [1] of the sums of reduced points in each load case."""
         approach = (
-            self._approach(self._preload_pressure(reduced_points, load_sums.load_cases))
+            self._approach_at_pressure(self._preload_pressure(reduced_points, load_sums.load_cases))
             - load_sums.opening[:, None]
         )
-        p, k = self.curve.derivatives(approach, 1)
+        p, k = self.pressure_curve.derivatives(approach, 1)
         total = _group_sums(reduced_points, p, k, reduced_points.area_share.size)[:, :, 0]
         return np.asarray(np.max(np.abs(total / load_sums.sum_scales - load_sums.total_sums), axis=1))
 
@@ -289,42 +293,45 @@ def nodes_per_group(node_count: int) -> int:
 
 
 def _node_blocks(
-    pressure_shape: PressureDistribution, case_count: int, whole_groups: bool = False
+    normalised_pressure: PressureDistribution, case_count: int, whole_groups: bool = False
 ) -> Iterator[PressureDistribution]:
     """Divide the nodes into blocks whose values in all load cases fit into the processor's cache.
 
     case_count   : number of load cases
     whole_groups : divide only between groups
     """
-    unit = nodes_per_group(pressure_shape.area_share.size) if whole_groups else 1
+    unit = nodes_per_group(normalised_pressure.area_share.size) if whole_groups else 1
     count = unit * max(_VALUES_PER_BLOCK // case_count // unit, -(-16 // unit))
-    for first in range(0, pressure_shape.area_share.size, count):
-        yield pressure_shape.select_nodes(slice(first, first + count))
+    for first in range(0, normalised_pressure.area_share.size, count):
+        yield normalised_pressure.select_nodes(slice(first, first + count))
 
 
-def _group_sums(pressure_shape: PressureDistribution, p: Array, k: Array, group_size: int) -> Array:
+def _group_sums(
+    normalised_pressure: PressureDistribution, pressure: Array, stiffness: Array, group_size: int
+) -> Array:
     """Sums (m, 9, g) of the 9 functions over groups of nodes.
 
     pressure, stiffness : pressure [Pa] and stiffness [Pa/m] (m, n) of the nodes
     group_size          : number of nodes in a group
     """
-    count = -(-pressure_shape.area_share.size // group_size)
+    count = -(-normalised_pressure.area_share.size // group_size)
     padding = (
         0,
-        count * group_size - pressure_shape.area_share.size,
+        count * group_size - normalised_pressure.area_share.size,
     )  # nodes without share that complete the last group
     factors = np.pad(
-        pressure_shape.area_share[:, None] * _moment_factors(pressure_shape), (padding, (0, 0))
+        normalised_pressure.area_share[:, None] * _moment_factors(normalised_pressure), (padding, (0, 0))
     ).reshape(count, group_size, 6)
-    p, k = (
-        np.moveaxis(np.pad(value, ((0, 0), padding)).reshape(-1, count, group_size), 1, 0) for value in (p, k)
+    pressure, stiffness = (
+        np.moveaxis(np.pad(value, ((0, 0), padding)).reshape(-1, count, group_size), 1, 0)
+        for value in (pressure, stiffness)
     )
-    return np.moveaxis(np.concatenate([p @ factors[:, :, :3], k @ factors], axis=2), 0, 2)
+    return np.moveaxis(np.concatenate([pressure @ factors[:, :, :3], stiffness @ factors], axis=2), 0, 2)
 
 
-def _moment_factors(pressure_shape: PressureDistribution) -> Array:
+def _moment_factors(normalised_pressure: PressureDistribution) -> Array:
     """Factors (n, 6) of the stiffness of a node: 1, x, y, y^2, x^2, x y; the pressure has the first three."""
-    x, y = pressure_shape.position.T
+    x, y = normalised_pressure.position.T
     return np.stack([np.ones_like(x), x, y, y * y, x * x, x * y], axis=1)
 
 
@@ -338,13 +345,15 @@ def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
     return np.stack([*columns, sums[:, 6], sums[:, 7], k * x_scale * radius_y], axis=1)
 
 
-def balance_functions(pressure_shape: PressureDistribution) -> Array:
+def balance_functions(normalised_pressure: PressureDistribution) -> Array:
     """Functions (n, 9) whose sums over the nodes give area, centroid, force and moments of a field.
 
     The functions are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.
     """
-    pressures = np.column_stack([pressure_shape.preload_shape, pressure_shape.moment_shape])
-    moments = [pressures * pressure_shape.position[:, i : i + 1] for i in (0, 1)]
+    pressures = np.column_stack(
+        [normalised_pressure.preload_pressure_ratio, normalised_pressure.moment_pressure_ratio]
+    )
+    moments = [pressures * normalised_pressure.position[:, i : i + 1] for i in (0, 1)]
     return np.column_stack(
-        [np.ones_like(pressure_shape.area_share), pressure_shape.position, pressures, *moments]
+        [np.ones_like(normalised_pressure.area_share), normalised_pressure.position, pressures, *moments]
     )

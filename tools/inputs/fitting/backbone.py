@@ -72,8 +72,8 @@ class Backbone:
 class _Branch:
     """Branch between two turning points: indices of its samples, direction, torque range [N.m]."""
 
-    indices: NDArray[np.int64]
-    rising: bool
+    sample_indices: NDArray[np.int64]
+    is_rising: bool
     min_torque: float
     max_torque: float
 
@@ -87,12 +87,12 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
     if not np.ptp(torque) > 0.0:
         raise ValueError(f"torque is {torque[0]:g} N.m throughout; expected a range of torques")
     branches = _full_range_branches(_cut_branches(torque))
-    if len({b.rising for b in branches}) == 1:
-        indices = np.concatenate([b.indices for b in branches])
+    if len({b.is_rising for b in branches}) == 1:
+        indices = np.concatenate([b.sample_indices for b in branches])
         line = _average_groups(torque[indices], angle[indices])
         return _check_monotone(Backbone(*line, len(branches), None, None, None))
     low, high = (
-        inner(outer(getattr(b, name) for b in branches if b.rising is rising) for rising in (True, False))
+        inner(outer(getattr(b, name) for b in branches if b.is_rising is rising) for rising in (True, False))
         for inner, outer, name in ((max, min, "min_torque"), (min, max, "max_torque"))
     )
     if not high - low >= 0.5 * np.ptp(torque):
@@ -120,9 +120,9 @@ def _full_range_branches(branches: list[_Branch]) -> list[_Branch]:
     span = max(b.max_torque for b in branches) - min(b.min_torque for b in branches)
     selected = []
     for rising in (True, False):
-        same = [b for b in branches if b.rising is rising]
+        same = [b for b in branches if b.is_rising is rising]
         selected += [b for b in same if b.max_torque - b.min_torque >= MIN_BRANCH_SPAN * span] or same
-    return sorted(selected, key=lambda b: int(b.indices[0]))
+    return sorted(selected, key=lambda b: int(b.sample_indices[0]))
 
 
 def _separate_hysteresis(
@@ -132,8 +132,10 @@ def _separate_hysteresis(
 
     min_torque, max_torque : torque range [N.m] common to rising and falling branches
     """
-    indices = np.concatenate([b.indices for b in branches])
-    direction = np.concatenate([np.where(b.rising, 1.0, -1.0) * np.ones(b.indices.size) for b in branches])
+    indices = np.concatenate([b.sample_indices for b in branches])
+    direction = np.concatenate(
+        [np.where(b.is_rising, 1.0, -1.0) * np.ones(b.sample_indices.size) for b in branches]
+    )
     inside = (torque[indices] >= min_torque) & (torque[indices] <= max_torque)
     indices, direction = indices[inside], direction[inside]
     T, phi, time = torque[indices], angle[indices], indices / (torque.size - 1.0) - 0.5
@@ -159,9 +161,9 @@ def _separate_hysteresis(
     covariance = normal * float(residual @ residual) / max(indices.size - values.size, 1)
     gap_values = slice(knots, knots + int(np.sum(open_gap)))
 
-    def weighted_gap(weights: Array) -> tuple[float, float]:
+    def weighted_gap(knot_weights: Array) -> tuple[float, float]:
         """Weighted sum of the half gaps at the knots, and its standard deviation."""
-        row = weights[open_gap]
+        row = knot_weights[open_gap]
         return float(row @ values[gap_values]), float(np.sqrt(row @ covariance[gap_values, gap_values] @ row))
 
     lengths = np.gradient(grid)
@@ -195,9 +197,9 @@ def _fit_friction_torque(torque: Array, angle: Array, direction: Array) -> float
     return float(np.linalg.lstsq(design, torque)[0][-1])
 
 
-def _hat_functions(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
+def _hat_functions(torques: Array, knots: Array) -> scipy.sparse.csr_matrix:
     """Piecewise linear basis functions (n, k) at torques (n), for the knots `knots` (k)."""
-    return scipy.sparse.csr_matrix(BSpline.design_matrix(T, np.pad(grid, 1, mode="edge"), 1))
+    return scipy.sparse.csr_matrix(BSpline.design_matrix(torques, np.pad(knots, 1, mode="edge"), 1))
 
 
 def _has_turning_point(
@@ -210,18 +212,18 @@ def _has_turning_point(
     """
     pairs = pairwise(branches)
     return any(
-        branch.rising is not next_branch.rising
-        and branch.indices[-1] == next_branch.indices[0]
-        and branch.rising is (end_index == -1)
-        and abs((branch.max_torque if branch.rising else branch.min_torque) - end_torque)
+        branch.is_rising is not next_branch.is_rising
+        and branch.sample_indices[-1] == next_branch.sample_indices[0]
+        and branch.is_rising is (end_index == -1)
+        and abs((branch.max_torque if branch.is_rising else branch.min_torque) - end_torque)
         < (1.0 - MIN_BRANCH_SPAN) * torque_range
         for branch, next_branch in pairs
     )
 
 
-def _is_drift_determined(design: scipy.sparse.csr_matrix) -> bool:
+def _is_drift_determined(design_matrix: scipy.sparse.csr_matrix) -> bool:
     """Whether the last column (drift) of a design matrix is linearly independent of the other columns."""
-    columns, last = design[:, :-1], design[:, -1].toarray()[:, 0]
+    columns, last = design_matrix[:, :-1], design_matrix[:, -1].toarray()[:, 0]
     normal = np.linalg.pinv((columns.T @ columns).toarray(), hermitian=True)
     independent = last - columns @ (normal @ (columns.T @ last))
     return bool(np.linalg.norm(independent) > MIN_DRIFT_FRACTION * np.linalg.norm(last))

@@ -144,7 +144,7 @@ class Loops:
         These are the force errors (n), then the shifts of the turning points (branches).
         """
         _, start, residual = self.fit_turning_points(
-            law.shift_rest(self.rest_position(law, residual_scale)), residual_scale
+            law.with_rest_position(self.rest_position(law, residual_scale)), residual_scale
         )
         return np.concatenate(
             [residual / residual_scale, (start - self.start_motion) / self.start_motion_deviation]
@@ -159,16 +159,16 @@ class Loops:
             self.motion, (self.start_motion + start_shift * self.start_motion_deviation)[self.branch_index]
         )
 
-    def _branch_sums(self, values: Array) -> Array:
+    def _branch_sums(self, sample_values: Array) -> Array:
         """Sum (branches) of values (n) over each branch."""
-        return np.asarray(np.bincount(self.branch_index, values), dtype=np.float64)
+        return np.asarray(np.bincount(self.branch_index, sample_values), dtype=np.float64)
 
-    def _branch_means(self, values: Array) -> Array:
+    def _branch_means(self, sample_values: Array) -> Array:
         """Mean (branches) of values (n) over each branch."""
-        return np.asarray(self._branch_sums(values) / np.bincount(self.branch_index))
+        return np.asarray(self._branch_sums(sample_values) / np.bincount(self.branch_index))
 
 
-def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
+def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     """Cut measured runs into branches at the turning points of the motion.
 
     measured_runs : (prefix of error messages, motion, force) of each run, samples in the order of the
@@ -181,7 +181,7 @@ def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     """
     branches: list[tuple[Array, Array, float, float, int]] = []
     areas = []
-    for number, (name, motion, force) in enumerate(runs):
+    for number, (name, motion, force) in enumerate(measured_runs):
         turns = find_turning_points(motion)
         if not turns.size:
             raise ValueError(f"{name}the motion never reverses; give loops with reversals")

@@ -105,33 +105,38 @@ def _main_frequency(time: Array, motion: Array) -> float:
     return float(np.argmax(spectrum) / (8.0 * (time[-1] - time[0]) * n / (n - 1)))
 
 
-def _fit_windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, ...]]:
+def _fit_windows(time: Array, motion: Array, angular_frequency: float) -> Iterator[tuple[float, ...]]:
     """Fit a decaying oscillation in each window of a record.
 
     Yields for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
 
     angular_frequency : angular frequency [rad/s] with which the first window is chosen
     """
-    size, s = float(np.ptp(motion)), 0.02 * w
+    size, s = float(np.ptp(motion)), 0.02 * angular_frequency
     begin = time[int(np.argmax(np.abs(motion - np.median(motion))))]
     while True:
-        periods = int(np.clip(WINDOW_DECAY * w / (2.0 * np.pi * max(s, 1e-9 * w)), *WINDOW_PERIODS))
-        length = 2.0 * np.pi * periods / w
+        periods = int(
+            np.clip(
+                WINDOW_DECAY * angular_frequency / (2.0 * np.pi * max(s, 1e-9 * angular_frequency)),
+                *WINDOW_PERIODS,
+            )
+        )
+        length = 2.0 * np.pi * periods / angular_frequency
         inside = (time >= begin) & (time < begin + length)
         t, u = (time[inside] - begin) / length - 0.5, motion[inside] / size
         begin += length
         if begin > time[-1] or t.size < MIN_SAMPLES_PER_PERIOD:
             return
-        shape = _fit_window(np.array([w * length, s * length]), t, u)
+        shape = _fit_window(np.array([angular_frequency * length, s * length]), t, u)
         residual = _window_residual(shape, t, u)
         *_, A, B = np.linalg.lstsq(_design_matrix(shape, t), u)[0]
         amplitude, noise = float(np.hypot(A, B)), float(np.sqrt(residual @ residual / max(t.size - 8, 1)))
         if not amplitude > MIN_SIGNAL_TO_NOISE * noise:
             return
-        w, s = float(shape[0]) / length, float(shape[1]) / length
+        angular_frequency, s = float(shape[0]) / length, float(shape[1]) / length
         deviations = (x / length for x in _standard_deviations(shape, A, B, t, noise))
         if s * length < MAX_WINDOW_DECAY:
-            yield size * amplitude, w, s, *deviations, length
+            yield size * amplitude, angular_frequency, s, *deviations, length
 
 
 def _fit_window(start_values: Array, window_time: Array, signal: Array) -> Array:
@@ -172,7 +177,11 @@ def _design_matrix(window_parameters: Array, window_time: Array) -> Array:
 
 
 def _standard_deviations(
-    window_parameters: Array, A: float, B: float, window_time: Array, noise: float
+    window_parameters: Array,
+    cosine_amplitude: float,
+    sine_amplitude: float,
+    window_time: Array,
+    residual_deviation: float,
 ) -> tuple[float, float]:
     """Standard deviations of w and s, dimensionless with the length of the window.
 
@@ -180,7 +189,10 @@ def _standard_deviations(
     residual_deviation               : standard deviation of the residuals
     """
     ones, _, cos, sin = _design_matrix(window_parameters, window_time).T
-    d_angle, d_decay = B * cos - A * sin, -(A * cos + B * sin)  # derivatives of u in angle and decay
+    d_angle, d_decay = (
+        sine_amplitude * cos - cosine_amplitude * sin,
+        -(cosine_amplitude * cos + sine_amplitude * sin),
+    )  # derivatives of u in angle and decay
     columns = [
         ones,
         window_time,
@@ -193,6 +205,6 @@ def _standard_deviations(
     ]
     jacobian = np.stack(columns, axis=1)
     size = np.linalg.norm(jacobian, axis=0)
-    covariance = noise**2 * np.linalg.pinv((jacobian / size).T @ (jacobian / size))
+    covariance = residual_deviation**2 * np.linalg.pinv((jacobian / size).T @ (jacobian / size))
     w_deviation, s_deviation = np.sqrt(np.diag(covariance))[4:6] / size[4:6]
     return float(w_deviation), float(s_deviation)

@@ -73,7 +73,7 @@ class HysteresisLaw:
             change + self.elastic_spring.force(motion) - self.elastic_spring.force(turning_motion)
         )
 
-    def shift_rest(self, rest_motion: float) -> "HysteresisLaw":
+    def with_rest_position(self, rest_motion: float) -> "HysteresisLaw":
         """Copy of the law whose elastic force is zero at the motion `rest_motion`, instead of at zero."""
         if self.elastic_spring is None:
             return self
@@ -101,7 +101,7 @@ class HysteresisLaw:
         """
         return np.asarray(8.0 * (self.friction_work(amplitude) - 0.5 * amplitude * self.friction(amplitude)))
 
-    def decay(self, half_distance: Array, inertia: float) -> tuple[Array, Array]:
+    def free_decay(self, half_distance: Array, inertia: float) -> tuple[Array, Array]:
         """Free decay: angular frequency (n) [rad/s], logarithmic decrement of half a period (n) [1].
 
         half_distance : h (n), half the distance between two consecutive turning points
@@ -119,19 +119,21 @@ class HysteresisLaw:
 
         Half a period is the integral of du over the speed; viscous damping is neglected in the speed.
         """
-        omega = self._frequency(half_distance, self._decrement(half_distance, 0.0 * half_distance)) / np.sqrt(
-            inertia
-        )
-        return omega, self._decrement(half_distance, 0.25 * np.pi * self.viscous_damping * omega)
+        omega = self._angular_frequency(
+            half_distance, self._logarithmic_decrement(half_distance, 0.0 * half_distance)
+        ) / np.sqrt(inertia)
+        return omega, self._logarithmic_decrement(half_distance, 0.25 * np.pi * self.viscous_damping * omega)
 
-    def _decrement(self, half_distance: Array, viscous_slope: Array) -> Array:
+    def _logarithmic_decrement(self, half_distance: Array, viscous_slope: Array) -> Array:
         """Logarithmic decrement b (n) [1] of half a period, by the secant method.
 
         viscous_slope : viscous part (n) of G over h, pi d omega/4
         """
 
-        def dissipated_force(distance: Array) -> Array:
-            return np.asarray(2.0 * self.friction_work(distance) / distance + viscous_slope * distance)
+        def dissipated_force(half_distance: Array) -> Array:
+            return np.asarray(
+                2.0 * self.friction_work(half_distance) / half_distance + viscous_slope * half_distance
+            )
 
         def energy_residual(decrement: Array) -> Array:
             first, second = half_distance * np.exp(0.5 * decrement), half_distance * np.exp(-0.5 * decrement)
@@ -150,7 +152,7 @@ class HysteresisLaw:
             at_low, at_high = at_high, energy_residual(high)
         return high
 
-    def _frequency(self, half_distance: Array, decrement: Array) -> Array:
+    def _angular_frequency(self, half_distance: Array, decrement: Array) -> Array:
         """Angular frequency (n) [rad/s] of free vibration with a unit inertia.
 
         half_distance : h (n), half the distance between two consecutive turning points
@@ -196,7 +198,7 @@ class Oscillator:
 
     def free_vibration(self, amplitude: Array) -> tuple[Array, Array]:
         """Frequency (n) [Hz] and damping ratio (n) [1] of free vibration at amplitudes (n)."""
-        omega, decrement = self.hysteresis_law.decay(amplitude, self.inertia)
+        omega, decrement = self.hysteresis_law.free_decay(amplitude, self.inertia)
         return omega / (2.0 * np.pi), decrement / np.hypot(np.pi, decrement) + self.damping_ratio
 
     def response_amplitude(self, frequency: Array, force: Array, measured_amplitude: Array) -> Array:

@@ -25,7 +25,7 @@ MAX_DAMPING = 0.3
 DAMPING_UNKNOWN = Unknown(DAMPING_RATIO_NAME, "1", 1e-3, 1e-9, MAX_DAMPING)
 FIRST_FIT_TOLERANCE, SECOND_FIT_TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
-FIRST_NOISE = 0.01
+FIRST_FIT_NOISE = 0.01
 """Noise assumed in the first fit, over the size of the data [1]; it only sets the regularisation."""
 MIN_NOISE_RATIO = 1e-9
 """Lower limit of the noise of a group, over the largest noise of all groups [1]; for data without noise."""
@@ -46,26 +46,31 @@ class MeasurementModel:
     inertia: float | None
     damping_ratio: float
 
-    def hysteresis_law(self, values: Mapping[str, float]) -> HysteresisLaw:
+    def hysteresis_law(self, parameter_values: Mapping[str, float]) -> HysteresisLaw:
         """Hysteresis law at values of the unknowns."""
-        return self.make_law({name: value for name, value in values.items() if name != DAMPING_RATIO_NAME})
+        return self.make_law(
+            {name: value for name, value in parameter_values.items() if name != DAMPING_RATIO_NAME}
+        )
 
     def residuals(
-        self, data: Loops | FreeVibration | ForcedResponse, values: Mapping[str, float], residual_scale: Array
+        self,
+        measured_data: Loops | FreeVibration | ForcedResponse,
+        parameter_values: Mapping[str, float],
+        residual_scale: Array,
     ) -> Array:
         """Residuals of the data at values of the unknowns.
 
         residual_scale : standard deviations (n) of the data, by which the residuals are divided
         """
-        law = self.hysteresis_law(values)
-        if isinstance(data, Loops):
-            return data.residuals(law, residual_scale)
-        return data.residuals(self.oscillator(law, values), residual_scale)
+        law = self.hysteresis_law(parameter_values)
+        if isinstance(measured_data, Loops):
+            return measured_data.residuals(law, residual_scale)
+        return measured_data.residuals(self.make_oscillator(law, parameter_values), residual_scale)
 
-    def oscillator(self, law: HysteresisLaw, values: Mapping[str, float]) -> Oscillator:
+    def make_oscillator(self, law: HysteresisLaw, parameter_values: Mapping[str, float]) -> Oscillator:
         """Oscillator with a hysteresis law; its damping ratio may be an unknown in `parameter_values`."""
         assert self.inertia is not None
-        return Oscillator(law, self.inertia, values.get(DAMPING_RATIO_NAME, self.damping_ratio))
+        return Oscillator(law, self.inertia, parameter_values.get(DAMPING_RATIO_NAME, self.damping_ratio))
 
 
 def build_model(
@@ -124,26 +129,30 @@ def fit_measurement(
     def residuals(residual_scale: Array) -> Residuals:
         return lambda values: model.residuals(data, values, residual_scale)
 
-    def apply_exchange(function: Residuals) -> Residuals:
+    def apply_exchange(residual_function: Residuals) -> Residuals:
         if exchange is None:
-            return function
+            return residual_function
         current, start = exchange, original[exchange.exchanged_name].start_value
-        return lambda values: function(current.restore_unknowns(values, start))
+        return lambda values: residual_function(current.restore_unknowns(values, start))
 
     first_scale = data.residual_scale
     measured_stiffness = None if level_exchange is None else measurement.rest_stiffness(model.inertia)
 
-    def evaluate_start(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+    def evaluate_start(parameter_values: dict[str, float]) -> tuple[Mapping[str, float], float]:
         """Values of a starting point and their cost; the stiffness level is adjusted to the measurement."""
         if level_exchange is not None and measured_stiffness is not None:
-            others = {name: value for name, value in values.items() if name != level_exchange.exchanged_name}
-            values |= level_exchange.restore_unknowns(
+            others = {
+                name: value
+                for name, value in parameter_values.items()
+                if name != level_exchange.exchanged_name
+            }
+            parameter_values |= level_exchange.restore_unknowns(
                 others | {level_exchange.quantity_label: measured_stiffness},
-                values[level_exchange.exchanged_name],
+                parameter_values[level_exchange.exchanged_name],
             )
-        if any(not u.lower_bound < values[u.name] < u.upper_bound for u in unknowns):
-            return values, np.inf
-        return values, float(np.sum(residuals(first_scale)(values) ** 2))
+        if any(not u.lower_bound < parameter_values[u.name] < u.upper_bound for u in unknowns):
+            return parameter_values, np.inf
+        return parameter_values, float(np.sum(residuals(first_scale)(parameter_values) ** 2))
 
     original = {u.name: u for u in select_start(unknowns, alternative_starts, evaluate_start)}
     exchange = level_exchange if is_level_exchanged else None
@@ -152,7 +161,7 @@ def fit_measurement(
         for u in original.values()
     ]
     first = solve(
-        free, apply_exchange(residuals(first_scale)), noise=FIRST_NOISE, tolerance=FIRST_FIT_TOLERANCE
+        free, apply_exchange(residuals(first_scale)), noise=FIRST_FIT_NOISE, tolerance=FIRST_FIT_TOLERANCE
     )
     first_residuals = first.residuals
     if correct_measurement is not None:
@@ -229,21 +238,24 @@ _CURVE_POINTS = 120
 
 
 def make_pictures(
-    measurement: Measurement, model: MeasurementModel, values: Mapping[str, float], residual_scale: Array
+    measurement: Measurement,
+    model: MeasurementModel,
+    parameter_values: Mapping[str, float],
+    residual_scale: Array,
 ) -> Sequence[Picture]:
     """Plots of data and fitted law, by the kind of the measurement.
 
     Loops: force over motion. Forced vibration: amplitude over frequency. Free vibration: frequency over
     amplitude, and damping ratio over amplitude.
     """
-    law = model.hysteresis_law(values)
+    law = model.hysteresis_law(parameter_values)
     match measurement.data:
         case Loops() as loops:
             return [_loops_picture(measurement, loops, law, residual_scale)]
         case ForcedResponse() as response:
-            return [_response_picture(measurement, response, model.oscillator(law, values))]
+            return [_response_picture(measurement, response, model.make_oscillator(law, parameter_values))]
         case FreeVibration() as free:
-            return _decay_pictures(measurement, free, model.oscillator(law, values))
+            return _decay_pictures(measurement, free, model.make_oscillator(law, parameter_values))
 
 
 def _loops_picture(
@@ -255,7 +267,7 @@ def _loops_picture(
         for unit, values in zip(measurement.column_names.si_units, (loops.force, loops.motion), strict=True)
     )
     lines = []
-    law = law.shift_rest(loops.rest_position(law, residual_scale))
+    law = law.with_rest_position(loops.rest_position(law, residual_scale))
     forces, starts, misfit = loops.fit_turning_points(law, residual_scale)
     for k, (force, start) in enumerate(zip(forces, starts, strict=True)):
         motion = np.linspace(
@@ -278,21 +290,29 @@ def _loops_picture(
     )
 
 
-def _response_picture(measurement: Measurement, data: ForcedResponse, oscillator: Oscillator) -> Picture:
+def _response_picture(
+    measurement: Measurement, forced_response: ForcedResponse, oscillator: Oscillator
+) -> Picture:
     """Plot of a forced vibration: amplitude over frequency, one curve for each force amplitude."""
-    unit, size = choose_unit(measurement.column_names.si_units[1], data.amplitude)
+    unit, size = choose_unit(measurement.column_names.si_units[1], forced_response.amplitude)
     lines = []
-    for force in np.unique(data.force):
-        inside = data.force == force
-        f = np.linspace(data.frequency[inside].min(), data.frequency[inside].max(), 4 * _CURVE_POINTS)
-        measured = np.interp(f, *sort_points(data.frequency[inside], data.amplitude[inside]))
+    for force in np.unique(forced_response.force):
+        inside = forced_response.force == force
+        f = np.linspace(
+            forced_response.frequency[inside].min(),
+            forced_response.frequency[inside].max(),
+            4 * _CURVE_POINTS,
+        )
+        measured = np.interp(
+            f, *sort_points(forced_response.frequency[inside], forced_response.amplitude[inside])
+        )
         amplitude = oscillator.response_amplitude(f, np.full_like(f, force), measured)
         lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     return Picture(
-        data_x=data.frequency,
-        data_y=size * data.amplitude,
-        misfit=100.0 * np.expm1(data.misfit(oscillator)),
+        data_x=forced_response.frequency,
+        data_y=size * forced_response.amplitude,
+        misfit=100.0 * np.expm1(forced_response.misfit(oscillator)),
         law_curve=(line[0], size * line[1]),
         axis_labels=(
             "frequency [Hz]",
@@ -303,25 +323,28 @@ def _response_picture(measurement: Measurement, data: ForcedResponse, oscillator
 
 
 def _decay_pictures(
-    measurement: Measurement, data: FreeVibration, oscillator: Oscillator
+    measurement: Measurement, free_vibration: FreeVibration, oscillator: Oscillator
 ) -> tuple[Picture, Picture]:
     """Plots of a free vibration: frequency and damping ratio over amplitude."""
-    unit, size = choose_unit(measurement.column_names.si_units[1], data.decay_points.amplitude)
-    a = data.decay_points.amplitude
+    unit, size = choose_unit(measurement.column_names.si_units[1], free_vibration.decay_points.amplitude)
+    a = free_vibration.decay_points.amplitude
     grid = np.linspace(a.min(), a.max(), _CURVE_POINTS)
-    lines, (frequency, damping) = oscillator.free_vibration(grid), np.split(data.misfit(oscillator), 2)
+    lines, (frequency, damping) = (
+        oscillator.free_vibration(grid),
+        np.split(free_vibration.misfit(oscillator), 2),
+    )
     x = f"amplitude of the {measurement.column_names.motion_column} [{unit}]"
     return (
         Picture(
             data_x=size * a,
-            data_y=data.decay_points.frequency,
+            data_y=free_vibration.decay_points.frequency,
             misfit=100.0 * frequency,
             law_curve=(size * grid, lines[0]),
             axis_labels=(x, "frequency [Hz]", "data / law - 1 [%]"),
         ),
         Picture(
             data_x=size * a,
-            data_y=100.0 * data.decay_points.damping_ratio,
+            data_y=100.0 * free_vibration.decay_points.damping_ratio,
             misfit=100.0 * damping,
             law_curve=(size * grid, 100.0 * lines[1]),
             axis_labels=(x, "damping ratio [%]", "data - law [%]"),

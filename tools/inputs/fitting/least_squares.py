@@ -209,38 +209,40 @@ class _LogarithmicModel:
         self.refusal: str | None = None
         self.retreated = False
 
-    def values_by_name(self, logs: Array) -> dict[str, float]:
+    def values_by_name(self, log_values: Array) -> dict[str, float]:
         """Values {name: value} of the parameters, from their logarithms (k)."""
         with np.errstate(over="ignore"):
-            return dict(zip(self.names, np.exp(logs).tolist(), strict=True))
+            return dict(zip(self.names, np.exp(log_values).tolist(), strict=True))
 
-    def __call__(self, logs: Array) -> Array:
+    def __call__(self, log_values: Array) -> Array:
         try:
-            value = self.residuals(self.values_by_name(logs))
+            value = self.residuals(self.values_by_name(log_values))
         except (ValueError, RuntimeError) as error:
             if not self.size:
                 raise
             self.refusal = str(error)
             return np.full(self.size, np.inf)
-        value = np.concatenate([value, self.ridge * (logs - self.start)])
+        value = np.concatenate([value, self.ridge * (log_values - self.start)])
         self.size = value.size
         return value
 
-    def jacobian(self, logs: Array) -> Array:
+    def jacobian(self, log_values: Array) -> Array:
         """Jacobian by central differences; one-sided if one side is refused by the model or out of bounds."""
-        middle = self(logs)
+        middle = self(log_values)
         self.retreated = False
         columns = []
-        for k in range(logs.size):
-            ends = np.clip(logs[k] + np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]), self.low[k], self.high[k])
+        for k in range(log_values.size):
+            ends = np.clip(
+                log_values[k] + np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]), self.low[k], self.high[k]
+            )
             sides = []
             for end in ends:
-                shifted = logs.copy()
+                shifted = log_values.copy()
                 shifted[k] = end
-                sides.append(self(shifted) if end != logs[k] else middle)
+                sides.append(self(shifted) if end != log_values[k] else middle)
             finite = [bool(np.all(np.isfinite(side))) for side in sides]
             self.retreated |= not all(finite)
-            used_ends = [end if good else logs[k] for end, good in zip(ends, finite, strict=True)]
+            used_ends = [end if good else log_values[k] for end, good in zip(ends, finite, strict=True)]
             low, high = (side if good else middle for side, good in zip(sides, finite, strict=True))
             width = used_ends[1] - used_ends[0]
             columns.append((high - low) / width if width > 0.0 else np.zeros_like(middle))
@@ -271,28 +273,29 @@ class UnknownExchange:
     """
 
     exchanged_name: str
-    quantity: Callable[[Mapping[str, float]], float]
+    derived_quantity: Callable[[Mapping[str, float]], float]
     unit: str
     quantity_label: str
 
     def derived_unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
         """Unknown for the derived quantity; it starts at the value for the start values of `unknowns`."""
-        start = self.quantity({name: u.start_value for name, u in unknowns.items()})
+        start = self.derived_quantity({name: u.start_value for name, u in unknowns.items()})
         return Unknown(self.quantity_label, self.unit, start, 0.0, np.inf)
 
-    def restore_unknowns(self, values: Mapping[str, float], start_value: float) -> dict[str, float]:
+    def restore_unknowns(self, parameter_values: Mapping[str, float], start_value: float) -> dict[str, float]:
         """Convert values with the derived quantity to values of the original unknowns, by the secant method.
 
         start_value : of the exchanged unknown, for the secant method
 
         Raises ValueError if no value of the replaced unknown gives the quantity.
         """
-        rest = {name: value for name, value in values.items() if name != self.quantity_label}
-        target = float(np.log(values[self.quantity_label]))
+        rest = {name: value for name, value in parameter_values.items() if name != self.quantity_label}
+        target = float(np.log(parameter_values[self.quantity_label]))
 
         def logarithmic_error(log_value: float) -> float:
             return (
-                float(np.log(self.quantity({**rest, self.exchanged_name: float(np.exp(log_value))}))) - target
+                float(np.log(self.derived_quantity({**rest, self.exchanged_name: float(np.exp(log_value))})))
+                - target
             )
 
         low, high = float(np.log(start_value)), float(np.log(start_value)) + DIFFERENCE_STEP
@@ -306,7 +309,7 @@ class UnknownExchange:
         if abs(at_high) > 1e3 * EXCHANGE_TOLERANCE:
             raise ValueError(
                 f"no {self.exchanged_name} gives {self.quantity_label} = "
-                f"{values[self.quantity_label]:g} {self.unit}"
+                f"{parameter_values[self.quantity_label]:g} {self.unit}"
             )
         return {**rest, self.exchanged_name: float(np.exp(high))}
 
@@ -326,16 +329,25 @@ class UnknownExchange:
             covariance=covariance(jacobian, solution.noise),
         )
 
-    def _logarithmic_derivatives(self, values: Mapping[str, float]) -> Array:
+    def _logarithmic_derivatives(self, parameter_values: Mapping[str, float]) -> Array:
         """Derivatives (k) [1] of the quantity with respect to the values, all in logarithms."""
 
-        def perturbed_quantity(name: str, log_step: float) -> float:
-            return float(np.log(self.quantity({**values, name: values[name] * float(np.exp(log_step))})))
+        def perturbed_quantity(parameter_name: str, log_step: float) -> float:
+            return float(
+                np.log(
+                    self.derived_quantity(
+                        {
+                            **parameter_values,
+                            parameter_name: parameter_values[parameter_name] * float(np.exp(log_step)),
+                        }
+                    )
+                )
+            )
 
         return np.array(
             [
                 (perturbed_quantity(n, DIFFERENCE_STEP) - perturbed_quantity(n, -DIFFERENCE_STEP))
                 / (2.0 * DIFFERENCE_STEP)
-                for n in values
+                for n in parameter_values
             ]
         )

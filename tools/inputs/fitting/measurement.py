@@ -34,7 +34,7 @@ COLUMN_SYNONYMS = {
 WRONG_UNIT_RATIO = 50.0
 """Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
 is assumed. Degrees read as radians give 57."""
-EXPLAINED_RATIO = 5.0
+MAX_EXPLAINED_RATIO = 5.0
 """A wrong unit counts as the explanation if, with the right unit, measured stiffness over stiffness of the
 start values [1] is at most this value, and at least its inverse."""
 
@@ -53,7 +53,7 @@ class ColumnNames:
     motion_units: UnitSizes
 
     @property
-    def columns(self) -> Mapping[str, UnitSizes]:
+    def column_units(self) -> Mapping[str, UnitSizes]:
         """{column: {unit: size in SI units}} of all columns that a measurement file may have."""
         return {
             self.motion_column: self.motion_units,
@@ -111,7 +111,7 @@ class ColumnNames:
             unit = min(errors, key=errors.__getitem__)
             explanations.append((float(errors[unit]), f"the {column} is in {unit}, {text}"))
         smallest = min(explanations)[0]
-        if not smallest < np.log(EXPLAINED_RATIO):
+        if not smallest < np.log(MAX_EXPLAINED_RATIO):
             return "check the units of both columns, no usual one explains it"
         return "likely " + ", or ".join(text for error, text in explanations if error < smallest + 1e-6)
 
@@ -126,16 +126,16 @@ def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, colu
 
     Raises ValueError, one line, for any other set of columns.
     """
-    table = columns.read_columns(path, column_names.columns, MIN_ROWS, COLUMN_SYNONYMS)
-    table.require_column(column_names.motion_column, column_names.columns)
+    table = columns.read_columns(path, column_names.column_units, MIN_ROWS, COLUMN_SYNONYMS)
+    table.require_column(column_names.motion_column, column_names.column_units)
     present = set(table.columns)
     if {"frequency", column_names.force_column} <= present:
         return "response", table.check_positive(
-            (column_names.motion_column, "frequency", column_names.force_column), column_names.columns
+            (column_names.motion_column, "frequency", column_names.force_column), column_names.column_units
         )
     if {"frequency", "damping"} <= present:
         return "backbone", table.check_positive(
-            (column_names.motion_column, "frequency", "damping"), column_names.columns
+            (column_names.motion_column, "frequency", "damping"), column_names.column_units
         )
     if "frequency" not in present and column_names.force_column in present:
         return "loops", table
@@ -153,15 +153,17 @@ def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, colu
     )
 
 
-def split_runs(table: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
+def split_runs(measured_columns: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
     """Split a table by the column `run`: (prefix of error messages, {name: column}) of each run."""
-    if RUN_COLUMN not in table.columns:
-        return [("", dict(table.columns))]
-    run_numbers = table.columns[RUN_COLUMN]
+    if RUN_COLUMN not in measured_columns.columns:
+        return [("", dict(measured_columns.columns))]
+    run_numbers = measured_columns.columns[RUN_COLUMN]
     result = []
     for number in dict.fromkeys(run_numbers.tolist()):
         rows = run_numbers == number
-        result.append((f"run {number:g}: ", {name: column[rows] for name, column in table.columns.items()}))
+        result.append(
+            (f"run {number:g}: ", {name: column[rows] for name, column in measured_columns.columns.items()})
+        )
     return result
 
 
@@ -262,11 +264,11 @@ def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement
     return Measurement(table.path, kind, column_names, data, table.units)
 
 
-def _join_points(records: Sequence[DecayPoints]) -> DecayPoints:
+def _join_points(decay_records: Sequence[DecayPoints]) -> DecayPoints:
     """Concatenate the decay points of several records."""
     return DecayPoints(
         *(
-            np.concatenate([getattr(record, name) for record in records])
+            np.concatenate([getattr(record, name) for record in decay_records])
             for name in DecayPoints.__dataclass_fields__
         )
     )

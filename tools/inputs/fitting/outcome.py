@@ -247,7 +247,7 @@ class FitResult:
 
 
 def correlation_note(
-    residuals: Array, quantity: str, neighbours: NDArray[np.bool_] | slice = slice(None)
+    residuals: Array, quantity_name: str, neighbour_mask: NDArray[np.bool_] | slice = slice(None)
 ) -> list[str]:
     """Note for the user if neighbouring residuals are correlated: the law misses the data systematically.
 
@@ -258,7 +258,7 @@ def correlation_note(
     Returns a list of one line, or an empty list.
     """
     correlation = (
-        float(np.sum((residuals[1:] * residuals[:-1])[neighbours]) / np.sum(residuals**2))
+        float(np.sum((residuals[1:] * residuals[:-1])[neighbour_mask]) / np.sum(residuals**2))
         if np.any(residuals)
         else 0.0
     )
@@ -266,7 +266,7 @@ def correlation_note(
         return []
     return [
         f"neighbouring residuals are correlated ({correlation:.2f}): the law deviates systematically from "
-        f"the {quantity}, and the standard deviations are too small"
+        f"the {quantity_name}, and the standard deviations are too small"
     ]
 
 
@@ -283,7 +283,7 @@ def _finite_or_none(value: float) -> float | None:
 
 
 def make_unknowns(
-    start_file: ParameterFile, names: Sequence[str], bounds: Mapping[str, tuple[float, float]]
+    start_file: ParameterFile, fitted_names: Sequence[str], bounds_by_name: Mapping[str, tuple[float, float]]
 ) -> list[Unknown]:
     """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
 
@@ -293,13 +293,13 @@ def make_unknowns(
     """
     values, result = start_file.values_by_name, []
     declared = {n: f for n, f in flat_fields(type(start_file.values)) if isinstance(values.get(n), float)}
-    for name in names:
+    for name in fitted_names:
         if name not in declared:
             raise ValueError(f"{name!r} is not a parameter to fit; allowed are {', '.join(declared)}")
-        if names.count(name) > 1:
+        if fitted_names.count(name) > 1:
             raise ValueError(f"{name!r} is given twice; state it once")
         meta = declared[name].metadata
-        interval = meta["interval"].intersection(Interval(*bounds.get(name, ())))
+        interval = meta["interval"].intersection(Interval(*bounds_by_name.get(name, ())))
         result.append(Unknown(name, meta["unit"], float(values[name]), interval.low, interval.high))
     return result
 
@@ -315,7 +315,11 @@ def make_predictor(
 
 
 def fitted_parameters(
-    start_file: ParameterFile, values: Mapping[str, float], origin: str, data_name: str, range_text: str
+    start_file: ParameterFile,
+    parameter_values: Mapping[str, float],
+    source_kind: str,
+    data_name: str,
+    range_text: str,
 ) -> ParameterFile:
     """Copy of a parameter file with fitted values; their source states data, range and date.
 
@@ -327,7 +331,9 @@ def fitted_parameters(
     Raises ValueError if SOURCE_DATE_EPOCH is not a number of seconds.
     """
     today = build_time().date().isoformat()
-    file = start_file.with_values(values, origin, f"fitted to {data_name}, {today}, {range_text}")
+    file = start_file.with_values(
+        parameter_values, source_kind, f"fitted to {data_name}, {today}, {range_text}"
+    )
     return replace(file, name=f"fitted to {data_name}")
 
 

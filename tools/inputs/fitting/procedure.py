@@ -37,17 +37,17 @@ class Procedure:
     takes_several_files: bool = False
     identifying_column: str = ""
     options: Sequence[Option] = ()
-    run: "Callable[..., FitResult]"
+    run_fit: "Callable[..., FitResult]"
 
 
 def lazy_fit(module_name: str) -> "Callable[..., FitResult]":
     """Function that loads a module when called, and calls the function `fit` of this module."""
 
-    def run(*arguments: object, **options: object) -> "FitResult":
+    def call_fit(*arguments: object, **options: object) -> "FitResult":
         result: FitResult = import_module(module_name).fit(*arguments, **options)
         return result
 
-    return run
+    return call_fit
 
 
 def fit_procedures() -> dict[str, dict[str, Procedure]]:

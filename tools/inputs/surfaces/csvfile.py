@@ -59,7 +59,7 @@ def read_declaration(path: Path) -> str | None:
     return None
 
 
-def read_declared(path: Path, first_line: str) -> tuple[Heights, str]:
+def read_declared_file(path: Path, first_line: str) -> tuple[Heights, str]:
     """Read a file whose first line declares its layout; return the heights and the unit along x."""
     match = _DECLARATION_PATTERN.match(first_line)
     assert match
@@ -78,7 +78,7 @@ def read_declared(path: Path, first_line: str) -> tuple[Heights, str]:
     return heights_from_columns(path, read_table(path), [factors[name] for name in needed]), units["x"]
 
 
-def read_titles(path: Path) -> list[ColumnHead] | None:
+def read_column_titles(path: Path) -> list[ColumnHead] | None:
     """Read names and units of two or three columns (x, z or x, y, z) from the title line of a file.
 
     None if the first line has no names, or the next line no numbers.
@@ -98,7 +98,7 @@ def read_titles(path: Path) -> list[ColumnHead] | None:
     return [parse_heading(word) for word in words] if has_names and has_numbers else None
 
 
-def read_titled(
+def read_titled_file(
     path: Path,
     column_heads: Sequence[ColumnHead],
     option_units: Mapping[str, str | None],
@@ -205,14 +205,14 @@ def heights_from_columns(path: Path, values: Array, unit_factors: list[float]) -
     return ArealMap(z=heights, dx=dx, dy=dy, name=str(path))
 
 
-def _grid_indices(path: Path, name: str, values: Array, factor: float) -> tuple[grid.GridIndices, float]:
+def _grid_indices(path: Path, name: str, values: Array, unit_size: float) -> tuple[grid.GridIndices, float]:
     """Grid index of every point along x or y, and the grid spacing [m]; the points may have any order."""
     positions, inverse = np.unique(values, return_inverse=True)
-    index, step = grid.fit_grid(path, name, positions, factor)
-    return index[inverse], step * factor
+    index, step = grid.fit_grid(path, name, positions, unit_size)
+    return index[inverse], step * unit_size
 
 
-def _profile_from_columns(path: Path, x: Array, z: Array, factor: float) -> Profile:
+def _profile_from_columns(path: Path, x: Array, z: Array, unit_size: float) -> Profile:
     """Profile from positions x, in a unit of `unit_size` metres, and heights z [m].
 
     The points may have any order, and points of the grid may be missing.
@@ -221,10 +221,10 @@ def _profile_from_columns(path: Path, x: Array, z: Array, factor: float) -> Prof
         x, z = x[::-1], z[::-1]
     order = np.argsort(x, kind="stable")
     in_order = bool(np.all(order == np.arange(x.size)))
-    index, step = grid.fit_grid(path, "x", x[order], factor, allow_repeats=in_order)
+    index, step = grid.fit_grid(path, "x", x[order], unit_size, allow_repeats=in_order)
     heights = np.full(index[-1] + 1, np.nan)
     heights[index] = z[order]
-    return Profile(z=heights, dx=step * factor, name=str(path))
+    return Profile(z=heights, dx=step * unit_size, name=str(path))
 
 
 def csv_text(heights: Heights) -> str:

@@ -13,29 +13,29 @@ from jointfmu.quantity import Array
 
 from .spectrum import ScaleSeries
 
-MIN_DEVIATION = 0.03
+MIN_LAW_DEVIATION = 0.03
 """Least standard deviation [1] of ln(value) from the law that the fit assumes, at each scale."""
 CORRELATION_LENGTH = 0.5
 """Correlation length in ln(scale) [1] of the deviations from the law."""
-MAX_DRIFT = 0.1
+MAX_DIMENSION_DRIFT = 0.1
 """Largest drift of D over a self-affine range [1]; a larger one is allowed within two standard errors."""
-MAX_UNCERTAIN_DRIFT = 0.7
+MAX_UNCERTAIN_DIMENSION_DRIFT = 0.7
 """Largest drift of D over a self-affine range [1] for any standard error; well below the interval 1 to 2."""
-FULL_INTERVAL_DRIFT = 0.8
+FULL_INTERVAL_DIMENSION_DRIFT = 0.8
 """Drift of D over all scales [1], above which D covers the whole interval from 1 to 2 (no fractal)."""
-SUFFICIENT_DECADES = 1.5
+SUFFICIENT_RANGE_DECADES = 1.5
 """Shortest range [decades] that counts as self-affine if D covers its whole interval over all scales."""
 HURST_MARGIN = 0.02
 """Smallest distance of the fitted H from 0 and from 1 [1]."""
-MAX_DEVIATION = 0.25
+MAX_LAW_DEVIATION = 0.25
 """Largest standard deviation of ln(value) from the law over a self-affine range [1]."""
-MIN_DECADES = 0.5
+MIN_RANGE_DECADES = 0.5
 """Shortest range [decades] that the search considers."""
 COVARIANCE_FACTOR = 1.15
 """Factor on the covariance of the result, from simulation (studies/surfaces_explanation.py: coverage)."""
-OFFSET_DEVIATION = 2.0
+OFFSET_PRIOR_DEVIATION = 2.0
 """Prior standard deviation of the offset [1], relative to the value at the shortest scale."""
-MAX_VARIANCE = 0.3
+MAX_LOG_VARIANCE = 0.3
 """Largest variance of ln(value) [1]; values with a larger one are left out."""
 
 
@@ -62,7 +62,7 @@ class SelfAffineLaw:
     covariance: Array
     offset: float
     deviation: float
-    drift: float
+    dimension_drift: float
     drift_error: float
     min_scale: float
     max_scale: float
@@ -71,8 +71,12 @@ class SelfAffineLaw:
     @property
     def is_self_affine(self) -> bool:
         """Whether the law holds over the range: drift and deviation are within their limits."""
-        allowed = max(MAX_DRIFT, min(2.0 * self.drift_error, MAX_UNCERTAIN_DRIFT))
-        return abs(self.drift) <= allowed and self.deviation <= MAX_DEVIATION and not self.covers_interval
+        allowed = max(MAX_DIMENSION_DRIFT, min(2.0 * self.drift_error, MAX_UNCERTAIN_DIMENSION_DRIFT))
+        return (
+            abs(self.dimension_drift) <= allowed
+            and self.deviation <= MAX_LAW_DEVIATION
+            and not self.covers_interval
+        )
 
     @property
     def is_at_bound(self) -> bool:
@@ -92,7 +96,7 @@ def fit_law(
 
     Raises ValueError if the given range has fewer than four values.
     """
-    sure = np.diag(series.covariance(0.5)) < MAX_VARIANCE
+    sure = np.diag(series.covariance(0.5)) < MAX_LOG_VARIANCE
     if min_scale is not None and max_scale is not None:
         inside = (series.scale >= min_scale * (1 - 1e-9)) & (series.scale <= max_scale * (1 + 1e-9))
         if (inside & sure).sum() < 4:
@@ -121,19 +125,21 @@ def _search_range(series: ScaleSeries) -> SelfAffineLaw:
         reverse=True,
     )
     complete = _fit_series(series)
-    covers_interval = abs(complete.drift) > max(FULL_INTERVAL_DRIFT, 2.0 * complete.drift_error)
+    covers_interval = abs(complete.dimension_drift) > max(
+        FULL_INTERVAL_DIMENSION_DRIFT, 2.0 * complete.drift_error
+    )
     candidates: list[SelfAffineLaw] = []
     for length, negative_start, j in windows:
-        if length < MIN_DECADES and candidates:
+        if length < MIN_RANGE_DECADES and candidates:
             break
         candidate = _fit_series(series.select(np.arange(-negative_start, j)))
         candidate = replace(
-            candidate, covers_interval=covers_interval and candidate.decades < SUFFICIENT_DECADES
+            candidate, covers_interval=covers_interval and candidate.decades < SUFFICIENT_RANGE_DECADES
         )
         if candidate.is_self_affine:
             return candidate
         candidates.append(candidate)
-    return min(candidates, key=lambda law: abs(law.drift) + law.deviation)
+    return min(candidates, key=lambda law: abs(law.dimension_drift) + law.deviation)
 
 
 def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
@@ -144,21 +150,25 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
     start = np.array([0.5, 0.0, 0.0][: 3 if offset else 2])
     scatter = series.covariance(0.5)
 
-    def log_law(p: Array) -> Array:
+    def log_law(law_parameters: Array) -> Array:
         """ln(value) of the law at all scales, for the parameters (H, log_power, offset)."""
-        expected = series.expected_value(p[0]) * reference ** (-2.0 * p[0])
-        return np.asarray(np.log(expected + (p[2] * expected[0] if offset else 0.0)) + p[1])
+        expected = series.expected_value(law_parameters[0]) * reference ** (-2.0 * law_parameters[0])
+        return np.asarray(
+            np.log(expected + (law_parameters[2] * expected[0] if offset else 0.0)) + law_parameters[1]
+        )
 
     start[1] = np.mean(y - log_law(start))
-    deviation, p = MIN_DEVIATION, start
+    deviation, p = MIN_LAW_DEVIATION, start
     for _ in range(3):
         whiten = _whitening_matrix(scatter + deviation**2 * _correlation_matrix(x))
         unbiased = y + 0.5 * np.diag(scatter)
 
-        def residual(p: Array, whiten: Array = whiten, data: Array = unbiased) -> Array:
+        def residual(law_parameters: Array, whitening: Array = whiten, log_values: Array = unbiased) -> Array:
             """Whitened residual of the law, then of the prior of the offset."""
-            white = whiten @ (data - log_law(p))
-            return np.append(white, p[2] / OFFSET_DEVIATION) if offset else np.asarray(white)
+            white = whitening @ (log_values - log_law(law_parameters))
+            return (
+                np.append(white, law_parameters[2] / OFFSET_PRIOR_DEVIATION) if offset else np.asarray(white)
+            )
 
         bounds = ([HURST_MARGIN, -np.inf, -0.9][: p.size], [1.0 - HURST_MARGIN, np.inf, np.inf][: p.size])
         result = least_squares(residual, p, bounds=bounds, x_scale=np.array([0.1, 0.1, 0.1])[: p.size])
@@ -174,7 +184,7 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
         covariance=covariance,
         offset=float(p[2]) if offset else 0.0,
         deviation=deviation,
-        drift=drift,
+        dimension_drift=drift,
         drift_error=drift_error,
         min_scale=float(series.scale[0]),
         max_scale=float(series.scale[-1]),
@@ -203,7 +213,7 @@ def _excess_deviation(
     statistical_covariance : covariance (n, n) of the residual from statistics
     """
     degrees_of_freedom = max(log_scale.size - parameter_count, 1)
-    correlation, deviations = _correlation_matrix(log_scale), np.geomspace(MIN_DEVIATION, 3.0, 60)
+    correlation, deviations = _correlation_matrix(log_scale), np.geomspace(MIN_LAW_DEVIATION, 3.0, 60)
 
     def is_sufficient(deviation: float) -> bool:
         """Whether chi-squared is at most its expected value for this standard deviation."""
@@ -217,7 +227,7 @@ def _excess_deviation(
 
 def _estimate_drift(log_scale: Array, residual: Array, statistical_covariance: Array) -> tuple[float, float]:
     """Change of D over the range and its standard error, from an additional quadratic term in ln(scale)."""
-    whiten = _whitening_matrix(statistical_covariance + MIN_DEVIATION**2 * _correlation_matrix(log_scale))
+    whiten = _whitening_matrix(statistical_covariance + MIN_LAW_DEVIATION**2 * _correlation_matrix(log_scale))
     t = log_scale - log_scale.mean()
     columns = [np.ones_like(t), t, t**2]
     white = whiten @ np.stack(columns, axis=1)

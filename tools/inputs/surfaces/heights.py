@@ -102,7 +102,7 @@ GridIndices = NDArray[np.int64]
 
 GRID_TOLERANCE = 0.05
 """Largest deviation of a position from a regular grid over the grid spacing [1]."""
-MAX_DIGIT_UNITS = 1e9
+MAX_LAST_DIGIT_RATIO = 1e9
 """Largest position over the unit of its last digit [1]; beyond it, the last digit is unknown."""
 
 
@@ -171,7 +171,7 @@ def _common_power_of_ten(numbers: Array) -> float:
     largest = float(np.abs(numbers).max())
     for power in range(0, -16, -1):
         scaled = numbers * 10.0**-power
-        if largest * 10.0**-power > MAX_DIGIT_UNITS:
+        if largest * 10.0**-power > MAX_LAST_DIGIT_RATIO:
             break
         if np.abs(scaled - np.rint(scaled)).max() < 1e-6:
             return float(10.0**power)
@@ -180,7 +180,7 @@ def _common_power_of_ten(numbers: Array) -> float:
 
 MAX_CHECKED_SIZE = 2**22
 """Largest size [bytes] of a text file in which the check counts the numbers."""
-FOREIGN_SIGNATURES = {
+NON_SURFACE_SIGNATURES = {
     b"\x89PNG": "a PNG picture",
     b"\xff\xd8\xff": "a JPEG picture",
     b"GIF8": "a GIF picture",
@@ -189,7 +189,7 @@ FOREIGN_SIGNATURES = {
     b"\x7fELF": "a program",
 }
 """First bytes of files that cannot be a surface, and what they are."""
-SIGNED_SUFFIXES = (
+SUFFIXES_WITH_SIGNATURE = (
     *("al3d", "bcr", "bcrf", "datx", "frt", "gwy", "h5", "jpk", "lext", "mdt", "mi", "nc", "npy", "npz"),
     *("opd", "os3d", "qep", "sdf", "sur", "tmd", "vk3", "vk4", "vk6", "vk7", "x3p", "zmg", "zon"),
 )
@@ -209,10 +209,10 @@ def check_surface_file(path: Path) -> None:
     with path.open("rb") as file:
         start = file.read(64)
     if kind := next(
-        (text for signature, text in FOREIGN_SIGNATURES.items() if start.startswith(signature)), None
+        (text for signature, text in NON_SURFACE_SIGNATURES.items() if start.startswith(signature)), None
     ):
         raise ValueError(f"{path}: is not a surface scan: it is {kind}")
-    if path.suffix[1:].lower() in SIGNED_SUFFIXES and not has_signature(start):
+    if path.suffix[1:].lower() in SUFFIXES_WITH_SIGNATURE and not has_signature(start):
         raise ValueError(
             f"{path}: is not a surface scan: it does not begin as a {path.suffix} file, nor as any other"
         )

@@ -76,7 +76,7 @@ def identify(
                 )
                 for surface in prepared
             ]
-            series = double_series(all_series[0]) if side == "both" else all_series[0]
+            series = make_two_sided_series(all_series[0]) if side == "both" else all_series[0]
             if len(all_series) == 2:
                 series = add_series(all_series[0], all_series[1])
             results.append(_fractal_result(series, fit_law(series, low, high)))
@@ -96,36 +96,43 @@ def identify(
     return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, side)
 
 
-def double_series(series: ScaleSeries) -> ScaleSeries:
+def make_two_sided_series(series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
-    return replace(series, value=2.0 * series.value, function_value=2.0 * series.function_value)
+    return replace(series, value=2.0 * series.value, function_value=2.0 * series.structure_or_psd)
 
 
-def add_series(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
+def add_series(first_series: ScaleSeries, second_series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two surfaces: the sum of both over their common range of scales.
 
     Raises ValueError if fewer than four scales are common.
     """
-    common = (first.scale >= second.scale[0] * 0.999) & (first.scale <= second.scale[-1] * 1.001)
+    common = (first_series.scale >= second_series.scale[0] * 0.999) & (
+        first_series.scale <= second_series.scale[-1] * 1.001
+    )
     if common.sum() < 4:
         raise ValueError(
-            f"the two surfaces share no scales: {first.scale[0]:.3g} to {first.scale[-1]:.3g} m and "
-            f"{second.scale[0]:.3g} to {second.scale[-1]:.3g} m"
+            f"the two surfaces share no scales: {first_series.scale[0]:.3g} to {first_series.scale[-1]:.3g} m and "
+            f"{second_series.scale[0]:.3g} to {second_series.scale[-1]:.3g} m"
         )
-    first = first.select(common)
-    x1, x2 = np.log(first.scale), np.log(second.scale)
+    first_series = first_series.select(common)
+    x1, x2 = np.log(first_series.scale), np.log(second_series.scale)
     interpolation = np.stack([np.interp(x1, x2, unit) for unit in np.eye(x2.size)], axis=1)
-    value, raw = (np.exp(interpolation @ np.log(a)) for a in (second.value, second.function_value))
-    share = first.value / (first.value + value)
+    value, raw = (
+        np.exp(interpolation @ np.log(a)) for a in (second_series.value, second_series.structure_or_psd)
+    )
+    share = first_series.value / (first_series.value + value)
 
     def covariance(H: float) -> Array:
         """Covariance of ln(value) of the sum."""
-        covariance1 = first.covariance(H)
-        covariance2 = interpolation @ second.covariance(H) @ interpolation.T
+        covariance1 = first_series.covariance(H)
+        covariance2 = interpolation @ second_series.covariance(H) @ interpolation.T
         return np.asarray(np.outer(share, share) * covariance1 + np.outer(1 - share, 1 - share) * covariance2)
 
     return replace(
-        first, value=first.value + value, function_value=first.function_value + raw, covariance=covariance
+        first_series,
+        value=first_series.value + value,
+        function_value=first_series.structure_or_psd + raw,
+        covariance=covariance,
     )
 
 

@@ -24,7 +24,7 @@ def fractal_parameters(
         raise ValueError(f"joint = {joint!r} is not one of {', '.join(KINDS)}")
     values: dict[str, tuple[float, FractalResult]] = {}
     for surface in KINDS[joint].surfaces:
-        result = identification.select_best(_profile_direction(identification, surface), method)
+        result = identification.select_best_result(_profile_direction(identification, surface), method)
         D, G = _dimension_and_roughness(result, surface)
         values |= {
             f"{surface.parameter_prefix}.D": (D.value, result),
@@ -91,7 +91,7 @@ def _with_roughness_law(
     file = file.with_values({"slope": identification.slope}, "user", f"{source}, down to {shortest:.3g} m")
     if not set_hurst:
         return file
-    result = identification.select_best(method=method)
+    result = identification.select_best_result(method=method)
     return file.with_values({"hurst": result.fit.H}, "user", _describe_fit(identification, result))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from jointfmu.files import archives
-from jointfmu.files.reading import check_regular
+from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity.refusal import InputRefusal
 
 from ...common.columns import find_separator, parse_number, split_cells
@@ -49,7 +49,7 @@ def read_heights(
     constant heights, all heights missing, a size that suggests another unit.
     """
     path = Path(path)
-    check_regular(path, "height data")
+    check_regular_file(path, "height data")
     if not path.is_file():
         raise ValueError(f"{path}: is not a file; expected height data")
     option_units = {"x": unit_x or unit, "z": unit_z or unit}
@@ -63,15 +63,15 @@ def read_heights(
         if any(option_units.values()):
             value = next(filter(None, option_units.values()))
             raise InputRefusal(f"{path}: states its units; leave the unit {value} out", "unit")
-        heights, file_unit = csvfile.read_declared(path, line)
-    elif is_text and (titles := csvfile.read_titles(path)):
-        heights, file_unit = csvfile.read_titled(path, titles, option_units)
+        heights, file_unit = csvfile.read_declared_file(path, line)
+    elif is_text and (titles := csvfile.read_column_titles(path)):
+        heights, file_unit = csvfile.read_titled_file(path, titles, option_units)
     elif is_text and (count := _count_columns(path)):
         if not all(option_units.values()):
             raise _missing_unit_error(path)
         names = csvfile.LAYOUT_COLUMNS["profile" if count == 2 else "points"]
         heads = [(name, None) for name in names]
-        heights, file_unit = csvfile.read_titled(path, heads, option_units, header_lines=0)
+        heights, file_unit = csvfile.read_titled_file(path, heads, option_units, header_lines=0)
     elif unit_x or unit_z:
         name = "unit_x" if unit_x else "unit_z"
         raise InputRefusal(f"{path}: is not a table of columns; expected one unit for all axes", name)
@@ -175,15 +175,17 @@ def _unit_size(unit: str) -> float:
     raise ValueError(f"its unit {unit!r} is not a known unit of length")
 
 
-def _convert_heights(path: Path, topography: Any, size: Any, heights: Any, factor: float) -> Heights:
+def _convert_heights(
+    path: Path, topography: Any, side_lengths: Any, heights: Any, unit_size: float
+) -> Heights:
     """Heights of SurfaceTopography as profile or areal map with axes (y, x), missing points as NaN."""
-    z = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * factor
-    if size is None or any(length is None for length in size):
+    z = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * unit_size
+    if side_lengths is None or any(length is None for length in side_lengths):
         raise ValueError(f"{path}: states no lateral size; resave it with its size, or as our CSV")
     if z.ndim == 1 and not topography.is_uniform:
-        x = np.asarray(topography.positions(), dtype=np.float64) * factor
+        x = np.asarray(topography.positions(), dtype=np.float64) * unit_size
         return csvfile.heights_from_columns(path, np.stack([x, z], axis=1), [1.0, 1.0])
-    spacing = [float(length) * factor / n for length, n in zip(size, z.shape, strict=True)]
+    spacing = [float(length) * unit_size / n for length, n in zip(side_lengths, z.shape, strict=True)]
     if z.ndim == 1:
         return Profile(z=z, dx=spacing[0], name=str(path))
     return ArealMap(z=np.ascontiguousarray(z.T), dx=spacing[0], dy=spacing[1], name=str(path))

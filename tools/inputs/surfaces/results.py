@@ -137,17 +137,17 @@ class Identification:
         """Longest wavelength [m] of h and slope."""
         return self.scans[0].longest_wave
 
-    def select_best(self, direction: str | None = None, method: str | None = None) -> FractalResult:
+    def select_best_result(self, direction: str | None = None, method: str | None = None) -> FractalResult:
         """Best result in a direction (None: the whole surface): self-affine, smallest standard error of D.
 
         A result with D at an end of its interval comes last, because that end cuts its error off.
         """
-        candidates = [r for r in self.select_direction(direction) if method in (None, r.method)]
+        candidates = [r for r in self.select_results_in_direction(direction) if method in (None, r.method)]
         return min(
             candidates, key=lambda r: (r.fit.is_at_bound, not r.fit.is_self_affine, r.fit.covariance[0, 0])
         )
 
-    def select_direction(self, direction: str | None = None) -> list[FractalResult]:
+    def select_results_in_direction(self, direction: str | None = None) -> list[FractalResult]:
         """Results of all methods in a direction (None: the whole surface)."""
         direction = direction or self.results[0].direction
         return [r for r in self.results if r.direction == direction]
@@ -158,7 +158,7 @@ class Identification:
         They are determined if the surface is self-affine by all methods with D inside of its interval, if the
         confidence intervals of D overlap, and if G is determined.
         """
-        results = self.select_direction(direction)
+        results = self.select_results_in_direction(direction)
         for result in results:
             D = result.profile.D.value
             if result.fit.is_at_bound:
@@ -171,7 +171,7 @@ class Identification:
                 for r in results
             )
             return f"the methods disagree, D = {values}"
-        G = self.select_best(direction).profile.G
+        G = self.select_best_result(direction).profile.G
         return None if G.is_determined else f"the interval of G spans {G.decades:.0f} decades"
 
 
@@ -206,7 +206,7 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
             lines.append(
                 f"{label}: not self-affine over {result.fit.min_scale:.3g} to "
                 f"{result.fit.max_scale:.3g} m: D drifts by "
-                f"{result.fit.drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
+                f"{result.fit.dimension_drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
             )
         if result.fit.decades < 1.0:
             lines.append(f"{label}: the range spans {result.fit.decades:.2f} decades, less than one")

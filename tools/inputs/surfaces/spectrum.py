@@ -22,7 +22,7 @@ SCAN_SIDES = ("1", "2", "both")
 """Side of the contact that a single scan represents: 1 or 2 (the other side is smooth), or both (alike)."""
 MIN_SERIES_VALUE = 1e-200
 """Smallest value of a series [m2]: constant heights also have a logarithm."""
-KERNEL_WIDTH = 0.3
+SMOOTHING_KERNEL_WIDTH = 0.3
 """Standard deviation of the Gaussian kernel in ln(frequency) [1]; it smooths discrete waves with a frequency
 ratio up to 2."""
 
@@ -44,7 +44,7 @@ class ScaleSeries:
     direction: str
     scale: Array
     value: Array
-    function_value: Array
+    structure_or_psd: Array
     expected_value: Callable[[float], Array]
     covariance: Callable[[float], Array]
 
@@ -54,13 +54,13 @@ class ScaleSeries:
             self,
             scale=self.scale[selection],
             value=self.value[selection],
-            function_value=self.function_value[selection],
+            function_value=self.structure_or_psd[selection],
             expected_value=lambda H: self.expected_value(H)[selection],
             covariance=lambda H: self.covariance(H)[np.ix_(selection, selection)],
         )
 
 
-MODE_COUNT = 256
+COVARIANCE_MODE_COUNT = 256
 """Number of Fourier modes per direction in a covariance; shorter waves hardly contribute."""
 
 
@@ -96,8 +96,8 @@ def _smooth_structure(
 ) -> ScaleSeries:
     """Series of a structure function, smoothed over ln(lag) with the same kernel as the spectrum."""
     x = np.log(lag)
-    scale = np.exp(np.arange(x[0] + KERNEL_WIDTH, x[-1], 0.2))
-    weight = np.exp(-0.5 * ((np.log(scale)[:, None] - x) / KERNEL_WIDTH) ** 2) * np.gradient(x)
+    scale = np.exp(np.arange(x[0] + SMOOTHING_KERNEL_WIDTH, x[-1], 0.2))
+    weight = np.exp(-0.5 * ((np.log(scale)[:, None] - x) / SMOOTHING_KERNEL_WIDTH) ** 2) * np.gradient(x)
     weight = weight / weight.sum(axis=1, keepdims=True)
 
     @cache
@@ -112,7 +112,7 @@ def _smooth_structure(
         direction=direction,
         scale=scale,
         value=weight @ value,
-        function_value=weight @ structure_values,
+        structure_or_psd=weight @ structure_values,
         expected_value=lambda H: np.asarray(weight @ structure_power_law(lag, H)),
         covariance=smoothed_covariance,
     )
@@ -142,7 +142,7 @@ def _line_covariance(scale: Array, length: float) -> Callable[[float], Array]:
 
     Several lines of a map count as one line, which is conservative also for a textured map.
     """
-    frequency = np.arange(1, 4 * MODE_COUNT) / length
+    frequency = np.arange(1, 4 * COVARIANCE_MODE_COUNT) / length
     response = _wave_weights(scale, frequency)
 
     def covariance(H: float) -> Array:
@@ -158,7 +158,7 @@ def _areal_covariance(scale: Array, lengths: tuple[float, ...]) -> Callable[[flo
 
     The map is isotropic, with side lengths [m].
     """
-    fx, fy = (np.arange(1, MODE_COUNT) / length for length in lengths)
+    fx, fy = (np.arange(1, COVARIANCE_MODE_COUNT) / length for length in lengths)
     wx, wy = _wave_weights(scale, fx), _wave_weights(scale, fy)
     square = fx[None, :] ** 2 + fy[:, None] ** 2
 
@@ -224,7 +224,7 @@ def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
     )
     f = np.exp(logs / count)
     wavelength = np.exp(np.arange(np.log(5.0 * spacing), np.log(length / 3.0), 0.2))
-    kernel = np.exp(-0.5 * (np.log(wavelength[:, None] * f) / KERNEL_WIDTH) ** 2)
+    kernel = np.exp(-0.5 * (np.log(wavelength[:, None] * f) / SMOOTHING_KERNEL_WIDTH) ** 2)
     norm = kernel @ share
     areal = direction == "areal"
 
@@ -242,13 +242,13 @@ def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
         direction=direction,
         scale=wavelength,
         value=value,
-        function_value=value * wavelength,
+        structure_or_psd=value * wavelength,
         expected_value=lambda H: np.asarray(kernel @ expected_power(H) / norm),
         covariance=covariance,
     )
 
 
-def _window_factor(k: Array, H: float, is_areal: bool) -> Array:
+def _window_factor(mode_index: Array, H: float, is_areal: bool) -> Array:
     """Factor [1] of a Hann window on a power law, since the window mixes neighbouring modes.
 
     mode_index : number k of waves per length
@@ -256,11 +256,11 @@ def _window_factor(k: Array, H: float, is_areal: bool) -> Array:
     Along a line, the weights of the modes k - 1, k, k + 1 are 1/6, 2/3, 1/6. Over an area, the factor is the
     second-order expansion.
     """
-    k = np.maximum(k, 2.0)
+    mode_index = np.maximum(mode_index, 2.0)
     if is_areal:
-        return np.asarray(1.0 + (2.0 + 2.0 * H) ** 2 / (6.0 * k**2))
+        return np.asarray(1.0 + (2.0 + 2.0 * H) ** 2 / (6.0 * mode_index**2))
     s = 1.0 + 2.0 * H
-    return np.asarray(2.0 / 3.0 + ((1.0 - 1.0 / k) ** -s + (1.0 + 1.0 / k) ** -s) / 6.0)
+    return np.asarray(2.0 / 3.0 + ((1.0 - 1.0 / mode_index) ** -s + (1.0 + 1.0 / mode_index) ** -s) / 6.0)
 
 
 def _hann_window(n: int) -> Array:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
-from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
+from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.quantity import Array, quantity_field
@@ -53,7 +53,9 @@ def springs_of_joint(
     return _distribute_to_nodes(spring, labels, preload, moment, None)
 
 
-def springs_on_mesh(spring: BoltedJointSpring, mesh: "NodePairs", preload: float, moment: float) -> Springs:
+def springs_on_mesh(
+    spring: BoltedJointSpring, node_pairs: "NodePairs", preload: float, moment: float
+) -> Springs:
     """Springs at the node pairs of a mesh, for a preload [N] per bolt and a moment [N.m].
 
     The normalised pressure is interpolated linearly between the nodes of the joint (outside of them: value of
@@ -66,55 +68,57 @@ def springs_on_mesh(spring: BoltedJointSpring, mesh: "NodePairs", preload: float
     from scipy.interpolate import LinearNDInterpolator
     from scipy.spatial import KDTree
 
-    _check_area(spring, mesh)
-    shape, position = spring.points, mesh.position
-    share = mesh.area / mesh.area.sum()
+    _check_area(spring, node_pairs)
+    shape, position = spring.points, node_pairs.position
+    share = node_pairs.area / node_pairs.area.sum()
     distance, nearest = KDTree(shape.position).query(position)
     allowed = _MAX_DISTANCE_RATIO * float(np.hypot(*np.ptp(shape.position, axis=0)))
     if np.any(distance > allowed):
         worst = int(np.argmax(distance))
         raise ValueError(
-            f"{mesh.path}: node {mesh.nodes[worst, 0]} is {distance[worst]:.3g} m off the joint, allowed are "
+            f"{node_pairs.path}: node {node_pairs.node_labels[worst, 0]} is {distance[worst]:.3g} m off the joint, allowed are "
             f"{allowed:.3g} m; place and size must be the joint's"
         )
-    values = np.stack([shape.preload_shape, shape.moment_shape], axis=1)
+    values = np.stack([shape.preload_pressure_ratio, shape.moment_pressure_ratio], axis=1)
     linear = LinearNDInterpolator(shape.position, values)(position)
     equal, tilt = np.where(np.isnan(linear), values[nearest], linear).T
     force = float(share @ equal)
     if abs(force - 1.0) > FORCE_TOLERANCE:
         raise ValueError(
-            f"{mesh.path}: the pressures at its nodes carry {force:.3g} times the joint's force, allowed is "
+            f"{node_pairs.path}: the pressures at its nodes carry {force:.3g} times the joint's force, allowed is "
             f"within {FORCE_TOLERANCE:.0%}; refine the mesh, or give the pressure at its nodes"
         )
     equal /= force
     tilt -= (share @ tilt) * equal
-    mapped = spring.on_nodes(PressureDistribution(share, position, equal, tilt))
+    mapped = spring.with_nodes(PressureDistribution(share, position, equal, tilt))
     return _distribute_to_nodes(
-        mapped, mesh.nodes, preload, moment, _interface_totals(spring, preload, moment)
+        mapped, node_pairs.node_labels, preload, moment, _interface_totals(spring, preload, moment)
     )
 
 
-def springs_under_pressure(spring: BoltedJointSpring, mesh: "NodePairs") -> Springs:
+def springs_under_pressure(spring: BoltedJointSpring, node_pairs: "NodePairs") -> Springs:
     """Springs at the node pairs of a mesh, under the nodal pressures in the file of the mesh.
 
     Raises ValueError if the file has no pressures, or if the areas do not add up to A_0 within
     AREA_TOLERANCE.
     """
-    if mesh.pressure is None:
-        raise ValueError(f"{mesh.path}: has no column 'pressure'; expected pressure [Pa]")
-    _check_area(spring, mesh)
-    share = mesh.area / mesh.area.sum()
-    mean = float(share @ mesh.pressure)
-    shape = PressureDistribution(share, mesh.position, mesh.pressure / mean, np.zeros_like(share))
-    mapped = spring.on_nodes(shape)
-    return _distribute_to_nodes(mapped, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
+    if node_pairs.pressure is None:
+        raise ValueError(f"{node_pairs.path}: has no column 'pressure'; expected pressure [Pa]")
+    _check_area(spring, node_pairs)
+    share = node_pairs.area / node_pairs.area.sum()
+    mean = float(share @ node_pairs.pressure)
+    shape = PressureDistribution(share, node_pairs.position, node_pairs.pressure / mean, np.zeros_like(share))
+    mapped = spring.with_nodes(shape)
+    return _distribute_to_nodes(
+        mapped, node_pairs.node_labels, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None
+    )
 
 
-def _check_area(spring: BoltedJointSpring, mesh: "NodePairs") -> None:
-    area, expected = float(mesh.area.sum()), float(spring.joint.A_0)
+def _check_area(spring: BoltedJointSpring, node_pairs: "NodePairs") -> None:
+    area, expected = float(node_pairs.area.sum()), float(spring.joint.A_0)
     if abs(area / expected - 1.0) > AREA_TOLERANCE:
         raise ValueError(
-            f"{mesh.path}: the areas add up to {area:.4g} m2, the joint has A_0 = {expected:.4g} m2; "
+            f"{node_pairs.path}: the areas add up to {area:.4g} m2, the joint has A_0 = {expected:.4g} m2; "
             f"allowed is within {AREA_TOLERANCE:.0%}"
         )
 
@@ -124,13 +128,15 @@ def _interface_totals(spring: BoltedJointSpring, preload: float, moment: float) 
     state = spring.evaluate(preload, moment, rest, rest)
     sums = {name: float(state[name]) for name in TOTAL_OUTPUTS}
     tightened = spring.bolts.preload_force(spring.joint, preload, moment)
-    bolts = spring.bolts.count * spring.bolts.tangent(tightened, np.zeros_like(tightened))
+    bolts = spring.bolts.bolts_per_position * spring.bolts.tangent_stiffness(
+        tightened, np.zeros_like(tightened)
+    )
     return sums | {"K_zz": sums["K_zz"] - float(np.sum(bolts))}
 
 
 def _distribute_to_nodes(
     spring: BoltedJointSpring,
-    nodes: NDArray[np.int64],
+    node_labels: NDArray[np.int64],
     preload: float,
     moment: float,
     total_outputs: dict[str, float] | None,
@@ -143,7 +149,7 @@ def _distribute_to_nodes(
     """
     joint, shape = spring.joint, spring.points
     p = preload_pressure(joint, shape, preload, moment)
-    highest = spring.curve.end[1]
+    highest = spring.curve.end_point[1]
     if not (np.isfinite(preload + moment) and 0.0 < np.max(p) <= highest):
         raise ValueError(
             f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
@@ -155,7 +161,7 @@ def _distribute_to_nodes(
     spring_totals = _interface_totals(spring, preload, moment)
     sums = total_outputs or spring_totals
     return Springs(
-        nodes[closed],
+        node_labels[closed],
         shape.position[closed],
         (shape.area_share * joint.A_0)[closed],
         p[closed],
@@ -193,7 +199,7 @@ def tabulate_normal_force(
     """
     from ...exchange.export.tables import LoadTable, decimate_curve
 
-    start = spring.checked_approach(preload, moment)
+    start = spring.checked_preloaded_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
     shape = spring.points.merge_nodes(keeps_moment=moment != 0.0)
     approach = spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
@@ -204,9 +210,11 @@ def tabulate_normal_force(
     def compression_correction(separation: Array) -> tuple[Array, Array]:
         """Correction for bolts, which only pull: force [N] and stiffness [N/m] of bolts that push."""
         elongation = separation[:, None] + np.zeros(len(held_bolts))
-        gap = springs.gap(held_bolts, elongation)
-        lost = springs.stiffness - springs.tangent(held_bolts, elongation)
-        return springs.count * springs.stiffness * gap.sum(axis=1), springs.count * lost.sum(axis=1)
+        gap = springs.head_gap(held_bolts, elongation)
+        lost = springs.stiffness - springs.tangent_stiffness(held_bolts, elongation)
+        return springs.bolts_per_position * springs.stiffness * gap.sum(
+            axis=1
+        ), springs.bolts_per_position * lost.sum(axis=1)
 
     def contact_force_and_stiffness(separation: Array) -> Array:
         blocks = np.array_split(separation[:, None], max(separation.size * approach.size // _BLOCK_SIZE, 1))
@@ -243,29 +251,41 @@ class TightenedState:
 
 
 def _make_springs(
-    joint: Bolted, state: TightenedState | None, mesh: "NodePairs | None", placement: "Placement"
+    joint: AnyBoltedJoint,
+    tightened_state: TightenedState | None,
+    node_pairs: "NodePairs | None",
+    placement: "Placement",
 ) -> "tuple[Springs, str]":
-    spring = BoltedJointSpring.of_nodes(joint)
-    if state is None:
-        if mesh is None:
+    spring = BoltedJointSpring.for_interface_nodes(joint)
+    if tightened_state is None:
+        if node_pairs is None:
             raise ValueError("springs need a preload, or node pairs with their pressure")
-        return springs_under_pressure(spring, mesh), f"pressures of {mesh.path.name}"
-    if mesh is None:
-        return springs_of_joint(spring, state.preload, state.moment, placement.first_number), str(state)
-    springs = springs_on_mesh(spring, mesh, state.preload, state.moment)
-    return springs, f"{state}, on the nodes of {mesh.path.name}"
+        return springs_under_pressure(spring, node_pairs), f"pressures of {node_pairs.path.name}"
+    if node_pairs is None:
+        return springs_of_joint(
+            spring, tightened_state.preload, tightened_state.moment, placement.first_number
+        ), str(tightened_state)
+    springs = springs_on_mesh(spring, node_pairs, tightened_state.preload, tightened_state.moment)
+    return springs, f"{tightened_state}, on the nodes of {node_pairs.path.name}"
 
 
-def _contact_curve(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
+def _contact_curve(joint: AnyBoltedJoint) -> "tuple[Curve, Sequence[str]]":
     ratio = float(joint.shear_stiffness_ratio())
     note = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
-    return BoltedJointSpring.of_nodes(joint).curve, [note]
+    return BoltedJointSpring.for_interface_nodes(joint).curve, [note]
 
 
-def _normal_force_table(joint: Bolted, state: TightenedState | None, max_error: float) -> "LoadTable":
-    if state is None:
+def _normal_force_table(
+    joint: AnyBoltedJoint, tightened_state: TightenedState | None, max_error: float
+) -> "LoadTable":
+    if tightened_state is None:
         raise ValueError("the curve of a bolted_joint needs a preload")
-    return tabulate_normal_force(BoltedJointSpring.of_nodes(joint), state.preload, state.moment, max_error)
+    return tabulate_normal_force(
+        BoltedJointSpring.for_interface_nodes(joint),
+        tightened_state.preload,
+        tightened_state.moment,
+        max_error,
+    )
 
 
 _JOINT_VARIABLES = KIND.variables
@@ -281,7 +301,7 @@ EXPORTS = Exports(
             Variable("pull", "N", "force that holds it together"),
             _JOINT_VARIABLES["K_zz"],
         ),
-        name="force",
+        table_name="force",
         compute_table=_normal_force_table,
     ),
 )

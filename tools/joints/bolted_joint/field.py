@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, bolt_pressures, preload_pressure
+from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, ElasticBodies, bolt_pressures, preload_pressure
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, pressure_distribution
 from jointfmu.mechanics.footprint.distribution import NodalField, PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
@@ -37,7 +37,7 @@ class PlaneLayout:
     head_diameter: float
 
     @classmethod
-    def from_joint(cls, joint: Bolted) -> "PlaneLayout":
+    def from_joint(cls, joint: AnyBoltedJoint) -> "PlaneLayout":
         """Bolt layout and outline of the contact, from the parameters of a joint."""
         pattern = joint.pattern
         bodies = joint.bodies if isinstance(joint.bodies, ElasticBodies) else None
@@ -52,8 +52,12 @@ class PlaneLayout:
         if isinstance(pattern, BoltedPlate):
             half = 0.5 * np.array([[-pattern.length, -pattern.width], [pattern.length, pattern.width]])
             outline = (half - pattern.centroid,)
-            return cls(pattern.bolts - pattern.centroid, outline, outline[0], pattern.hole_diameter, head)
-        return cls(pattern.bolts, frame := _frame_outline(pattern), frame[0], pattern.hole_diameter, head)
+            return cls(
+                pattern.bolts_from_middle - pattern.centroid, outline, outline[0], pattern.hole_diameter, head
+            )
+        return cls(
+            pattern.bolts_from_middle, frame := _frame_outline(pattern), frame[0], pattern.hole_diameter, head
+        )
 
 
 def _frame_outline(pattern: BoltedFrame) -> tuple[Array, Array]:
@@ -62,26 +66,26 @@ def _frame_outline(pattern: BoltedFrame) -> tuple[Array, Array]:
     return signs * (half + 0.5 * pattern.flange_width), signs * (half - 0.5 * pattern.flange_width)
 
 
-def _mean_pressure(joint: Bolted, preload: float) -> float:
+def _mean_pressure(joint: AnyBoltedJoint, preload: float) -> float:
     return float(bolt_pressures(joint, preload, 0.0)[0])
 
 
-def _peak_pressure(joint: Bolted, preload: float) -> float:
+def _peak_pressure(joint: AnyBoltedJoint, preload: float) -> float:
     return float(np.max(preload_pressure(joint, pressure_distribution(joint.pattern), preload, 0.0)))
 
 
-def _default_preload(joint: Bolted) -> float:
+def _default_preload(joint: AnyBoltedJoint) -> float:
     """Typical preload [N] of a bolt: 30 kN (M16), or 70 % of the proof load of a smaller bolt."""
     borne = _proof_load(joint)
     return 30e3 if borne is None else min(30e3, 0.7 * borne[0])
 
 
-def _proof_load(joint: Bolted) -> tuple[float, str] | None:
+def _proof_load(joint: AnyBoltedJoint) -> tuple[float, str] | None:
     pattern = joint.pattern
     return None if isinstance(pattern, NodalField) else proof_load(pattern.hole_diameter)
 
 
-PRESSURE = NominalPressure(
+NOMINAL_PRESSURE = NominalPressure(
     load_variable="preload",
     default_load=_default_preload,
     mean_pressure=_mean_pressure,
@@ -105,7 +109,9 @@ def insert_elastic_bodies(
     """
     from .new.plate_finite_elements import compute_joint_of_assembly
 
-    return compute_joint_of_assembly(file, lambda: assembly, preload, attachment, pressure_shape).file
+    return compute_joint_of_assembly(
+        file, lambda: assembly, preload, attachment, pressure_shape
+    ).parameter_file
 
 
 def joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:

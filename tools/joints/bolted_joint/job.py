@@ -10,10 +10,10 @@ import numpy as np
 from jointfmu_fmu_src.joint_parts import RampPanel
 from scipy.integrate import cumulative_simpson
 
-from jointfmu.joints.bolted_joint.law import bolt_pattern
+from jointfmu.joints.bolted_joint.law import get_bolted_frame
 from jointfmu.parameters import load_default
 
-from ...pages.laboratory.part import ContactMap, LaboratoryModel, MeasuredCurve, PublishedQuantity
+from ...pages.laboratory.joint_additions import ContactMap, LaboratoryModel, MeasuredCurve, PublishedQuantity
 from ...pages.report.figure import Figure, Panel, Series
 from ...run.ramps import ramp
 from ...run.ramps.ramp import RampResult
@@ -23,28 +23,28 @@ from ...systems.master import Slave
 from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
 from .picture import draw_plan
 
-_FMU = "BoltedJoint"
+_FMU_NAME = "BoltedJoint"
 
 
-def _check_separation(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
-    pulled = ramp.run_ramp(folder / f"{_FMU}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
+def _check_separation(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+    pulled = ramp.run_ramp(folder / f"{_FMU_NAME}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     return "f_z pulled apart against the integral of K_zz ds (scipy, Simpson)", relative_deviation(
         pulled["f_z"], force
     )
 
 
-RAMPS = {_FMU: _check_separation}
+RAMP_CHECKS = {_FMU_NAME: _check_separation}
 """{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
 relative deviation [1])."""
 
 
-def compute_through_fmu(point: Point, folder: Path) -> float | None:
+def compute_through_fmu(published_point: Point, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
-    if point.quantity != "p_max":
+    if published_point.quantity != "p_max":
         return None
-    load = point.where["preload"]
-    return float(ramp.run_ramp(folder / f"{_FMU}.fmu", "preload", load, load).columns["p_max"][-1])
+    load = published_point.where["preload"]
+    return float(ramp.run_ramp(folder / f"{_FMU_NAME}.fmu", "preload", load, load).columns["p_max"][-1])
 
 
 _MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
@@ -52,15 +52,15 @@ _MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
 paper."""
 
 
-def figures(job_result: Any) -> list[Figure]:
+def make_figures(job_result: Any) -> list[Figure]:
     """Figures of the bolted joint, from the results of the main job (`JobResult`)."""
     joint = load_default("bolted_joint").values
     return [
         Figure(
             "Stiffness and damping over preload",
             "Normal (zz) and tangential (xx) direction; the damping is the viscous equivalent.",
-            stiffness_panels(job_result.ramps[_FMU]),
-            data_file=f"{_FMU}.csv",
+            stiffness_panels(job_result.ramps[_FMU_NAME]),
+            data_file=f"{_FMU_NAME}.csv",
         ),
         Figure(
             "Contact pressure",
@@ -71,9 +71,9 @@ def figures(job_result: Any) -> list[Figure]:
     ]
 
 
-def stiffness_panels(result: RampResult) -> list[Panel]:
+def stiffness_panels(ramp_result: RampResult) -> list[Panel]:
     """Panels of stiffness and damping as functions of the preload."""
-    c, over = result.columns, "preload per bolt [kN]"
+    c, over = ramp_result.columns, "preload per bolt [kN]"
     load = c["preload"] / 1e3
     return [
         Panel("Stiffness", over, "K [N/um]", [Series(n, load, c[n] / 1e6) for n in ("K_zz", "K_xx")]),
@@ -94,8 +94,8 @@ def _rest_state(path: Path, preload: float, parameters: Mapping[str, Any]) -> Wo
     return WorkingPoint(0.0, 0.0, K, 0.0 - dashpot)
 
 
-RINGING = VibrationTest(
-    model_name=_FMU,
+VIBRATION_TEST = VibrationTest(
+    model_name=_FMU_NAME,
     motion_inputs=("s_rel_x", "v_rel_x"),
     force_output="f_x",
     body_model="TranslationalMass",
@@ -106,7 +106,7 @@ RINGING = VibrationTest(
     release_force=1.0,
     load_axis=PlotAxis("preload", "kN", 1e-3),
     deflection_axis=PlotAxis("motion", "um", 1e6),
-    doc="in shear",
+    support_description="in shear",
     stiffness_output="K_xx",
     slip_deflection=SlipDeflection(15e3, 8e-7, "half of the friction limit"),
 )
@@ -120,7 +120,7 @@ _CURVE_POINTS = 41
 
 def _bolt_marks(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
     try:
-        return bolt_pattern(joint).bolts.tolist(), "bolts"
+        return get_bolted_frame(joint).bolts_from_middle.tolist(), "bolts"
     except ValueError:  # a field of nodal pressures, or a plate
         return [], ""
 
@@ -139,8 +139,8 @@ def _measured_curves() -> list[MeasuredCurve]:
     return curves
 
 
-LABORATORY = {
-    _FMU: LaboratoryModel(
+LABORATORY_MODELS = {
+    _FMU_NAME: LaboratoryModel(
         panels=(RampPanel("preload", ("p_max", "p_mean")), RampPanel("p_mean", ("K_zz",))),
         slider_spans={"moment": (-5e3, 5e3), "bolt_stiffness": (0.0, 2e9), "preload": (0.0, 30e3)},
         path_inputs=("s_rel_x", "s_rel_y"),

@@ -5,7 +5,7 @@ from html import escape
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, preload_pressure, working_preload
+from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.plate import BoltedPlate
@@ -92,7 +92,7 @@ class SvgDrawing:
         return head + paper + "".join(self.elements) + "</svg>"
 
 
-def draw_plan(joint: Bolted, preload: float, moment: float) -> str:
+def draw_plan(joint: AnyBoltedJoint, preload: float, moment: float) -> str:
     """Plan view of the tightened interface from side 2, as SVG: pressure, numbered bolts, attachments.
 
     preload : [N] of each bolt
@@ -162,21 +162,21 @@ def draw_plan(joint: Bolted, preload: float, moment: float) -> str:
     return sheet.render("The interface from above: pressure, bolts, attachments")
 
 
-def _cell_sizes(joint: Bolted, share: Array) -> Array:
+def _cell_sizes(joint: AnyBoltedJoint, area_share: Array) -> Array:
     """Width and height (n, 2) [m] of the cells of a plate or a frame."""
-    side, plate = np.sqrt(joint.A_0 * share)[:, None], joint.pattern
+    side, plate = np.sqrt(joint.A_0 * area_share)[:, None], joint.pattern
     if not isinstance(plate, BoltedPlate):
         return side * np.ones(2)
     step = np.array([plate.length, plate.width]) / plate.coarse_cell_counts
     return np.asarray(side * step / np.sqrt(np.prod(step)))
 
 
-def _attachment_name(joint: Bolted) -> str:
+def _attachment_name(joint: AnyBoltedJoint) -> str:
     bodies = joint.bodies
-    return bodies.attached if joint.elastic and isinstance(bodies, ElasticBodies) else ""
+    return bodies.attached if joint.has_elastic_members and isinstance(bodies, ElasticBodies) else ""
 
 
-def _bearing_surface_text(joint: Bolted) -> str:
+def _bearing_surface_text(joint: AnyBoltedJoint) -> str:
     return "under heads and " + ("at threads" if getattr(joint.bodies, "thread_depth", 0.0) else "nuts")
 
 
@@ -188,11 +188,11 @@ def _pressure_colour(pressure_ratio: float) -> str:
     )
 
 
-def _draw_colour_bar(sheet: SvgDrawing, x: float, y: float, height: float, max_pressure: float) -> None:
+def _draw_colour_bar(svg_drawing: SvgDrawing, x: float, y: float, height: float, max_pressure: float) -> None:
     steps = 40
     for k in range(steps):
         place = y + height * (1.0 - (k + 1) / steps)
-        sheet.add_element(
+        svg_drawing.add_element(
             "rect",
             x=x,
             y=place,
@@ -201,35 +201,46 @@ def _draw_colour_bar(sheet: SvgDrawing, x: float, y: float, height: float, max_p
             fill=_pressure_colour((k + 0.5) / steps),
         )
     for fraction in (0.0, 0.25, 0.5, 0.75, 1.0):
-        sheet.add_text(
+        svg_drawing.add_text(
             x + 22.0, y + height * (1.0 - fraction) + 4.0, f"{fraction * max_pressure / 1e6:.3g}", "start"
         )
-    sheet.add_text(x - 8.0, y - 12.0, "pressure [MPa]", "start")
+    svg_drawing.add_text(x - 8.0, y - 12.0, "pressure [MPa]", "start")
 
 
 def _draw_bolts(
-    sheet: SvgDrawing, positions: Array, layout: PlaneLayout, pixels_per_metre: float, is_attached: bool
+    svg_drawing: SvgDrawing,
+    positions: Array,
+    plane_layout: PlaneLayout,
+    pixels_per_metre: float,
+    is_attached: bool,
 ) -> None:
     """Draw holes, heads, centre lines and numbers of bolts at positions (b, 2) [px]."""
-    hole, head = 0.5 * pixels_per_metre * layout.hole_diameter, 0.5 * pixels_per_metre * layout.head_diameter
+    hole, head = (
+        0.5 * pixels_per_metre * plane_layout.hole_diameter,
+        0.5 * pixels_per_metre * plane_layout.head_diameter,
+    )
     for number, (x, y) in enumerate(positions, start=1):
         reach = max(hole, head, 6.0) + 7.0
         if hole:
-            sheet.add_element("circle", cx=x, cy=y, r=hole, fill="#fff", stroke=LINE_COLOUR)
+            svg_drawing.add_element("circle", cx=x, cy=y, r=hole, fill="#fff", stroke=LINE_COLOUR)
         if head and is_attached:
             wide = max(head - hole, 4.0) if hole else 4.0
             ring = {"stroke_width": wide, "stroke_dasharray": "2 4", "stroke_opacity": 0.9}
-            sheet.add_element("circle", cx=x, cy=y, r=head - 0.5 * wide, fill="none", stroke=RED, **ring)
+            svg_drawing.add_element(
+                "circle", cx=x, cy=y, r=head - 0.5 * wide, fill="none", stroke=RED, **ring
+            )
         if head:
-            sheet.add_element("circle", cx=x, cy=y, r=head, fill="none", stroke=LINE_COLOUR, stroke_width=1.5)
+            svg_drawing.add_element(
+                "circle", cx=x, cy=y, r=head, fill="none", stroke=LINE_COLOUR, stroke_width=1.5
+            )
         for dx, dy in ((reach, 0.0), (0.0, reach)):
-            sheet.add_line(x - dx, y - dy, x + dx, y + dy, LINE_COLOUR, "9 3 2 3")
+            svg_drawing.add_line(x - dx, y - dy, x + dx, y + dy, LINE_COLOUR, "9 3 2 3")
         side = reach * 0.72
         halo = {"stroke": "#fff", "stroke_width": 3, "paint_order": "stroke", "font_weight": 600}
-        sheet.add_text(x + side, y - side, str(number), "start", **halo)
+        svg_drawing.add_text(x + side, y - side, str(number), "start", **halo)
 
 
-def draw_section(joint: Bolted) -> str:
+def draw_section(joint: AnyBoltedJoint) -> str:
     """Section of both sides, as SVG: thicknesses, bolts, and surfaces at which the load is applied."""
     bodies = joint.bodies
     assert isinstance(bodies, ElasticBodies)
@@ -288,7 +299,7 @@ def draw_section(joint: Bolted) -> str:
 
 
 def _draw_bolt_section(
-    sheet: SvgDrawing,
+    svg_drawing: SvgDrawing,
     x: float,
     vertical_range: tuple[float, float],
     head_radius: float,
@@ -298,11 +309,11 @@ def _draw_bolt_section(
 ) -> None:
     """Draw one bolt, schematic [px]: with head and nut, or with head and tapped thread."""
     (top, bottom), shank = vertical_range, 0.6 * head_radius
-    sheet.add_element(
+    svg_drawing.add_element(
         "rect", x=x - shank, y=top, width=2.0 * shank, height=bottom - top, fill="#fff", stroke=LINE_COLOUR
     )
     for y in (bottom,) if thread_depth else (top - head_height, bottom):
-        sheet.add_element(
+        svg_drawing.add_element(
             "rect",
             x=x - head_radius,
             y=y,
@@ -314,7 +325,7 @@ def _draw_bolt_section(
     if is_attached:
         under = {"stroke": RED, "stroke_width": 5, "stroke_dasharray": "2 3"}
         for y in (bottom,) if thread_depth else vertical_range:
-            sheet.add_element("line", x1=x - head_radius, y1=y, x2=x + head_radius, y2=y, **under)
+            svg_drawing.add_element("line", x1=x - head_radius, y1=y, x2=x + head_radius, y2=y, **under)
         for wall in (x - shank, x + shank) if thread_depth else ():
-            sheet.add_element("line", x1=wall, y1=top, x2=wall, y2=top + thread_depth, **under)
-    sheet.add_line(x, top - head_height - 8.0, x, bottom + head_height + 8.0, LINE_COLOUR, "9 3 2 3")
+            svg_drawing.add_element("line", x1=wall, y1=top, x2=wall, y2=top + thread_depth, **under)
+    svg_drawing.add_line(x, top - head_height - 8.0, x, bottom + head_height + 8.0, LINE_COLOUR, "9 3 2 3")

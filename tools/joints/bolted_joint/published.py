@@ -7,7 +7,7 @@ import numpy as np
 from jointfmu.contact.laws import mindlin
 from jointfmu.contact.laws import zhao2018 as zhao
 from jointfmu.contact.surface import domain_extension
-from jointfmu.joints.bolted_joint.law import BoltedJoint, bolt_pattern, preload_pressure, row_forces
+from jointfmu.joints.bolted_joint.law import BoltedJoint, get_bolted_frame, preload_pressure, row_forces
 from jointfmu.mechanics.footprint.bolts import bolt_pressures, frame_cells, pressure_distribution
 
 from ...inputs.fractal import rms_height
@@ -24,9 +24,9 @@ def pressure_between_bolts(joint: BoltedJoint, preload: float) -> float:
 
     preload : [N] per bolt
     """
-    pattern = bolt_pattern(joint)
+    pattern = get_bolted_frame(joint)
     areas, nodes = frame_cells(pattern)
-    middle = pattern.bolts[[0, 3]].mean(axis=0)[None, :]
+    middle = pattern.bolts_from_middle[[0, 3]].mean(axis=0)[None, :]
     unit = float(bolt_pressures(pattern, areas, nodes, middle).sum())
     return unit * preload * joint.n_bolts / 8.0 * float(areas.sum()) / joint.A_0
 
@@ -74,7 +74,7 @@ def frequency_error(joint: BoltedJoint, predicted: float, measured: float) -> fl
     return 100.0 * (predicted / measured - 1.0)
 
 
-PUBLISHED = PublishedNumbers(
+PUBLISHED_NUMBERS = PublishedNumbers(
     papers=("zhao2018",),
     observables={
         "p_max": largest_pressure,

@@ -11,9 +11,9 @@ from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
     ElasticBodies,
-    interface_alone,
-    shaped_pressure,
     slip_force,
+    superposed_pressure,
+    with_rigid_members,
     working_preload,
 )
 from jointfmu.joints.bolted_joint.outputs import bolt_force_name
@@ -22,8 +22,8 @@ from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
 
 from ...common.shown import format_quantity
-from ...pages.report.course import LoadHistory
 from ...pages.report.figure import ComparisonRow, Figure
+from ...pages.report.load_history import LoadHistory
 from .field import PlaneLayout
 from .picture import draw_plan, draw_section
 from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces
@@ -99,32 +99,34 @@ class FrictionResult(NamedTuple):
     loss_factor: float
 
 
-def friction_results(file: ParameterFile, preload: float) -> tuple[float, list[FrictionResult]]:
+def friction_results(parameter_file: ParameterFile, preload: float) -> tuple[float, list[FrictionResult]]:
     """Gross-slip force and loss factor for mu of the file and both ends of its range, at a preload [N].
 
     Returns the amplitude [N] of the shear force, then one FrictionResult per mu. The loss factors are those
     of the interface between rigid sides, all at this amplitude.
     """
-    joint = interface_alone(file.values)
+    joint = with_rigid_members(parameter_file.values)
     remaining_preload = float(working_preload(joint, preload))
     shear = REPORTED_SHEAR_RATIO * float(slip_force(joint, remaining_preload))
     rows = []
-    for mu in (joint.mu, *file.ranges.get("mu", ())):
+    for mu in (joint.mu, *parameter_file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)
-        loss = loss_factor(BoltedJointSpring.of(other), remaining_preload, shear)
+        loss = loss_factor(BoltedJointSpring.for_joint(other), remaining_preload, shear)
         rows.append(FrictionResult(mu, float(slip_force(other, remaining_preload)), loss))
     return shear, rows
 
 
-def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: float) -> float:
+def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear_amplitude: float) -> float:
     """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
 
     remaining_preload : [N] of each bolt after embedding; without a moment
     shear_amplitude   : amplitude [N] of the shear force
     """
     joint, shape = spring.joint, spring.patches
-    law, mean = spring.friction.foundation(), remaining_preload * joint.n_bolts / joint.A_0
-    approach = spring.curve.inverse(shaped_pressure(shape.preload_shape, shape.moment_shape, mean, 0.0))
+    law, mean = spring.friction_law.foundation(), remaining_preload * joint.n_bolts / joint.A_0
+    approach = spring.curve.inverse(
+        superposed_pressure(shape.preload_pressure_ratio, shape.moment_pressure_ratio, mean, 0.0)
+    )
     low = 0.0
     size = (
         law.friction_coefficient
@@ -134,7 +136,7 @@ def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: floa
     for _ in range(60):
         middle = 0.5 * (low + size)
         carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.area_share)
-        low, size = (middle, size) if carried < shear else (low, middle)
+        low, size = (middle, size) if carried < shear_amplitude else (low, middle)
     lost, stored = (
         float(shape.area_share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
     )
@@ -189,17 +191,19 @@ def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
     """Table rows, one per direction: stiffnesses, and shares of the compliance."""
     heads = ("complete joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
-    for name, unit, stiffnesses, shares in compliances.rows():
+    for name, unit, stiffnesses, shares in compliances.table_rows():
         cells = [_format_value(value, unit) if value > 0.0 else "none" for value in stiffnesses]
         rows.append((name, *cells, *(f"{share:.1%}" for share in shares)))
     return rows
 
 
 def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: float) -> str:
-    share = compliances.shares[0]
+    share = compliances.compliance_shares[0]
     largest = float(np.max(share))
     effect = (
-        "it matters for the stiffness" if compliances.interface_matters else "it hardly affects the stiffness"
+        "it matters for the stiffness"
+        if compliances.is_interface_relevant
+        else "it hardly affects the stiffness"
     )
     return (
         "Small motions of the attachments about the tightened state, "
@@ -226,6 +230,6 @@ def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, 
     )
 
 
-FIGURES = {"BoltedJoint": joint_figures}
+REPORT_FIGURES = {"BoltedJoint": joint_figures}
 CATALOGUE_COMPARISONS: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
 """Comparisons with catalogue values: none, because there are no catalogues of bolted joints."""

@@ -29,7 +29,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
     secant stiffness of the patches from the iteration before. Ends at the first force at which a bolt exceeds
     MAX_BOLT_FORCE_RATIO, or at which the iteration does not converge.
     """
-    whole, modes, law = spring.assembly, spring.modes, spring.friction.foundation()
+    whole, modes, law = spring.assembly, spring.modes, spring.friction_law.foundation()
     start = spring.preloaded_approach(preload, moment)
     z, bolts = np.zeros(6 + len(modes.stiffness)), spring.bolts
     tension = bolts.preload_force(spring.joint, preload, moment)
@@ -41,7 +41,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
     def residual(z: Array, K: Array, tensile_force: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]
         contact = G.T @ (whole.point_area * (p - preload_pressure))
-        inside = E.T @ (bolts.force(tension, E @ z) - tension) - contact
+        inside = E.T @ (bolts.bolt_force(tension, E @ z) - tension) - contact
         return np.asarray(K @ z + inside - tensile_force * (np.arange(len(z)) == 2))
 
     for pull in tensile_forces:
@@ -57,7 +57,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
             stiffness = spring.curve.derivatives(approach, 1)[1]
             normal = np.maximum(stiffness, MIN_STIFFNESS_RATIO * preload_stiffness.max()) * whole.point_area
             r = residual(z, K, pull)
-            pulling = bolts.tangent(tension, E @ z)[:, None]
+            pulling = bolts.tangent_stiffness(tension, E @ z)[:, None]
             step = -np.linalg.solve(K + E.T @ (pulling * E) + G.T @ (normal[:, None] * G), r)
             energy_slope_0, size = float(r @ step), 1.0
             if -energy_slope_0 <= RELATIVE_TOLERANCE * pull * abs(z[2]):
@@ -70,7 +70,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
             z = z + size * step
         else:
             break
-        forces = bolts.force(tension, E @ z)
+        forces = bolts.bolt_force(tension, E @ z)
         if np.any(forces > MAX_BOLT_FORCE_RATIO * tension):
             break
         results.append(forces)

@@ -8,7 +8,7 @@ from jointfmu.joints.gear_contact.spring import ContactParameters, GearContactSp
 
 from ...common.pressure import FLANK_PRESSURE
 from ...exchange.export.exports import Exports, LoadCurve
-from ...pages.laboratory.part import LaboratoryModel
+from ...pages.laboratory.joint_additions import LaboratoryModel
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
@@ -16,14 +16,16 @@ if TYPE_CHECKING:
     from ...exchange.export.tables import LoadTable
 
 
-def _contact_curve(gear: ContactParameters) -> "tuple[Curve, Sequence[str]]":
-    return GearContactSpring.tabulate(gear).curve, ()
+def _contact_curve(contact_parameters: ContactParameters) -> "tuple[Curve, Sequence[str]]":
+    return GearContactSpring.tabulate(contact_parameters).curve, ()
 
 
-def _load_table(gear: ContactParameters, _: None, max_error: float) -> "LoadTable":
+def _load_table(contact_parameters: ContactParameters, _working_point: None, max_error: float) -> "LoadTable":
     from ...exchange.export.tables import tabulate_load
 
-    return tabulate_load(GearContactSpring.tabulate(gear).curve, gear.A_0, max_error)
+    return tabulate_load(
+        GearContactSpring.tabulate(contact_parameters).curve, contact_parameters.A_0, max_error
+    )
 
 
 EXPORTS = Exports(
@@ -31,12 +33,12 @@ EXPORTS = Exports(
     curve=LoadCurve(
         meaning="normal load over approach of the flanks from first touch; without load while apart",
         columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K_N")),
-        name="force",
+        table_name="force",
         compute_table=_load_table,
     ),
 )
 
 
-PRESSURE = FLANK_PRESSURE
-LABORATORY = {"GearContact": LaboratoryModel(slider_spans={"f": (0.0, 3e3)})}
+NOMINAL_PRESSURE = FLANK_PRESSURE
+LABORATORY_MODELS = {"GearContact": LaboratoryModel(slider_spans={"f": (0.0, 3e3)})}
 """{FMU: contents of its laboratory page that are not variables of the FMU}."""

@@ -57,7 +57,7 @@ def _parse_curvature(radius_text: str) -> float:
     return 1.0 / radius
 
 
-NEW = NewJointCommand(
+NEW_JOINT_COMMAND = NewJointCommand(
     description="the contact of two tooth flanks under a load",
     example="--width 20 --radii 12 30 --load 2000 --material 'hardened steel' --finish ground",
     options=(

@@ -64,7 +64,7 @@ def _state_at_real_area(law: Yu2022, area_fraction: float) -> dict[str, float]:
     largest = (
         area_fraction * law.A_0 * (1.0 - spots.size_exponent) / (spots.size_exponent * spots.size_prefactor)
     )
-    state: dict[str, Any] = law.state(np.log(largest / spots.reference_area))
+    state: dict[str, Any] = law.contact_quantities(np.log(largest / spots.reference_area))
     return {name: float(value) for name, value in state.items()}
 
 
@@ -87,7 +87,7 @@ def _is_below_majumdar_bhushan(contact: GearContact) -> bool:
     return True
 
 
-PUBLISHED = PublishedNumbers(
+PUBLISHED_NUMBERS = PublishedNumbers(
     papers=("yu2022",),
     observables={
         "claim": is_claim_met,

@@ -15,24 +15,24 @@ from ...run.ramps.ramp import RampResult
 from ...studies.checks import integrate_logarithmically, relative_deviation
 
 
-def _check_approach(folder: Path, result: RampResult) -> tuple[str, float]:
+def _check_approach(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
     law = load_default("gear_contact").values
     assert isinstance(law, GearContact)
 
-    def compliance(f: Array) -> Array:
-        return 1.0 / (law.A_0 * stiffness_curve(law, f / law.A_0)[0])
+    def compliance(force: Array) -> Array:
+        return 1.0 / (law.A_0 * stiffness_curve(law, force / law.A_0)[0])
 
-    c, at = result.columns, [1, 10, 100, 300]
+    c, at = ramp_result.columns, [1, 10, 100, 300]
     miss = relative_deviation(np.diff(c["s_rel"][at]), integrate_logarithmically(compliance, c["f"][at]))
     return "s_rel against the integral of df/K of the law (scipy, Simpson)", miss
 
 
-RAMPS = {"GearContact": _check_approach}
+RAMP_CHECKS = {"GearContact": _check_approach}
 """{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
 relative deviation [1])."""
 
 
-def figures(job_result: Any) -> list[Figure]:
+def make_figures(job_result: Any) -> list[Figure]:
     """Figure of the gear contact, from the results of the main job (`JobResult`)."""
     c = job_result.ramps["GearContact"].columns
     load = c["f"] / 1e3

@@ -2,7 +2,7 @@
 
 from ...common.joint_parts import ToolParts
 
-PARTS = ToolParts(
+TOOL_PARTS = ToolParts(
     __name__,
     ("modelica", "new", "uncertainty"),
     checks="ramp",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointfmu.joints.gear_mesh import KIND
-from jointfmu.joints.gear_mesh.spring import MeshParameters, tabulate_pair
+from jointfmu.joints.gear_mesh.spring import MeshParameters, tabulate_tooth_pair
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 
 from ...common.pressure import FLANK_PRESSURE
@@ -16,17 +16,19 @@ if TYPE_CHECKING:
     from ...exchange.export.tables import LoadTable
 
 
-def _contact_curve(mesh: MeshParameters) -> tuple[Curve, Sequence[str]]:
-    return tabulate_approach(mesh), ("the flanks only; the deflection of the teeth is added to it",)
+def _contact_curve(mesh_parameters: MeshParameters) -> tuple[Curve, Sequence[str]]:
+    return tabulate_approach(mesh_parameters), (
+        "the flanks only; the deflection of the teeth is added to it",
+    )
 
 
-def _load_table(mesh: MeshParameters, _: None, max_error: float) -> "LoadTable":
+def _load_table(mesh_parameters: MeshParameters, _working_point: None, max_error: float) -> "LoadTable":
     from ...exchange.export.tables import LoadTable, tabulate_law
 
-    pair, closing = tabulate_pair(mesh)
+    pair, closing = tabulate_tooth_pair(mesh_parameters)
     i = int(np.argmin(np.abs(pair.displacement - closing)))
     columns = (pair.load, pair.stiffness, pair.stiffness_slope_start, pair.stiffness_slope_end)
-    load, stiffness, start, end = (mesh.contact_ratio * column for column in columns)
+    load, stiffness, start, end = (mesh_parameters.contact_ratio * column for column in columns)
     positive = tabulate_law(
         Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), max_error
     )
@@ -39,10 +41,10 @@ EXPORTS = Exports(
     curve=LoadCurve(
         meaning="force over deflection of the flanks beyond the backlash, mean over the mesh cycle",
         columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K")),
-        name="force",
+        table_name="force",
         compute_table=_load_table,
     ),
 )
 
 
-PRESSURE = FLANK_PRESSURE
+NOMINAL_PRESSURE = FLANK_PRESSURE

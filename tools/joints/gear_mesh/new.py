@@ -82,7 +82,7 @@ class InvoluteGearPair:
         curvatures = (np.cos(base_helix) / (r * np.sin(self.transverse_angle)) for r in self.reference_radii)
         return float(sum(curvatures))
 
-    def tooth_stiffness(self, moduli: tuple[float, float], torque: float) -> float:
+    def tooth_stiffness(self, young_moduli: tuple[float, float], torque: float) -> float:
         """Single stiffness c' times width [N/m] of one tooth pair in contact over the full width.
 
         young_moduli : Young's moduli [Pa] of both wheels
@@ -93,7 +93,7 @@ class InvoluteGearPair:
         """
         virtual = [z / np.cos(self.helix_angle) ** 3 for z in self.tooth_counts]
         q = 0.04723 + 0.15551 / virtual[0] + 0.25791 / virtual[1]  # mm um/N
-        material = 2.0 / (1.0 / moduli[0] + 1.0 / moduli[1]) / E_STEEL
+        material = 2.0 / (1.0 / young_moduli[0] + 1.0 / young_moduli[1]) / E_STEEL
         rack = 1.0 - 0.02 * (20.0 - np.degrees(self.pressure_angle))  # C_B
         loaded = min(torque / self.reference_radii[0] / self.face_width / REFERENCE_LINE_LOAD, 1.0) ** 0.25
         theory = 1e9 / q * np.cos(self.helix_angle) * material * self.face_width
@@ -106,7 +106,7 @@ class InvoluteGearPair:
         """
         return tooth_stiffness * (0.75 * self.contact_ratio + 0.25)
 
-    def mesh_damping(self, mesh_stiffness: float, density: tuple[float, float]) -> float:
+    def mesh_damping(self, mesh_stiffness: float, densities: tuple[float, float]) -> float:
         """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
 
         mesh_stiffness : [N/m] of the mesh
@@ -115,7 +115,7 @@ class InvoluteGearPair:
         """
         masses = [
             0.5 * np.pi * rho * self.face_width * r**4 / b**2
-            for rho, r, b in zip(density, self.reference_radii, self.base_radii, strict=True)
+            for rho, r, b in zip(densities, self.reference_radii, self.base_radii, strict=True)
         ]
         return float(2.0 * DAMPING_RATIO * np.sqrt(mesh_stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
 
@@ -187,37 +187,48 @@ def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
 
 
 def _add_parameters(
-    sheet: ParameterSheet, wheels: InvoluteGearPair, options: DrawingOptions, tooth_stiffness: float
+    parameter_sheet: ParameterSheet,
+    gear_pair: InvoluteGearPair,
+    options: DrawingOptions,
+    tooth_stiffness: float,
 ) -> None:
     """Add the parameters that follow from the gear geometry to the sheet.
 
     tooth_stiffness : [N/m] of one tooth pair
     """
-    for i, radius in enumerate(wheels.base_radii):
-        sheet.add(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
-    sheet.add_drawing_value("teeth1", wheels.tooth_counts[0])
+    for i, radius in enumerate(gear_pair.base_radii):
+        parameter_sheet.add(
+            f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing"
+        )
+    parameter_sheet.add_drawing_value("teeth1", gear_pair.tooth_counts[0])
     if options["backlash"] is None:
-        distance = sum(wheels.reference_radii) * 1e3
-        min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.normal_module * 1e3) * 1e-3
+        distance = sum(gear_pair.reference_radii) * 1e3
+        min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * gear_pair.normal_module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
-        sheet.add("backlash", min_backlash, "estimate", text)
+        parameter_sheet.add("backlash", min_backlash, "estimate", text)
     else:
-        sheet.add_drawing_value("backlash", parse_number("backlash", options["backlash"], "um", "m"))
-    sheet.add(
+        parameter_sheet.add_drawing_value(
+            "backlash", parse_number("backlash", options["backlash"], "um", "m")
+        )
+    parameter_sheet.add(
         "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
     )
     text = "ISO 21771, addendum of one module, transverse"
-    sheet.add("contact_ratio", wheels.contact_ratio, "derived", text)
-    sheet.add("overlap_ratio", wheels.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771")
-    sheet.add("engagement", 0.3, "estimate", "see docs/gear_mesh.md")
+    parameter_sheet.add("contact_ratio", gear_pair.contact_ratio, "derived", text)
+    parameter_sheet.add(
+        "overlap_ratio", gear_pair.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771"
+    )
+    parameter_sheet.add("engagement", 0.3, "estimate", "see docs/gear_mesh.md")
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
-    d = wheels.mesh_damping(tooth_stiffness * wheels.contact_ratio, (density[0], density[1]))
-    sheet.add("d", d, "estimate", f"a damping ratio of {DAMPING_RATIO:g} for the wheels as solid discs")
+    d = gear_pair.mesh_damping(tooth_stiffness * gear_pair.contact_ratio, (density[0], density[1]))
+    parameter_sheet.add(
+        "d", d, "estimate", f"a damping ratio of {DAMPING_RATIO:g} for the wheels as solid discs"
+    )
     for name in ("phi1", "phi2"):
-        sheet.add(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")
+        parameter_sheet.add(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")
 
 
-NEW = NewJointCommand(
+NEW_JOINT_COMMAND = NewJointCommand(
     description="the mesh of two external involute wheels without profile shift",
     example="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
     options=(

@@ -19,14 +19,14 @@ _CLOSED_FORCE = 10.0
 """Force [N] of a tooth pair above which its contact is closed, with the default parameters."""
 
 
-def _check_deflection_and_work(folder: Path, result: RampResult) -> tuple[str, float]:
+def _check_deflection_and_work(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
     mesh = load_default("gear_mesh").values
     assert isinstance(mesh, GearMesh)
 
-    def compliance(f: Array) -> Array:
-        return 1.0 / (mesh.A_0 * stiffness_curve(mesh, f / mesh.A_0)[0]) + 1.0 / mesh.K_tooth
+    def compliance(force: Array) -> Array:
+        return 1.0 / (mesh.A_0 * stiffness_curve(mesh, force / mesh.A_0)[0]) + 1.0 / mesh.K_tooth
 
-    c = result.columns
+    c = ramp_result.columns
     pair = c["f"] / c["pairs"]
     first = int(np.argmax(pair > _CLOSED_FORCE))
     rows = np.linspace(first, pair.size - 1, 4).astype(int)
@@ -38,7 +38,7 @@ def _check_deflection_and_work(folder: Path, result: RampResult) -> tuple[str, f
     )
 
 
-RAMPS = {"GearMesh": _check_deflection_and_work}
+RAMP_CHECKS = {"GearMesh": _check_deflection_and_work}
 """{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
 relative deviation [1])."""
 
@@ -47,7 +47,7 @@ _FIGURE_FORCES = (5e2, 1e3, 2e3)
 """Constant forces of the mesh [N] in the figures over the mesh cycle."""
 
 
-def figures(job_result: Any) -> list[Figure]:
+def make_figures(job_result: Any) -> list[Figure]:
     """Figures of the gear mesh, from the results of the main job (`JobResult`)."""
     return [
         Figure(
@@ -84,9 +84,9 @@ def mesh_cycle_panels(spring: GearMeshSpring) -> list[Panel]:
     ]
 
 
-def torque_angle_panels(result: RampResult) -> list[Panel]:
+def torque_angle_panels(ramp_result: RampResult) -> list[Panel]:
     """Panels of the torque on wheel 1 over its angle: for both flanks, and near the first contact."""
-    angle, torque = result.columns["phi1"] * 1e3, -result.columns["tau1"]
+    angle, torque = ramp_result.columns["phi1"] * 1e3, -ramp_result.columns["tau1"]
     first = int(np.argmax(torque > 0.0))
     rows = slice(max(first - 3, 0), first + 15)
     curve = np.concatenate([-angle[::-1], angle]), np.concatenate([-torque[::-1], torque])

@@ -63,7 +63,7 @@ _SUGGESTION_COUNT = 3
 """Number of similar names in the error for an unknown name."""
 
 
-def find_drive(name: str) -> CatalogueEntry:
+def find_drive(drive_name: str) -> CatalogueEntry:
     """Find a drive by its name, SERIES-SIZE-RATIO.
 
     Case and separators do not matter; further parts of the name are ignored.
@@ -71,13 +71,13 @@ def find_drive(name: str) -> CatalogueEntry:
     Raises ValueError with similar names if there is no such drive.
     """
     known = {_normalise_name(item.name): item for item in list_drives()}
-    wanted = _normalise_name(name)
+    wanted = _normalise_name(drive_name)
     matches = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
     if matches:
         return max(matches, key=lambda item: len(item.name))
     similar = sorted(known, key=lambda key: _name_distance(key, wanted))[:_SUGGESTION_COUNT]
     raise ValueError(
-        f"catalogue {name!r} is unknown; nearest are {', '.join(known[key].name for key in similar)} "
+        f"catalogue {drive_name!r} is unknown; nearest are {', '.join(known[key].name for key in similar)} "
         "(jointfmu catalogue)"
     )
 
@@ -103,39 +103,43 @@ def list_drives() -> tuple[CatalogueEntry, ...]:
     return tuple(add_friction_estimates(item, drives) for item in drives_by_name.values())
 
 
-def _drives_of_row(row: Mapping[str, str], torques: TorqueTable) -> Iterator[CatalogueEntry]:
+def _drives_of_row(stiffness_row: Mapping[str, str], torques: TorqueTable) -> Iterator[CatalogueEntry]:
     """Yield the drives for which a row of the table of stiffnesses holds."""
-    group = row["series"].removeprefix("HD ")
-    ratios = [row["ratio"]]
-    if row["ratio"].endswith("+"):
-        ratios = [r for r in RATIOS_FROM_80 if any((s, row["size"], r) in torques for s in TORQUE_SERIES)]
-    source = f"{group}, size {row['size']}, ratio {row['ratio']}: {row['source']}"
-    printed = {name: row[column] for name, column in _STIFFNESS_HEADINGS.items()}
+    group = stiffness_row["series"].removeprefix("HD ")
+    ratios = [stiffness_row["ratio"]]
+    if stiffness_row["ratio"].endswith("+"):
+        ratios = [
+            r for r in RATIOS_FROM_80 if any((s, stiffness_row["size"], r) in torques for s in TORQUE_SERIES)
+        ]
+    source = (
+        f"{group}, size {stiffness_row['size']}, ratio {stiffness_row['ratio']}: {stiffness_row['source']}"
+    )
+    printed = {name: stiffness_row[column] for name, column in _STIFFNESS_HEADINGS.items()}
     lines = {name: SourcedNumber(float(text), "catalogue", source) for name, text in printed.items() if text}
     if "K3" not in lines:
-        lines["K3"] = _estimate_K3(row, source)
+        lines["K3"] = _estimate_K3(stiffness_row, source)
     for series in group.split("/"):
-        stem = series if group == series else f"{series}-{row['size']}"
+        stem = series if group == series else f"{series}-{stiffness_row['size']}"
         for ratio in ratios:
             name = f"{stem}-{ratio}"
             numbers = {
                 "ratio": SourcedNumber(float(ratio), "catalogue", f"{name}: {source}"),
                 **lines,
-                **_rated_and_peak_torque(torques, series, row["size"], ratio),
-                **_hysteresis_limits(series, row["size"], float(ratio)),
+                **_rated_and_peak_torque(torques, series, stiffness_row["size"], ratio),
+                **_hysteresis_limits(series, stiffness_row["size"], float(ratio)),
             }
             yield CatalogueEntry(name, numbers)
 
 
-def _estimate_K3(row: Mapping[str, str], source: str) -> SourcedNumber:
+def _estimate_K3(stiffness_row: Mapping[str, str], source: str) -> SourcedNumber:
     """Estimate of K3 if it is not published: K3 of a drive with equal T1, T2, K1 and K2, else K2."""
     known = [heading for column, heading in _STIFFNESS_HEADINGS.items() if column != "K3"]
     for other in _read_table("stiffness"):
-        if other["K3"] and all(float(other[h]) == float(row[h]) for h in known):
+        if other["K3"] and all(float(other[h]) == float(stiffness_row[h]) for h in known):
             what = f"{other['series']}, size {other['size']}, ratio {other['ratio']}"
             text = f"not in the source; that of {what}, of the same T1, T2, K1 and K2 ({other['source']})"
             return SourcedNumber(float(other["K3"]), "estimate", text)
-    return SourcedNumber(float(row["K2"]), "estimate", f"not in the source; K2 of {source}")
+    return SourcedNumber(float(stiffness_row["K2"]), "estimate", f"not in the source; K2 of {source}")
 
 
 _STIFFNESS_HEADINGS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
@@ -209,29 +213,29 @@ def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, Source
     return limits
 
 
-def _single_drive(row: Mapping[str, str], similar_drive: CatalogueEntry) -> CatalogueEntry:
+def _single_drive(friction_row: Mapping[str, str], similar_drive: CatalogueEntry) -> CatalogueEntry:
     """Catalogue entry of a drive with published friction.
 
     similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
                     the values that are not published
     """
-    name, numbers = row["drive"], dict(similar_drive.numbers)
+    name, numbers = friction_row["drive"], dict(similar_drive.numbers)
     if name != similar_drive.name:
         text = f"that of {similar_drive.name}, of the same size, ratio and stiffness; "
         numbers = {
             c: SourcedNumber(n.value, "estimate", text + n.source, n.bound) for c, n in numbers.items()
         }
-    source = f"{name}: {row['source']}"
+    source = f"{name}: {friction_row['source']}"
     for column, (head, unit) in _SINGLE_DRIVE_HEADINGS.items():
-        if row[head] and (name != similar_drive.name or column not in ("ratio", "K1", "K3")):
-            numbers[column] = SourcedNumber(unit * float(row[head]), "catalogue", source)
+        if friction_row[head] and (name != similar_drive.name or column not in ("ratio", "K1", "K3")):
+            numbers[column] = SourcedNumber(unit * float(friction_row[head]), "catalogue", source)
     return CatalogueEntry(name, numbers)
 
 
-def _read_table(name: str) -> list[dict[str, str]]:
-    path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{name}.csv"
+def _read_table(table_name: str) -> list[dict[str, str]]:
+    path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{table_name}.csv"
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def _normalise_name(name: str) -> str:
-    return re.sub(r"[\s_/-]+", "-", name.strip().lower())
+def _normalise_name(drive_name: str) -> str:
+    return re.sub(r"[\s_/-]+", "-", drive_name.strip().lower())

@@ -202,9 +202,9 @@ def lost_motion(spring: HarmonicDriveSpring) -> float:
     return positive - negative
 
 
-def _final_wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
+def _final_wind_up(spring: HarmonicDriveSpring, torque_sequence: tuple[float, ...]) -> float:
     """Wind-up [rad] after a sequence of torques [N.m], starting at rest."""
     history = spring.initial_history()
-    for torque in torques:
+    for torque in torque_sequence:
         outputs, history = spring.advance_torque(torque, history)
     return float(outputs["phi_rel"])

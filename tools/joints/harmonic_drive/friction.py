@@ -61,8 +61,8 @@ class ScaledNumber(NamedTuple):
     """Number from a scaling law, with the ends of its interval, all in the same unit."""
 
     value: float
-    low: float
-    high: float
+    interval_low: float
+    interval_high: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,19 +112,21 @@ def scale_friction(
     return ScaledFriction(starting, ScaledNumber(*rise), *losses)
 
 
-def _scale_torque(design_matrix: Array, logarithms: Array, design_row: Array, factor: float) -> ScaledNumber:
+def _scale_torque(
+    design_matrix: Array, torque_logarithms: Array, design_row: Array, torque_factor: float
+) -> ScaledNumber:
     """Torque [N.m] from a linear regression of its logarithm, times a factor.
 
     design_matrix, torque_logarithms : (n, k), (n) data of the regression
     design_row : (k) of the drive
     """
-    value, half = _predict(design_matrix, logarithms, design_row)
-    return ScaledNumber(*(factor * float(np.exp(x)) for x in (value, value - half, value + half)))
+    value, half = _predict(design_matrix, torque_logarithms, design_row)
+    return ScaledNumber(*(torque_factor * float(np.exp(x)) for x in (value, value - half, value + half)))
 
 
-def _mean_loss(values: Sequence[float | None]) -> ScaledNumber:
+def _mean_loss(published_losses: Sequence[float | None]) -> ScaledNumber:
     """Mean of the published values, with an interval that is cut at zero."""
-    published = np.array([value for value in values if value is not None])
+    published = np.array([value for value in published_losses if value is not None])
     value, half = _predict(np.ones((published.size, 1)), published, np.ones(1))
     return ScaledNumber(value, max(value - half, 0.0), value + half)
 
@@ -168,7 +170,7 @@ PARAMETER_OF_COLUMN: Mapping[str, tuple[str, str]] = {
 
 
 def friction_parameters(
-    numbers: Mapping[str, SourcedNumber], stated_names: Collection[str] = ()
+    sourced_numbers: Mapping[str, SourcedNumber], stated_names: Collection[str] = ()
 ) -> dict[str, SourcedNumber]:
     """Friction parameters of a drive from catalogue numbers: {parameter: number}.
 
@@ -184,28 +186,28 @@ def friction_parameters(
 
     Raises ValueError if a stated number would make a parameter negative.
     """
-    if "starting_torque" not in numbers:
+    if "starting_torque" not in sourced_numbers:
         return {}
-    start, running = numbers["starting_torque"], numbers.get("running_torque")
-    ratio, rated = abs(numbers["ratio"].value), numbers.get("rated_torque")
-    _check_stated(numbers, stated_names)
+    start, running = sourced_numbers["starting_torque"], sourced_numbers.get("running_torque")
+    ratio, rated = abs(sourced_numbers["ratio"].value), sourced_numbers.get("rated_torque")
+    _check_stated(sourced_numbers, stated_names)
     values: dict[str, tuple[Callable[[float], float], str]] = {"starting_torque": (lambda torque: torque, "")}
     if running is not None:
         text = f" over {CATALOGUE_SPEED:.4g} rad/s"
         values["running_torque"] = (lambda torque: (torque - start.value) / CATALOGUE_SPEED, text)
-    if (output := numbers.get("efficiency")) is not None and rated is not None:
-        idle = _no_load_torque_ratio(numbers)
+    if (output := sourced_numbers.get("efficiency")) is not None and rated is not None:
+        idle = _no_load_torque_ratio(sourced_numbers)
         values["efficiency"] = (
             lambda part: 1.0 / part - 1.0 - idle,
             f" {output.value:.4g}, less the running torque",
         )
-    if (back := numbers.get("back_driving_torque")) is not None:
+    if (back := sourced_numbers.get("back_driving_torque")) is not None:
         values["back_driving_torque"] = (
             lambda torque: 1.0 - ratio * start.value / torque,
             f" {back.value:.4g} N.m over ratio times starting torque",
         )
     parameters = {
-        PARAMETER_OF_COLUMN[name][0]: _make_parameter(name, numbers[name], *value)
+        PARAMETER_OF_COLUMN[name][0]: _make_parameter(name, sourced_numbers[name], *value)
         for name, value in values.items()
     }
     if "load_loss_back" in parameters and "load_loss" not in parameters:
@@ -213,25 +215,28 @@ def friction_parameters(
     return parameters
 
 
-def _no_load_torque_ratio(numbers: Mapping[str, SourcedNumber]) -> float:
+def _no_load_torque_ratio(sourced_numbers: Mapping[str, SourcedNumber]) -> float:
     """Running torque over rated torque at the motor [1]; starting torque if no running torque is known."""
-    torque = numbers.get("running_torque", numbers["starting_torque"]).value
-    return torque * abs(numbers["ratio"].value) / numbers["rated_torque"].value
+    torque = sourced_numbers.get("running_torque", sourced_numbers["starting_torque"]).value
+    return torque * abs(sourced_numbers["ratio"].value) / sourced_numbers["rated_torque"].value
 
 
-def _check_stated(numbers: Mapping[str, SourcedNumber], stated_names: Collection[str]) -> None:
+def _check_stated(sourced_numbers: Mapping[str, SourcedNumber], stated_names: Collection[str]) -> None:
     """Check stated numbers. Raises ValueError if one of them would make a friction parameter negative."""
-    start, ratio = numbers["starting_torque"].value, abs(numbers["ratio"].value)
+    start, ratio = sourced_numbers["starting_torque"].value, abs(sourced_numbers["ratio"].value)
     ends = {
         "running_torque": (start, "the starting torque"),
         "back_driving_torque": (ratio * start, "ratio times starting torque"),
     }
     for name, (lowest, bound_text) in ends.items():
-        if name in stated_names and numbers[name].value < (1.0 - _LIMIT_TOLERANCE) * lowest:
-            value = f"{option_flag(name)} = {numbers[name].value:g} N.m"
+        if name in stated_names and sourced_numbers[name].value < (1.0 - _LIMIT_TOLERANCE) * lowest:
+            value = f"{option_flag(name)} = {sourced_numbers[name].value:g} N.m"
             raise ValueError(f"{value} is outside [{lowest:.6g}, inf) N.m: it is at least {bound_text}")
-    if "efficiency" in stated_names and "rated_torque" in numbers:
-        highest, stated_value = 1.0 / (1.0 + _no_load_torque_ratio(numbers)), numbers["efficiency"].value
+    if "efficiency" in stated_names and "rated_torque" in sourced_numbers:
+        highest, stated_value = (
+            1.0 / (1.0 + _no_load_torque_ratio(sourced_numbers)),
+            sourced_numbers["efficiency"].value,
+        )
         if stated_value > (1.0 + _LIMIT_TOLERANCE) * highest:
             raise ValueError(
                 f"--efficiency = {stated_value:g} is outside (0, {highest:.6g}]: the torque without load "
@@ -284,24 +289,26 @@ def collect_published(entries: Iterable[CatalogueEntry]) -> dict[str, tuple[Publ
     return found
 
 
-def _published_friction(name: str, ratio: float, numbers: Mapping[str, SourcedNumber]) -> PublishedFriction:
+def _published_friction(
+    drive_name: str, ratio: float, sourced_numbers: Mapping[str, SourcedNumber]
+) -> PublishedFriction:
     """Published friction of one drive; the losses follow from its numbers by `friction_parameters`."""
-    losses = friction_parameters({"ratio": SourcedNumber(ratio, "catalogue", ""), **numbers})
-    running = numbers.get("running_torque")
+    losses = friction_parameters({"ratio": SourcedNumber(ratio, "catalogue", ""), **sourced_numbers})
+    running = sourced_numbers.get("running_torque")
     return PublishedFriction(
-        parse_drive_size(name),
+        parse_drive_size(drive_name),
         ratio,
-        numbers["starting_torque"].value,
+        sourced_numbers["starting_torque"].value,
         running.value if running else None,
-        losses["load_loss"].value if "efficiency" in numbers else None,
-        losses["load_loss_back"].value if "back_driving_torque" in numbers else None,
+        losses["load_loss"].value if "efficiency" in sourced_numbers else None,
+        losses["load_loss_back"].value if "back_driving_torque" in sourced_numbers else None,
     )
 
 
-def parse_drive_size(name: str) -> float:
+def parse_drive_size(drive_name: str) -> float:
     """Size [1] in the name SERIES-SIZE-RATIO of a drive; a letter after the size, as in 14A, is ignored."""
-    match = re.search(r"-(\d+)[A-Z]?-\d+$", name)
-    assert match, name
+    match = re.search(r"-(\d+)[A-Z]?-\d+$", drive_name)
+    assert match, drive_name
     return float(match[1])
 
 

@@ -9,9 +9,14 @@ import numpy as np
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.harmonic_drive.drive import HARMONICS
+from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS
 
-from ...pages.laboratory.part import Example, LaboratoryModel, PublishedQuantity, TransmissionView
+from ...pages.laboratory.joint_additions import (
+    ExampleValues,
+    LaboratoryModel,
+    PublishedQuantity,
+    TransmissionView,
+)
 from ...pages.report.figure import Figure, Panel, Series, published_series
 from ...run.ramps import ramp
 from ...run.ramps.ramp import RampResult
@@ -23,26 +28,26 @@ from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingP
 from . import efficiency
 
 
-def _check_compliance(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
-    c = result.columns
+def _check_compliance(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+    c = ramp_result.columns
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
     return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", relative_deviation(c["phi_rel"], phi)
 
 
-def _check_stiffness(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
-    c = result.columns
+def _check_stiffness(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+    c = ramp_result.columns
     tau = cumulative_simpson(c["K_WTS"], x=c["phi_rel"], initial=0.0)
     return "tau against the integral of K_WTS dphi (scipy, Simpson)", relative_deviation(c["tau"], tau)
 
 
-RAMPS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance": _check_compliance}
+RAMP_CHECKS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance": _check_compliance}
 """{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
 relative deviation [1])."""
 
 
-def compute_through_fmu(point: Point, folder: Path) -> float | None:
+def compute_through_fmu(published_point: Point, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
-    where = point.where
+    where = published_point.where
 
     def run_drive(column: str, **settings: float) -> float:
         """Output of the FMU under the torque of the point, with other parameters."""
@@ -50,18 +55,18 @@ def compute_through_fmu(point: Point, folder: Path) -> float | None:
         fmu = folder / "HarmonicDriveCompliance.fmu"
         return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).columns[column][-1])
 
-    if point.quantity == "K_TS":
+    if published_point.quantity == "K_TS":
         changes = {"radial_deformation": where["deformation"]} if "deformation" in where else {}
         return run_drive("K_TS_pair", **changes)
-    if point.quantity == "K_TS_least":
+    if published_point.quantity == "K_TS_least":
         ends = (where["lower"], where["upper"])
         return min(run_drive("K_TS_pair", radial_deformation=w) for w in ends)
-    if point.quantity == "K_TS_change":
+    if published_point.quantity == "K_TS_change":
         changed = run_drive("K_TS_pair", eccentricity=where["eccentricity"])
         return 100.0 * (changed / run_drive("K_TS_pair") - 1.0)
-    if point.quantity == "K_WTS":
+    if published_point.quantity == "K_WTS":
         return run_drive("K_WTS")
-    if point.quantity == "peak_pressure":
+    if published_point.quantity == "peak_pressure":
         return run_drive("p_max")
     return None
 
@@ -69,7 +74,7 @@ def compute_through_fmu(point: Point, folder: Path) -> float | None:
 _COMPLIANCE_FMU = "HarmonicDriveCompliance"
 
 
-def figures(job_result: Any) -> list[Figure]:
+def make_figures(job_result: Any) -> list[Figure]:
     """Figures of the harmonic drive, from the results of the main job (`JobResult`)."""
     result = job_result.ramps[_COMPLIANCE_FMU]
     return [
@@ -99,9 +104,9 @@ def figures(job_result: Any) -> list[Figure]:
     ]
 
 
-def _spring_fmu(outcome: Any) -> Path:
+def _spring_fmu(job_result: Any) -> Path:
     """Path of the FMU HarmonicDriveSpring, FMI 2.0."""
-    paths: list[Path] = outcome.fmu_paths
+    paths: list[Path] = job_result.fmu_paths
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
@@ -133,9 +138,9 @@ def friction_panels(fmu_path: Path) -> list[Panel]:
     return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", series_with_diagonal)]
 
 
-def stiffness_panels(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
+def stiffness_panels(ramp_result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
     """Panels of the stiffness of the drive and of the contact pair over torque, with published points."""
-    c = result.columns
+    c = ramp_result.columns
     points = [row.point for row in rows]
     drive = [Series(name, c["tau"], c[name]) for name in ("K_WTS", "K_TS")]
     drive += published_series([p for p in points if p.quantity == "K_WTS"], "torque")
@@ -159,9 +164,9 @@ def stiffness_panels(result: RampResult, rows: list[ValidatedPoint]) -> list[Pan
     ]
 
 
-def torque_angle_panel(result: RampResult) -> Panel:
+def torque_angle_panel(ramp_result: RampResult) -> Panel:
     """Panel of the torque over the wind-up, for both directions."""
-    tau, angle = result.columns["tau"], np.degrees(result.columns["phi_rel"]) * 60.0
+    tau, angle = ramp_result.columns["tau"], np.degrees(ramp_result.columns["phi_rel"]) * 60.0
     both = np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau])
     return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])
 
@@ -200,7 +205,7 @@ def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
     return angle, torque_and_stiffness(angle)[1]
 
 
-RINGING = VibrationTest(
+VIBRATION_TEST = VibrationTest(
     model_name="HarmonicDriveSpring",
     motion_inputs=("phi2", "w2"),
     force_output="tau2",
@@ -212,7 +217,7 @@ RINGING = VibrationTest(
     release_force=1e-3,
     load_axis=PlotAxis("torque", "N m", 1.0),
     deflection_axis=PlotAxis("wind-up", "urad", 1e6),
-    doc="motor held",
+    support_description="motor held",
     stiffness_output="K_WTS",
     slip_deflection=SlipDeflection(0.0, 5e-4, "three lengths of its hysteresis"),
     frictionless_parameters={"hysteresis_loss": 0.0},
@@ -233,12 +238,12 @@ _SLIDER_SPANS = {
     "dry_temperature_coefficient": (0.0, 0.1),
     "temperature": (253.15, 353.15),
     "phi1": (-0.1, 0.1),
-    **{f"error_{n}": (0.0, 1e-3) for n in HARMONICS},
-    **{f"error_{n}_phase": (-math.pi, math.pi) for n in HARMONICS},
+    **{f"error_{n}": (0.0, 1e-3) for n in KINEMATIC_ERROR_HARMONICS},
+    **{f"error_{n}_phase": (-math.pi, math.pi) for n in KINEMATIC_ERROR_HARMONICS},
 }
 _POINT_INPUTS = {"torque": "tau", "deformation": "radial_deformation", "eccentricity": "eccentricity"}
 
-_TRANSMISSION = TransmissionView(
+_TRANSMISSION_VIEW = TransmissionView(
     input_angle="phi1",
     speed="w1",
     follower="phi2",
@@ -252,16 +257,19 @@ _TRANSMISSION = TransmissionView(
 )
 _LOAD_CYCLE = MODELS["HarmonicDriveSpring"].load_cycle
 _EXAMPLE_DRIVE = efficiency.drives_with_friction()[0]
-_EXAMPLE = Example(
+_LABORATORY_EXAMPLE = ExampleValues(
     f"friction of the catalogue's {_EXAMPLE_DRIVE.name}, 1 arcmin of hysteresis and of kinematic error",
     {k: v for k, v in efficiency.friction_and_ratio(_EXAMPLE_DRIVE).items() if k != "ratio"}
-    | {k: float(v) for k, v in (_LOAD_CYCLE.settings if _LOAD_CYCLE else {}).items()}
+    | {k: float(v) for k, v in (_LOAD_CYCLE.variable_values if _LOAD_CYCLE else {}).items()}
     | {"error_2": 1.5e-4},
 )
 
-LABORATORY = {
+LABORATORY_MODELS = {
     "HarmonicDriveSpring": LaboratoryModel(
-        slider_spans=_SLIDER_SPANS, path_inputs=("phi2",), transmission=_TRANSMISSION, example=_EXAMPLE
+        slider_spans=_SLIDER_SPANS,
+        path_inputs=("phi2",),
+        transmission=_TRANSMISSION_VIEW,
+        example=_LABORATORY_EXAMPLE,
     ),
     "HarmonicDriveCompliance": LaboratoryModel(
         slider_spans=_SLIDER_SPANS,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...exchange.export.tables import LoadTable
 
 
-def _torque_table(drive: Drive, _: None, max_error: float) -> "LoadTable":
+def _torque_table(drive: Drive, _working_point: None, max_error: float) -> "LoadTable":
     from ...exchange.export.tables import tabulate_odd_curve
 
     return tabulate_odd_curve(HarmonicDriveSpring.tabulate(drive).curve, max_error)
@@ -30,7 +30,7 @@ EXPORTS = Exports(
     curve=LoadCurve(
         meaning="torque over wind-up at the output, wave generator locked",
         columns=tuple(KIND.variables[name] for name in ("phi_rel", "tau", "K_WTS")),
-        name="torque",
+        table_name="torque",
         compute_table=_torque_table,
     ),
     missing_reasons={
@@ -56,7 +56,7 @@ def _stiffness_ratio(drive: _ContactPairDrive, torque: float) -> float:
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
 
 
-PRESSURE = NominalPressure(
+NOMINAL_PRESSURE = NominalPressure(
     load_variable="tau",
     default_load=lambda drive: drive.rated_torque,
     mean_pressure=_mean_pressure,

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
-from jointfmu.quantity.units import KELVIN_AT_ZERO
+from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
 from ...common.options import Option, option_flag
 from ...inputs.catalogue import SourcedNumber
@@ -89,7 +89,7 @@ def _set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
         sources={**joint.file.sources, "inputs.temperature": f"stated: {temperature_text}"},
     )
     dry = float(friction_limits(drive, 0.0, 0.0, kelvin)[0])
-    temperature_text = f"{kelvin - KELVIN_AT_ZERO:g} degrees C"
+    temperature_text = f"{kelvin - CELSIUS_ZERO_IN_KELVIN:g} degrees C"
     facts = {"starting_torque": (dry, "N.m", f"at the wave generator, at {temperature_text}")}
     wet = float(
         friction_limits(drive, CATALOGUE_SPEED, 0.0, kelvin)[0]
@@ -123,14 +123,14 @@ def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[Source
 
 
 def _friction_parameters(
-    options: DrawingOptions, numbers: Mapping[str, SourcedNumber]
+    options: DrawingOptions, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> dict[str, SourcedNumber]:
     """Friction parameters of the drive, from stated numbers and those of the catalogue.
 
     Empty for a fixed wave generator. Raises ValueError for stated numbers that contradict each other.
     """
     stated = [name for name in FRICTION_COLUMNS if options[name] is not None]
-    if "efficiency" in stated and not numbers["efficiency"].value < 1.0:
+    if "efficiency" in stated and not sourced_numbers["efficiency"].value < 1.0:
         raise ValueError(f"--efficiency = {options['efficiency']!r} is outside (0, 1)")
     if options["fixed"] == "wave-generator":
         if stated:
@@ -138,14 +138,16 @@ def _friction_parameters(
                 f"{option_flag(stated[0])} is of the wave generator, which stands with --fixed wave-generator"
             )
         return {}
-    if "starting_torque" not in numbers and stated:
+    if "starting_torque" not in sourced_numbers and stated:
         raise ValueError(
             f"{option_flag(stated[0])} needs {option_flag('starting_torque')}: without it no friction acts"
         )
     if "starting_torque" in stated:  # scaled numbers belong to another starting torque; others must be met
-        numbers = {n: p for n, p in numbers.items() if n not in FRICTION_COLUMNS or p.kind != "estimate"}
-        stated = [name for name in FRICTION_COLUMNS if name in numbers]
-    return _add_motor_drag(friction_parameters(numbers, stated), options["motor_drag"])
+        sourced_numbers = {
+            n: p for n, p in sourced_numbers.items() if n not in FRICTION_COLUMNS or p.kind != "estimate"
+        }
+        stated = [name for name in FRICTION_COLUMNS if name in sourced_numbers]
+    return _add_motor_drag(friction_parameters(sourced_numbers, stated), options["motor_drag"])
 
 
 def _add_motor_drag(
@@ -190,7 +192,7 @@ def _default_unit(options: DrawingOptions, column_name: str) -> str:
 
 
 def _make_line_joint(
-    numbers: dict[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], drive_name: str
+    sourced_numbers: dict[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], drive_name: str
 ) -> NewJoint:
     """Make a drive with the three lines of the catalogue as stiffness (law `catalogue`)."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -198,24 +200,26 @@ def _make_line_joint(
     from .efficiency import LOST_MOTION_RATIO, lost_motion
     from .fit import catalogue
 
-    _catalogue_row(numbers)  # raises ValueError for an implausible row
-    rated, peak = numbers["rated_torque"].value, numbers.pop("peak_torque", None)
+    _catalogue_row(sourced_numbers)  # raises ValueError for an implausible row
+    rated, peak = sourced_numbers["rated_torque"].value, sourced_numbers.pop("peak_torque", None)
     if peak is None:
         peak = SourcedNumber(
             PEAK_TORQUE_RATIO * rated, "estimate", f"{PEAK_TORQUE_RATIO:g} times rated_torque"
         )
-    numbers["max_torque"] = peak
+    sourced_numbers["max_torque"] = peak
     facts = {}
-    if "hysteresis_loss" in numbers and numbers["hysteresis_loss"].bound:
-        bound = numbers["hysteresis_loss"]
+    if "hysteresis_loss" in sourced_numbers and sourced_numbers["hysteresis_loss"].bound:
+        bound = sourced_numbers["hysteresis_loss"]
         text = f"{_short_source(bound)}; not used unless --hysteresis is stated"
         facts["hysteresis_bound"] = (bound.value, "rad", text)
-        numbers["hysteresis_loss"] = SourcedNumber(0.0, "user", f"default choice: none; {bound.source}")
-    printed_angle = numbers.pop("lost_motion", None)
+        sourced_numbers["hysteresis_loss"] = SourcedNumber(
+            0.0, "user", f"default choice: none; {bound.source}"
+        )
+    printed_angle = sourced_numbers.pop("lost_motion", None)
     text = f"not published; {DAMPING_TIME:g} s times K1, 2 % of critical at 60 Hz"
-    numbers["d"] = SourcedNumber(DAMPING_TIME * numbers["K1"].value, "estimate", text)
-    numbers |= friction_numbers
-    file = catalogue.make_line_drive(drive_name, numbers)
+    sourced_numbers["d"] = SourcedNumber(DAMPING_TIME * sourced_numbers["K1"].value, "estimate", text)
+    sourced_numbers |= friction_numbers
+    file = catalogue.make_line_drive(drive_name, sourced_numbers)
     spring = HarmonicDriveSpring.tabulate(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, on the midline")
@@ -227,7 +231,7 @@ def _make_line_joint(
     facts["lost_motion"] = (computed_angle, "rad", text)
     if friction_numbers:
         facts["efficiency"] = (rated_efficiency(file.values), "1", "at rated torque and 2000 rev/min")
-    kinds = {name: number.kind for name, number in numbers.items() if name in file.values_by_name}
+    kinds = {name: number.kind for name, number in sourced_numbers.items() if name in file.values_by_name}
     guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
     notes = [f"estimated, not in the catalogue row: {guessed}"]
     if file.values.corner == 0.0:
@@ -236,18 +240,20 @@ def _make_line_joint(
 
 
 def _make_pair_joint(
-    numbers: Mapping[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], drive_name: str
+    sourced_numbers: Mapping[str, SourcedNumber],
+    friction_numbers: Mapping[str, SourcedNumber],
+    drive_name: str,
 ) -> NewJoint:
     """Make a drive with the law of Hu 2023, fitted to the row."""
     from .fit import catalogue
 
-    kind, ratio = numbers["rated_torque"].kind, numbers["ratio"].value
-    row = _catalogue_row(numbers)
-    found = catalogue.fit_pair(
-        row, numbers=catalogue.source_numbers(row, kind, ratio, drive_name), source=drive_name
+    kind, ratio = sourced_numbers["rated_torque"].kind, sourced_numbers["ratio"].value
+    row = _catalogue_row(sourced_numbers)
+    found = catalogue.fit_contact_pair_law(
+        row, sourced_numbers=catalogue.source_numbers(row, kind, ratio, drive_name), source=drive_name
     )
     file = replace(found.parameters, name=drive_name)
-    loss = numbers.get("hysteresis_loss")
+    loss = sourced_numbers.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":
         friction_numbers = {"hysteresis_loss": loss, **friction_numbers}
     for label, stated in friction_numbers.items():
@@ -260,16 +266,17 @@ def _short_source(number: SourcedNumber) -> str:
     return number.source.split(" (", 1)[0]
 
 
-def _catalogue_row(numbers: Mapping[str, SourcedNumber]) -> "CatalogueRow":
+def _catalogue_row(sourced_numbers: Mapping[str, SourcedNumber]) -> "CatalogueRow":
     """Catalogue row of the numbers. Raises ValueError for an implausible row."""
     from .fit.drive import CatalogueRow
 
     return CatalogueRow(
-        **{name: numbers[name].value for name in STIFFNESS_NAMES}, rated=numbers["rated_torque"].value
+        **{name: sourced_numbers[name].value for name in STIFFNESS_NAMES},
+        rated=sourced_numbers["rated_torque"].value,
     )
 
 
-NEW = NewJointCommand(
+NEW_JOINT_COMMAND = NewJointCommand(
     description="a harmonic drive by its name in the catalogue, or from the numbers of a catalogue row",
     example="--catalogue CSG-17-100",
     options=(

@@ -107,7 +107,7 @@ def smallest_mean_pressure(drive: HarmonicDrive) -> float:
     return float(state["F"] / state["A_r"])
 
 
-PUBLISHED = PublishedNumbers(
+PUBLISHED_NUMBERS = PublishedNumbers(
     papers=("hu2023",),
     observables={
         "K_TS": K_TS,

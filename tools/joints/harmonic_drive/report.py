@@ -15,10 +15,9 @@ from jointfmu.joints.harmonic_drive.friction import (
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity.units import KELVIN_AT_ZERO
+from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
 from ...inputs.catalogue import CatalogueEntry, SourcedNumber
-from ...pages.report.course import LoadHistory
 from ...pages.report.figure import (
     ROLE_INDEPENDENT,
     ROLE_PREDICTED,
@@ -28,6 +27,7 @@ from ...pages.report.figure import (
     Panel,
     Series,
 )
+from ...pages.report.load_history import LoadHistory
 from .catalogue import COLUMNS, STIFFNESS_NAMES, find_drive
 from .efficiency import DriveTestRig, hysteresis_loss, lost_motion, make_test_rig
 from .fit.drive import CatalogueRow
@@ -72,9 +72,9 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
     return [Figure(title, text, [over_load]), _speed_figure(file)]
 
 
-def _speed_figure(file: ParameterFile) -> Figure:
+def _speed_figure(parameter_file: ParameterFile) -> Figure:
     """Figure of the no-load friction over motor speed, at several temperatures and at that of the file."""
-    drive, rpm = file.values, np.linspace(0.0, max(MOTOR_SPEEDS), _CURVE_POINTS)
+    drive, rpm = parameter_file.values, np.linspace(0.0, max(MOTOR_SPEEDS), _CURVE_POINTS)
     w1 = rpm * math.pi / 30.0
     series = [
         Series(
@@ -82,10 +82,10 @@ def _speed_figure(file: ParameterFile) -> Figure:
             rpm,
             np.asarray(friction_limits(drive, w1, 0.0, kelvin)[0] + viscous_torque(drive, w1, kelvin)),
         )
-        for kelvin in sorted({*LUBRICANT_TEMPERATURES, file.start_value("temperature")})
+        for kelvin in sorted({*LUBRICANT_TEMPERATURES, parameter_file.start_value("temperature")})
     ]
     coefficients = [
-        f"{name} = {file.values_by_name[name]:g} 1/K ({file.sources.get(name, 'default choice')})"
+        f"{name} = {parameter_file.values_by_name[name]:g} 1/K ({parameter_file.sources.get(name, 'default choice')})"
         for name in ("viscous_temperature_coefficient", "dry_temperature_coefficient")
     ]
     text = (
@@ -97,8 +97,8 @@ def _speed_figure(file: ParameterFile) -> Figure:
     return Figure("Friction over speed and temperature", text, [panel])
 
 
-def _format_celsius(kelvin: float) -> str:
-    return f"{kelvin - KELVIN_AT_ZERO:g} degrees C"
+def _format_celsius(temperature: float) -> str:
+    return f"{temperature - CELSIUS_ZERO_IN_KELVIN:g} degrees C"
 
 
 _LOOP_QUANTITIES = {
@@ -108,18 +108,18 @@ _LOOP_QUANTITIES = {
 _FRICTION_UNITS = {column.name: column.unit for column in COLUMNS if column.name in FRICTION_COLUMNS}
 
 
-def compare_with_catalogue(model: Model, file: ParameterFile) -> list[ComparisonRow]:
+def compare_with_catalogue(model: Model, parameter_file: ParameterFile) -> list[ComparisonRow]:
     """Compare a drive with all values in the catalogue; empty if the catalogue has no such drive.
 
     The drive is identified by the name of the file, or by the source of its ratio. Estimates are omitted,
     upper limits are included. All values hold at REFERENCE_TEMPERATURE.
     """
-    item = _find_entry(file)
-    return [] if item is None else list(_comparison_rows(model, replace(file, inputs={}), item))
+    item = _find_entry(parameter_file)
+    return [] if item is None else list(_comparison_rows(model, replace(parameter_file, inputs={}), item))
 
 
-def _find_entry(file: ParameterFile) -> CatalogueEntry | None:
-    for name in (file.name, file.sources.get("ratio", "").partition(":")[0]):
+def _find_entry(parameter_file: ParameterFile) -> CatalogueEntry | None:
+    for name in (parameter_file.name, parameter_file.sources.get("ratio", "").partition(":")[0]):
         try:
             return find_drive(name)
         except ValueError:
@@ -127,20 +127,24 @@ def _find_entry(file: ParameterFile) -> CatalogueEntry | None:
     return None
 
 
-def _comparison_rows(model: Model, file: ParameterFile, entry: CatalogueEntry) -> Iterator[ComparisonRow]:
-    printed, spring = entry.numbers, HarmonicDriveSpring.tabulate(file.values)
+def _comparison_rows(
+    model: Model, parameter_file: ParameterFile, entry: CatalogueEntry
+) -> Iterator[ComparisonRow]:
+    printed, spring = entry.numbers, HarmonicDriveSpring.tabulate(parameter_file.values)
     yield from _wind_up_rows(
-        spring, printed, ROLE_SET if _is_stiffness_from_catalogue(file, printed) else ROLE_INDEPENDENT
+        spring,
+        printed,
+        ROLE_SET if _is_stiffness_from_catalogue(parameter_file, printed) else ROLE_INDEPENDENT,
     )
     for column, (measured, role) in _LOOP_QUANTITIES.items():
         number = printed[column]
         yield ComparisonRow(column, "rad", number.value, number.bound, measured(spring), role, number.source)
     known = [column for column in _FRICTION_UNITS if column in printed and printed[column].kind != "estimate"]
-    bench = make_test_rig(model, file) if known else None
+    bench = make_test_rig(model, parameter_file) if known else None
     for column in known:
         assert bench is not None
         number, (parameter, text) = printed[column], PARAMETER_OF_COLUMN[column]
-        is_set = file.sources.get(parameter, "").startswith(f"{number.source}; {text}")
+        is_set = parameter_file.sources.get(parameter, "").startswith(f"{number.source}; {text}")
         role = ROLE_SET if is_set else ROLE_PREDICTED
         value = _compute_friction_value(bench, column, printed)
         yield ComparisonRow(
@@ -149,27 +153,33 @@ def _comparison_rows(model: Model, file: ParameterFile, entry: CatalogueEntry) -
 
 
 def _wind_up_rows(
-    spring: HarmonicDriveSpring, numbers: Mapping[str, SourcedNumber], role: str
+    spring: HarmonicDriveSpring, sourced_numbers: Mapping[str, SourcedNumber], role: str
 ) -> Iterator[ComparisonRow]:
     """Compare the wind-up at T1, T2, rated and peak torque: catalogue, and drive without hysteresis."""
-    lines = {name: numbers[name].value for name in STIFFNESS_NAMES}
-    torques = {name: numbers[name] for name in ("T1", "T2", "rated_torque", "peak_torque") if name in numbers}
-    row = CatalogueRow(**lines, rated=torques.get("rated_torque", numbers["T2"]).value)
+    lines = {name: sourced_numbers[name].value for name in STIFFNESS_NAMES}
+    torques = {
+        name: sourced_numbers[name]
+        for name in ("T1", "T2", "rated_torque", "peak_torque")
+        if name in sourced_numbers
+    }
+    row = CatalogueRow(**lines, rated=torques.get("rated_torque", sourced_numbers["T2"]).value)
     for name, torque in torques.items():
         angle, midline_angle = float(row.wind_up(torque.value)), float(spring.curve.inverse(torque.value))
         label = f"wind-up at {name.replace('_', ' ')}, {torque.value:g} N m"
-        yield ComparisonRow(label, "rad", angle, False, midline_angle, role, numbers["K1"].source)
+        yield ComparisonRow(label, "rad", angle, False, midline_angle, role, sourced_numbers["K1"].source)
 
 
-def _is_stiffness_from_catalogue(file: ParameterFile, numbers: Mapping[str, SourcedNumber]) -> bool:
+def _is_stiffness_from_catalogue(
+    parameter_file: ParameterFile, sourced_numbers: Mapping[str, SourcedNumber]
+) -> bool:
     """Whether the stiffness in the file comes from the catalogue, directly or by a fit."""
-    if "K1" in file.values_by_name:
-        return file.sources.get("K1") == numbers["K1"].source
-    return file.origins.get("K_FTS0") == "catalogue"
+    if "K1" in parameter_file.values_by_name:
+        return parameter_file.sources.get("K1") == sourced_numbers["K1"].source
+    return parameter_file.origins.get("K_FTS0") == "catalogue"
 
 
 def _compute_friction_value(
-    test_rig: DriveTestRig, column: str, numbers: Mapping[str, SourcedNumber]
+    test_rig: DriveTestRig, column: str, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> float:
     """Computed value of a friction column: a torque [N.m] or the efficiency [1]."""
     if column == "starting_torque":
@@ -177,9 +187,9 @@ def _compute_friction_value(
     if column == "running_torque":
         return test_rig.motor_torque(CATALOGUE_SPEED, 0.0)
     if column == "efficiency":
-        return test_rig.efficiency(CATALOGUE_SPEED, numbers["rated_torque"].value)
-    return test_rig.back_driving_torque(_BACK_DRIVING_LIMIT_RATIO * numbers[column].value)
+        return test_rig.efficiency(CATALOGUE_SPEED, sourced_numbers["rated_torque"].value)
+    return test_rig.back_driving_torque(_BACK_DRIVING_LIMIT_RATIO * sourced_numbers[column].value)
 
 
-FIGURES = {"HarmonicDriveSpring": friction_figures}
+REPORT_FIGURES = {"HarmonicDriveSpring": friction_figures}
 CATALOGUE_COMPARISONS = {"HarmonicDriveSpring": compare_with_catalogue}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from jointfmu.joints.harmonic_drive import KIND
-from jointfmu.joints.harmonic_drive.drive import HARMONICS, Drive
+from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS, Drive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
@@ -36,7 +36,7 @@ def make_transmission(file: ParameterFile) -> Transmission:
         ratio=drive.ratio,
         damping=drive.d,
         rated_torque=drive.rated_torque,
-        max_torque=float(spring.curve.end[1]),
+        max_torque=float(spring.curve.end_point[1]),
         dry_friction=drive.friction_coulomb,
         viscous_friction=drive.friction_viscous,
         static_friction=drive.friction_coulomb + drive.friction_stribeck,
@@ -60,6 +60,6 @@ def _list_missing_effects(drive: Drive) -> Iterator[str]:
         )
     if drive.friction_coulomb or drive.friction_viscous:
         yield "the temperature of the lubricant: friction is that at 20 degrees C"
-    error = sum(abs(getattr(drive, f"error_{n}")) for n in HARMONICS)
+    error = sum(abs(getattr(drive, f"error_{n}")) for n in KINEMATIC_ERROR_HARMONICS)
     if error:
         yield f"the kinematic error, up to {error:.3g} rad"

@@ -28,7 +28,7 @@ _SCRIPT_NAMES = (
     *("curves", "path", "turn", "contact", "body", "files", "main"),
 )
 """Scripts of the page in the order of execution, after the script of the charts."""
-_FILE_UNITS = {
+_COLUMN_UNITS = {
     "rad": ("rad", "mrad", "deg", "arcmin", "arcsec"),
     "m": ("m", "mm", "um", "nm"),
     "N.m": ("N.m", "mN.m", "kN.m"),
@@ -57,7 +57,7 @@ def render_page() -> str:
         ],
         "origins": ORIGINS,
         "roughness": {"factor": RQ_OVER_RA, "close": RELATIVE_HEIGHT_TOLERANCE},
-        "units": {base: units.unit_sizes(base, *others) for base, others in _FILE_UNITS.items()},
+        "units": {base: units.unit_sizes(base, *others) for base, others in _COLUMN_UNITS.items()},
     }
     text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)

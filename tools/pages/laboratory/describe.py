@@ -8,7 +8,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from jointfmu_fmu_src.native.compiled.compiled_models import cached_result
+from jointfmu_fmu_src.native.compiled.compiled_models import get_cached_result
 from jointfmu_fmu_src.native.compiled.compiler import compile_webassembly
 from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_fmu_src.native.page import find_ramp_panels
@@ -21,7 +21,7 @@ from jointfmu.parameters import (
     ParameterFile,
     declared_entries,
     format_parameter_file,
-    is_height,
+    is_combined_height,
     load_parameter_file,
 )
 from jointfmu.quantity import units
@@ -32,7 +32,7 @@ from ...common.shown import choose_display_unit
 from ...run.ramps.loops import variable_suffix
 from ...studies.published.computed import load_published_numbers
 from ...studies.published.reference import ROLES, read_points
-from .part import LaboratoryModel
+from .joint_additions import LaboratoryModel
 
 _LABORATORY_SOURCE_NAME = "laboratory.c"
 _MAP_SOURCE_NAME = "map.c"
@@ -47,7 +47,7 @@ class PageModule:
     """
 
     model: Model
-    files: Sequence[ParameterFile]
+    parameter_files: Sequence[ParameterFile]
 
     @property
     def map_source(self) -> Path | None:
@@ -63,7 +63,7 @@ class PageModule:
         # imported here because it needs casadi, which pages of the report do not need
         from jointfmu_fmu_src.native.code.generate import generate_sources, read_token
 
-        files = generate_sources(self.model.name, self.files[0])
+        files = generate_sources(self.model.name, self.parameter_files[0])
         return files | self._page_sources() | {"token.h": f'#define TOKEN "{read_token(files)}"\n'}
 
     def compile_module(self) -> bytes:
@@ -72,8 +72,8 @@ class PageModule:
         It exports the functions of laboratory.c. Raises ImportError if ziglang is missing, RuntimeError with
         the first error of the compiler.
         """
-        return cached_result(
-            f"{format_parameter_file(self.files[0])} {self._page_sources()}",
+        return get_cached_result(
+            f"{format_parameter_file(self.parameter_files[0])} {self._page_sources()}",
             self.model,
             self._compile_uncached,
         )
@@ -106,41 +106,41 @@ def compile_modules(page_modules: Sequence[PageModule]) -> list[bytes]:
         return list(pool.map(PageModule.compile_module, page_modules))
 
 
-def _group_by_code(kind: JointKind, model: Model) -> Iterator[PageModule]:
+def _group_by_code(joint_kind: JointKind, model: Model) -> Iterator[PageModule]:
     """Group the shipped files of a joint into modules.
 
     Files share the C code if they have the same law and the same values of all parameters that the FMU does
     not expose.
     """
     groups: dict[tuple[object, ...], list[ParameterFile]] = {}
-    for file in _load_shipped_files(kind):
-        exposed = model.with_parameters(kind.name, file.values).parameter_fields()
+    for file in _load_shipped_files(joint_kind):
+        exposed = model.with_parameters(joint_kind.name, file.values).parameter_fields()
         fixed = tuple((name, value) for name, value in file.values_by_name.items() if name not in exposed)
         groups.setdefault((file.law, fixed), []).append(file)
     for files in groups.values():
-        yield PageModule(model.with_parameters(kind.name, files[0].values), files)
+        yield PageModule(model.with_parameters(joint_kind.name, files[0].values), files)
 
 
-def _load_shipped_files(kind: JointKind) -> list[ParameterFile]:
+def _load_shipped_files(joint_kind: JointKind) -> list[ParameterFile]:
     """Load the shipped parameter files of a joint, the default file first."""
-    default = kind.default_file()
+    default = joint_kind.default_file()
     return [
-        load_parameter_file(path, kind.name)
+        load_parameter_file(path, joint_kind.name)
         for path in sorted(default.parent.glob("*.toml"), key=lambda p: p != default)
     ]
 
 
-_SLIDER_END_RATIO = 2.0
+_INPUT_SLIDER_END_OVER_NOMINAL = 2.0
 """Largest value of an input's slider over the nominal value of the input [1]."""
-_SLIDER_FACTOR = 10.0
+_PARAMETER_SLIDER_END_OVER_START = 10.0
 """Factor between start value and both ends of a parameter's slider, if no interval is known [1]."""
 
 
 def describe_module(module: PageModule) -> dict[str, object]:
     """Describe a module as a JSON object: all of its content except the WebAssembly binary."""
-    model, first = module.model, module.files[0]
+    model, first = module.model, module.parameter_files[0]
     kind, bench = KINDS[model.joint], _laboratory_model(model)
-    bound = set(_bound_parameters(first))
+    bound = set(_list_compiled_parameters(first))
     curves = (*find_ramp_panels(model), *bench.panels)  # the panels of the documentation come first
     rows = [
         _variable_document(v, model, bench) | {"bound": v.name in bound} for v in list_variables(model, first)
@@ -153,14 +153,14 @@ def describe_module(module: PageModule) -> dict[str, object]:
         "default": first.law == next(iter(kind.laws)),
         "entries": _entry_documents(model, first),
         "fixed": list(split_parameters(model, first).data_values),
-        "height": next(filter(is_height, first.values_by_name), None),
+        "height": next(filter(is_combined_height, first.values_by_name), None),
         "doc": model.doc,
         "variables": rows,
         "surfaces": [surface.parameter_prefix for surface in kind.surfaces],
-        "sets": [_parameter_set_document(file, model) for file in module.files],
+        "sets": [_parameter_set_document(file, model) for file in module.parameter_files],
         "ramp": {"input": model.ramp.input_name, "end": model.ramp.end_value},
         "panels": [{"over": p.abscissa, "quantities": list(p.quantities)} for p in curves],
-        "pairs": conjugate_pairs(model),
+        "pairs": pair_conjugate_variables(model),
         "path": list(bench.path_inputs or (model.ramp.input_name,)),
         "points": list(_published_points(model, bench)),
         "measured": [m._asdict() for m in bench.measured_curves],
@@ -170,7 +170,7 @@ def describe_module(module: PageModule) -> dict[str, object]:
     }
 
 
-def conjugate_pairs(model: Model) -> dict[str, str]:
+def pair_conjugate_variables(model: Model) -> dict[str, str]:
     """Energy-conjugate pairs of inputs and outputs: {input: output}.
 
     Their units are N and m, or N.m and rad, and their suffixes are equal (`f_x` and `s_rel_x`). If the input
@@ -236,7 +236,7 @@ def _slider_span(
         end = (
             model.ramp.end_value
             if unit == driven
-            else _SLIDER_END_RATIO * float(variable.attributes["nominal"])
+            else _INPUT_SLIDER_END_OVER_NOMINAL * float(variable.attributes["nominal"])
         )
         return max(low, -end), end
     if start == 0.0:
@@ -246,10 +246,12 @@ def _slider_span(
         return max(low + margin, 0.0), high - margin
     if variable_document["whole"]:
         return low, 4.0 * start
-    return max(start / _SLIDER_FACTOR, low), min(start * _SLIDER_FACTOR, high)
+    return max(start / _PARAMETER_SLIDER_END_OVER_START, low), min(
+        start * _PARAMETER_SLIDER_END_OVER_START, high
+    )
 
 
-def _bound_parameters(file: ParameterFile) -> Iterator[str]:
+def _list_compiled_parameters(file: ParameterFile) -> Iterator[str]:
     """Yield the parameters that the page must not change: values compiled into the C code depend on them."""
     kind = KINDS[file.joint]
     for name, value in file.values_by_name.items():

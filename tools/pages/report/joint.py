@@ -15,16 +15,16 @@ from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ORIGINS, ParameterFile
-from jointfmu.progress import set_step
+from jointfmu.progress import set_status_text
 from jointfmu.quantity.units import conversion_factor
 from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
-from ...common.pressure import judge_file
+from ...common.pressure import judge_joint_stiffness
 from ...common.shown import FileEntry, choose_display_unit, format_quantity, format_unit, list_entries
 from ...run.ramps.loops import HysteresisLoops
-from .course import LoadHistory
 from .figure import ComparisonRow, Figure, Panel, Series, page_script, style_sheet
+from .load_history import LoadHistory
 
 _STIFFNESS_UNITS = ("N/m", "N.m/rad")
 _CONSTANT_STIFFNESS_RATIO = 0.02
@@ -92,7 +92,7 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
 
 def _describe_loss(loops: HysteresisLoops) -> str:
     """Describe the energy loss of the largest loop in a sentence."""
-    row = max(loops.compute_rows(), key=lambda row: row["motion"])
+    row = max(loops.compute_loop_results(), key=lambda row: row["motion"])
     if not row["loss"]:
         return "The joint has no hysteresis: loading and unloading follow the same curve."
     amplitude = f"{loops.motion_name} = {_format_value(row['motion'], loops.units[0])}"
@@ -137,7 +137,7 @@ class _ReportRow(NamedTuple):
     unit: str
     si_value: str
     doc: str
-    kind: str
+    origin: str
     source: str
 
 
@@ -150,11 +150,11 @@ def write_joint_report(path: Path, file: ParameterFile, fmu: str | None = None) 
 
 
 def _render_page(model: Model, file: ParameterFile) -> str:
-    set_step("curves over the load")
+    set_status_text("curves over the load")
     course = LoadHistory(model, file)
     folder, rows = Path(__file__).parent, _report_rows(file)
     module = load_tool_module(KINDS[model.joint], "report")
-    set_step("loops")
+    set_status_text("loops")
     loops = course.compute_loops() if model.load_cycle else None
     figures = [ramp_figure(course), *([loop_figure(course, loops)] if loops else [])]
     if module and model.name in module.FIGURES:
@@ -176,8 +176,10 @@ def _render_page(model: Model, file: ParameterFile) -> str:
         beside=_comparison_rows(compared),
         drawings=draw_further_charts(course.model, course.spring),
         rows=rows,
-        origins=[(kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
-        judgement=judge_file(file),
+        origins=[
+            (kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.origin == kind]) for kind in ORIGINS
+        ],
+        judgement=judge_joint_stiffness(file),
         range=_describe_range(course),
         topics=VALIDITY_HEADINGS,
         style=style_sheet(),
@@ -270,7 +272,7 @@ def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
 
 def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
     """Table of the loops in display units: amplitude, force, stiffness, energy loss, loss factor."""
-    units = loops.row_units
+    units = loops.result_units
 
     def format_cell(row: dict[str, float], name: str) -> str:
         value, unit = _to_display_unit(row[name], units[name])
@@ -279,7 +281,7 @@ def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [
         ("amplitude", "force or torque", "secant stiffness", "energy loss per cycle", "loss factor")
     ]
-    for row in loops.compute_rows():
+    for row in loops.compute_loop_results():
         rows.append((*(format_cell(row, name) for name in units), f"{row['loss_factor']:.3g}"))
     return rows
 

@@ -21,15 +21,15 @@ from .figure import Figure, page_script, style_sheet
 from .systems import motion_figures, resonance_figures, ring_down_figures
 
 
-def build_figures(job_result: Any) -> dict[str, list[Figure]]:
+def build_figures(build_result: Any) -> dict[str, list[Figure]]:
     """Build the figures of all joints: {joint: figures}.
 
     build_result : result of `python build_fmus.py` with simulated systems
     """
-    return {name: _joint_figures(kind, job_result) for name, kind in KINDS.items()}
+    return {name: _joint_figures(kind, build_result) for name, kind in KINDS.items()}
 
 
-def write_report(path: Path, outcome: Any) -> None:
+def write_report(path: Path, build_result: Any) -> None:
     """Write the self-contained page.
 
     build_result : result of `python build_fmus.py`, with the figures of `build_figures`
@@ -38,40 +38,42 @@ def write_report(path: Path, outcome: Any) -> None:
         version=__version__,
         python=platform.python_version(),
         when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
-        outcome=outcome,
+        outcome=build_result,
         roles=ROLES,
-        sentence=format_summary(outcome.validated_points),
+        sentence=format_summary(build_result.validated_points),
         shown_error=format_error,
         shown_tolerance=format_tolerance,
         shown_claim=format_claim,
-        fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_validated_points},
-        tabs=[_tab_terms(kind, outcome) for kind in KINDS.values()],
+        fmu_values={(r.point.paper, r.point.id): r for r in build_result.fmu_validated_points},
+        tabs=[_tab_template_variables(kind, build_result) for kind in KINDS.values()],
         style=style_sheet(),
         script=page_script("tabs.js"),
     )
     write_text(path, page)
 
 
-def _tab_terms(kind: JointKind, job_result: Any) -> dict[str, Any]:
+def _tab_template_variables(joint_kind: JointKind, build_result: Any) -> dict[str, Any]:
     """Template variables for the tab of one joint."""
-    names = [model.name for model in kind.models]
+    names = [model.name for model in joint_kind.models]
     kinds = {name: {j.joint_kind for j in system.joints.values()} for name, system in load_systems().items()}
-    names += [name for name, joints in kinds.items() if kind.name in joints]
+    names += [name for name, joints in kinds.items() if joint_kind.name in joints]
     return {
-        "name": kind.name,
-        "title": kind.title,
-        "figures": [(figure, encode_panels(figure.panels)) for figure in job_result.figures[kind.name]],
-        "rows": [row for row in job_result.validated_points if row.point.joint == kind.name],
-        "checks": [check for check in job_result.checks if check.fmu in names],
-        "proofs": [proof for proof in job_result.proofs if proof.fmu.stem in names],
+        "name": joint_kind.name,
+        "title": joint_kind.title,
+        "figures": [
+            (figure, encode_panels(figure.panels)) for figure in build_result.figures[joint_kind.name]
+        ],
+        "rows": [row for row in build_result.validated_points if row.point.joint == joint_kind.name],
+        "checks": [check for check in build_result.checks if check.fmu in names],
+        "proofs": [proof for proof in build_result.proofs if proof.fmu.stem in names],
     }
 
 
-def _joint_figures(kind: JointKind, job_result: Any) -> list[Figure]:
-    module = load_tool_module(kind, "figures")
-    figures: list[Figure] = module.figures(job_result) if module else []
+def _joint_figures(joint_kind: JointKind, build_result: Any) -> list[Figure]:
+    module = load_tool_module(joint_kind, "figures")
+    figures: list[Figure] = module.figures(build_result) if module else []
     figures += [
-        *resonance_figures(job_result.free_vibrations, kind.name, job_result.fmi2_folder),
-        *ring_down_figures(job_result.decays, kind.name),
+        *resonance_figures(build_result.free_vibrations, joint_kind.name, build_result.fmi2_folder),
+        *ring_down_figures(build_result.decays, joint_kind.name),
     ]
-    return figures + motion_figures(job_result.arm_results, kind.name)
+    return figures + motion_figures(build_result.arm_results, joint_kind.name)

@@ -53,7 +53,7 @@ def _resonance_figure(
     body, moving = vibrating_joint.test, vibrating_joint.moving_body.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load_axis.name}",
-        f"The {moving} vibrates freely about a working point, {body.doc}. First chart: resonance frequency; "
+        f"The {moving} vibrates freely about a working point, {body.support_description}. First chart: resonance frequency; "
         "circles are peaks of the spectrum of the simulated signal, the line is the square root of "
         f"{body.stiffness_output} over the inertia of the {moving}. Second chart: free decay at the first "
         f"{body.load_axis.name}, with the envelopes of the stated damping. Friction is left out.",
@@ -74,14 +74,14 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
     body, moving, (point, *_) = vibrating_joint.test, vibrating_joint.moving_body.name, decays
     has_law = point.half_eta_loop is not None
     deflection = (
-        f"{body.deflection_axis.factor * body.slip_deflection.deflection:g} "
+        f"{body.deflection_axis.display_factor * body.slip_deflection.deflection:g} "
         f"{format_unit(body.deflection_axis.unit)}"
     )
     return Figure(
         f"In a system: free decay of the {name.replace('_', ' ')}",
-        f"The {moving}, {body.doc}, is released from a deflection of {deflection} "
+        f"The {moving}, {body.support_description}, is released from a deflection of {deflection} "
         f"({body.slip_deflection.doc}) at "
-        f"{body.load_axis.factor * point.load:g} {body.load_axis.unit}. Circles: frequency and damping "
+        f"{body.load_axis.display_factor * point.load:g} {body.load_axis.unit}. Circles: frequency and damping "
         "ratio of the "
         "simulated signal in windows of two to five periods, over the mean amplitude. Line: values from the "
         "energy loss of the joint's hysteresis loops of the same amplitude, with viscous damping"
@@ -100,14 +100,14 @@ def resonance_panels(
 ) -> list[Panel]:
     """Panels: resonance over the load, and one free decay with the envelopes of the stated damping."""
     vibrations, body = sorted(vibrations, key=lambda point: point.load), vibrating_joint.test
-    x = [body.load_axis.factor * point.load for point in vibrations]
+    x = [body.load_axis.display_factor * point.load for point in vibrations]
     hertz = 0.5 / np.pi
     loads, expected = frequency_curve(vibrating_joint, folder, vibrations)
     over = [
-        Series("sqrt(K/J)", body.load_axis.factor * loads, hertz * expected),
+        Series("sqrt(K/J)", body.load_axis.display_factor * loads, hertz * expected),
         Series("simulated", x, [hertz * p.frequency for p in vibrations], "empty"),
     ]
-    first, scale = vibrations[0], body.deflection_axis.factor
+    first, scale = vibrations[0], body.deflection_axis.display_factor
     envelope = (
         scale * first.signal[0] * np.exp(-first.expected_damping * first.expected_frequency * first.time)
     )
@@ -129,11 +129,11 @@ def decay_panels(decays: Sequence[Decay], vibration_test: VibrationTest) -> list
 
     The results of the decay are compared with those of the joint's hysteresis loops.
     """
-    scale, hertz, first = vibration_test.deflection_axis.factor, 0.5 / np.pi, decays[0]
+    scale, hertz, first = vibration_test.deflection_axis.display_factor, 0.5 / np.pi, decays[0]
     frequency, damping = [], []
     for point in decays:
         load = (
-            f", {vibration_test.load_axis.factor * point.load:g} {vibration_test.load_axis.unit}"
+            f", {vibration_test.load_axis.display_factor * point.load:g} {vibration_test.load_axis.unit}"
             if len(decays) > 1
             else ""
         )
@@ -150,7 +150,9 @@ def decay_panels(decays: Sequence[Decay], vibration_test: VibrationTest) -> list
             damping.append(Series(f"eta_loop/2{load}", x, 100.0 * point.half_eta_loop, dashed=True))
     over = f"amplitude [{vibration_test.deflection_axis.unit}]"
     signal = [Series("decay", 1e3 * first.time, scale * first.signal)]
-    title = f"Decay at {vibration_test.load_axis.factor * first.load:g} {vibration_test.load_axis.unit}"
+    title = (
+        f"Decay at {vibration_test.load_axis.display_factor * first.load:g} {vibration_test.load_axis.unit}"
+    )
     return [
         Panel(title, "time [ms]", vibration_test.deflection_axis.label, signal),
         Panel("Frequency over the amplitude", over, "frequency [Hz]", frequency),
@@ -158,7 +160,7 @@ def decay_panels(decays: Sequence[Decay], vibration_test: VibrationTest) -> list
     ]
 
 
-MOTION_SIZE = (11.4, 3.8)
+MOTION_FIGURE_SIZE = (11.4, 3.8)
 """Size [inch] of the picture of a simulated system."""
 _PLOT_INTERVALS = 400
 """Number of intervals of a curve over time; the smallest and the largest point of each is drawn."""

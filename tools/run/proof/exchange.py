@@ -69,7 +69,7 @@ class _ExchangeSimulation:
         self.continuous_inputs = [
             name
             for name in task.inputs
-            if task.kinds[name] == "real" and variables[name].variability != "discrete"
+            if task.variable_kinds[name] == "real" and variables[name].variability != "discrete"
         ]
         self.interval_index, self.time = 0, task.times[0]
         self.first_failure: Exception | None = None
@@ -82,11 +82,11 @@ class _ExchangeSimulation:
             set_x=self._c_callback("SetContinuousStates"),
             get_dx=self._c_callback(f"Get{rates}"),
             get_z=self._c_callback("GetEventIndicators"),
-            get_nominals=self._write_nominals,
+            get_nominals=self._write_state_nominals,
             set_time=self._wrap_callback(self._set_time)
             if self.continuous_inputs
             else self._c_callback("SetTime"),
-            input=_NoInput,
+            input=_EmptySolverInput,
             startTime=task.times[0],
             relativeTolerance=task.tolerance,
             maxNumSteps=MAX_SOLVER_STEPS,
@@ -154,13 +154,13 @@ class _ExchangeSimulation:
             value = first if first == last else (1.0 - fraction) * first + fraction * last
             self.instance.set_values({name: value})
 
-    def _write_nominals(self, values: object, count: int) -> None:
+    def _write_state_nominals(self, solver_array: object, state_count: int) -> None:
         """Write the nominal values of the states times MIN_SCALE_RATIO; below these, tolerances are absolute.
 
         solver_array, state_count : array of the solver to be filled, and its length
         """
-        self.fmu.getNominalsOfContinuousStates(values, count)
-        np.ctypeslib.as_array(values, (count,))[:] *= MIN_SCALE_RATIO
+        self.fmu.getNominalsOfContinuousStates(solver_array, state_count)
+        np.ctypeslib.as_array(solver_array, (state_count,))[:] *= MIN_SCALE_RATIO
 
     def _c_callback(self, name: str) -> Callable[..., None]:
         """Make a solver callback of a C function of the FMU; its first failure is kept in `first_failure`.
@@ -194,7 +194,7 @@ class _ExchangeSimulation:
         return callback
 
 
-class _NoInput:
+class _EmptySolverInput:
     """Input object without effect for fmpy's solver, since `_set_time` already sets the inputs."""
 
     @staticmethod

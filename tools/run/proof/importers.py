@@ -61,8 +61,12 @@ def run_ecos(task: Task, messages: list[str]) -> Rows:
     structure.add_parameter_set("start", start)
     with EcosSimulation(structure=structure, step_size=size) as simulation:
         suffixes = {"real": "real", "integer": "integer", "boolean": "bool"}
-        setters = {name: getattr(simulation, f"set_{suffixes[task.kinds[name]]}") for name in task.inputs}
-        getters = {name: getattr(simulation, f"get_{suffixes[task.kinds[name]]}") for name in task.outputs}
+        setters = {
+            name: getattr(simulation, f"set_{suffixes[task.variable_kinds[name]]}") for name in task.inputs
+        }
+        getters = {
+            name: getattr(simulation, f"get_{suffixes[task.variable_kinds[name]]}") for name in task.outputs
+        }
         if not simulation.init(parameter_set="start"):
             raise RuntimeError(EcosLib.get_last_error())
         rows: Rows = [[float(get(f"fmu::{name}")) for name, get in getters.items()]]
@@ -105,15 +109,15 @@ def run_libcosim(task: Task, messages: list[str]) -> Rows:
     rows: Rows = [None]
     for i in range(len(task.times) - 1):
         inputs = task.inputs_at(i)
-        for kind in set(task.kinds.values()):
-            if names := [name for name in inputs if task.kinds[name] == kind]:
+        for kind in set(task.variable_kinds.values()):
+            if names := [name for name in inputs if task.variable_kinds[name] == kind]:
                 setter = getattr(manipulator, f"slave_{kind}_values")
                 setter(slave, [reference[name] for name in names], [inputs[name] for name in names])
         if not execution.step():
             raise RuntimeError(get_last_error_message())
         row: dict[str, float] = {}
-        for kind in set(task.kinds.values()):
-            if names := [name for name in task.outputs if task.kinds[name] == kind]:
+        for kind in set(task.variable_kinds.values()):
+            if names := [name for name in task.outputs if task.variable_kinds[name] == kind]:
                 getter = getattr(observer, f"last_{kind}_values")
                 row |= zip(names, map(float, getter(slave, [reference[name] for name in names])), strict=True)
         rows.append([row[name] for name in task.outputs])

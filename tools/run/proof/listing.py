@@ -124,7 +124,7 @@ def _make_listing_files(proof: Proof, outcome: Outcome, description: "ModelDescr
 
 def _format_readme(proof: Proof, outcome: Outcome, description: "ModelDescription") -> str:
     """Text of README.md for the chosen outcome."""
-    experiment, worst, name = outcome.experiment, outcome.worst, _safe_file_name(description.modelName)
+    experiment, worst, name = outcome.experiment, outcome.worst_point, _safe_file_name(description.modelName)
     assert worst is not None
     tool = description.generationTool or "an unknown tool"
     inputs = ", ".join(f"`{n}`" for n in _input_names(experiment))
@@ -138,7 +138,7 @@ These are the files of the experiment "{experiment.name}" in `{REFERENCE_FOLDER}
 {driven}`{name}_ref.csv` has the reference results that the FMU carries, `{name}_ref.opt` times, step
 and relative tolerance. Nothing else is set.
 
-Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(outcome.points)} outputs at
+Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(outcome.worst_points)} outputs at
 {outcome.compared_points} times `{worst.output}` is furthest off, by
 {worst.error:.1e}; allowed is {worst.tolerance:.1e}.
 

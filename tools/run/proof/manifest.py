@@ -15,11 +15,11 @@ from jointfmu_fmu_src.proof.series import TimeSeries, parse_csv
 from jointfmu_fmu_src.proof.standard import (
     ATTRIBUTE_NAMESPACE,
     CSV_TYPE,
+    EXPERIMENT_PURPOSES,
     EXPERIMENTS_TYPE,
     INTERFACE_LABELS,
-    INTERFACES,
+    INTERFACE_TYPES,
     MANIFEST_PATH,
-    PURPOSES,
     SCALES_TYPE,
     SSV_TYPE,
     STANDARD_NAME,
@@ -68,8 +68,8 @@ class Experiment:
     settings: Mapping[str, StartSetting] = field(default_factory=dict)
     stimuli: TimeSeries | None = None
     references: TimeSeries | None = None
-    interfaces: Sequence[str] = INTERFACES
-    scales: Mapping[str, float] = field(default_factory=dict)
+    interfaces: Sequence[str] = INTERFACE_TYPES
+    output_scales: Mapping[str, float] = field(default_factory=dict)
     unsupported_reason: str = ""
 
 
@@ -81,10 +81,10 @@ class RelatedFiles:
     All methods raise ValueError, one line that names FMU and file, if a file is missing or broken.
     """
 
-    def __init__(self, fmu: Path, members: Mapping[str, bytes] | None = None) -> None:
+    def __init__(self, fmu: Path, member_contents: Mapping[str, bytes] | None = None) -> None:
         self.fmu = fmu
         self._fmu_members = FmuMembers(fmu)
-        self.members: Mapping[str, bytes] = members or self._fmu_members
+        self.members: Mapping[str, bytes] = member_contents or self._fmu_members
         if MANIFEST_PATH not in self.members:
             raise ValueError(
                 f"{fmu}: has no {MANIFEST_PATH}; expected an FMU with experiments after FMI-LS-REF"
@@ -104,7 +104,7 @@ class RelatedFiles:
             self._check_checksum(related)
             role, _, purpose = related.get("role", "").partition("/")
             if role == "experiment":
-                experiments += self._read_experiments(related, purpose or PURPOSES[0])
+                experiments += self._read_experiments(related, purpose or EXPERIMENT_PURPOSES[0])
         if not experiments:
             raise ValueError(f"{self.fmu}: {MANIFEST_PATH} names no experiment; expected one at least")
         return experiments
@@ -137,7 +137,7 @@ class RelatedFiles:
             return [Experiment(source, purpose, unsupported_reason="lies outside of the FMU")]
         path = self._resolve_path(MANIFEST_PATH, source)
         labels = {label.get("name") for label in file_element.iter("Label")}
-        interfaces = [name for name, label in INTERFACE_LABELS.items() if label in labels] or INTERFACES
+        interfaces = [name for name, label in INTERFACE_LABELS.items() if label in labels] or INTERFACE_TYPES
         nodes = self._read_xml(path).iter("Experiment")
         return [self._read_experiment(path, node, purpose, interfaces) for node in nodes]
 
@@ -146,10 +146,12 @@ class RelatedFiles:
     ) -> Experiment:
         """Experiment of an XML element in the file `path`, with the files that it names."""
         name = element.get("name", "")
-        kinds = [child.tag for child in element if child.tag not in ("Annotations", *_FILE_TYPES)]
+        kinds = [
+            child.tag for child in element if child.tag not in ("Annotations", *_RELATED_FILE_MIME_TYPES)
+        ]
         unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT_ELEMENT else ""
         files: dict[str, str] = {}
-        for tag, kind in _FILE_TYPES.items():
+        for tag, kind in _RELATED_FILE_MIME_TYPES.items():
             children = element.findall(tag)
             if len(children) > 1:
                 unfit = unfit or f"has {len(children)} {tag}, one is read"
@@ -209,11 +211,11 @@ class RelatedFiles:
                 break
         return settings
 
-    def _resolve_path(self, base: str, source: str) -> str:
+    def _resolve_path(self, base_member: str, source_address: str) -> str:
         """Path in the FMU of a source address, which is relative to the file `base_member` in the FMU."""
-        if urlsplit(source).scheme:
-            raise ValueError(f"{self.fmu}: {base} names {source}; expected a file in the FMU")
-        return posixpath.normpath(posixpath.join(posixpath.dirname(base), unquote(source)))
+        if urlsplit(source_address).scheme:
+            raise ValueError(f"{self.fmu}: {base_member} names {source_address}; expected a file in the FMU")
+        return posixpath.normpath(posixpath.join(posixpath.dirname(base_member), unquote(source_address)))
 
     def _read_text(self, path: str) -> str:
         """Text of a related file."""
@@ -232,7 +234,7 @@ class RelatedFiles:
             raise ValueError(f"{self.fmu}: {path} is not valid XML ({error})") from None
 
 
-_FILE_TYPES = {"Parameters": SSV_TYPE, "Stimuli": CSV_TYPE, "References": CSV_TYPE}
+_RELATED_FILE_MIME_TYPES = {"Parameters": SSV_TYPE, "Stimuli": CSV_TYPE, "References": CSV_TYPE}
 """{child element of an experiment: MIME type of the file that it names}."""
 _BOOLEAN_VALUES = {"true": True, "1": True, "false": False, "0": False}
 

@@ -55,7 +55,7 @@ class Outcome:
 
     experiment: Experiment
     interface: str
-    points: Sequence[WorstPoint] = ()
+    worst_points: Sequence[WorstPoint] = ()
     compared_points: int = 0
     error: str = ""
 
@@ -71,14 +71,14 @@ class Outcome:
         return "" if self.interface else text
 
     @property
-    def worst(self) -> WorstPoint | None:
+    def worst_point(self) -> WorstPoint | None:
         """Point with the largest error over tolerance, of all outputs; None if nothing was compared."""
-        return max(self.points, key=lambda point: point.error_ratio, default=None)
+        return max(self.worst_points, key=lambda point: point.error_ratio, default=None)
 
     @property
     def has_passed(self) -> bool:
         """Whether there is no error and all outputs are within their tolerance."""
-        return not self.error and all(point.is_within_tolerance for point in self.points)
+        return not self.error and all(point.is_within_tolerance for point in self.worst_points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class Proof:
     fmu: Path
     importer: str
     interfaces: Sequence[str]
-    compared_starts: int
+    compared_start_count: int
     start_differences: Sequence[str]
     outcomes: Sequence[Outcome]
 
@@ -106,9 +106,9 @@ class Proof:
         return sum(bool(outcome.interface) for outcome in self.outcomes)
 
     @property
-    def worst(self) -> WorstPoint | None:
+    def worst_point(self) -> WorstPoint | None:
         """Point with the largest error over tolerance, of all outcomes; None if nothing was compared."""
-        points = [outcome.worst for outcome in self.outcomes if outcome.worst]
+        points = [outcome.worst_point for outcome in self.outcomes if outcome.worst_point]
         return max(points, key=lambda point: point.error_ratio, default=None)
 
     @property
@@ -126,7 +126,7 @@ class Proof:
             if outcome.error:
                 lines.append(f"{name}: {outcome.error}")
             missed = sorted(
-                (p for p in outcome.points if not p.is_within_tolerance), key=lambda p: -p.error_ratio
+                (p for p in outcome.worst_points if not p.is_within_tolerance), key=lambda p: -p.error_ratio
             )
             if missed:
                 worst, *others = missed  # sorted by error over tolerance

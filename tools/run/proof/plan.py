@@ -107,7 +107,7 @@ class ExperimentPlan:
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
             y, y_ref = np.interp(t, times, column), reference[compared]
             size = np.maximum(np.abs(y_ref), MIN_SCALE_RATIO * self.nominal_values[name])
-            allowed = tolerance * np.broadcast_to(self.experiment.scales.get(name, size), y_ref.shape)
+            allowed = tolerance * np.broadcast_to(self.experiment.output_scales.get(name, size), y_ref.shape)
             with np.errstate(invalid="ignore"):
                 error_ratio = np.where(np.isfinite(y), np.abs(y - y_ref) / allowed, np.inf)
             i = int(np.argmax(error_ratio))
@@ -138,13 +138,15 @@ def _communication_points(experiment: Experiment, description: "ModelDescription
     """
     default = description.defaultExperiment
     results = experiment.references or experiment.stimuli
-    start = _first_stated(experiment.start, getattr(default, "startTime", None), 0.0)
-    stop = _first_stated(
+    start = _first_not_none(experiment.start, getattr(default, "startTime", None), 0.0)
+    stop = _first_not_none(
         experiment.stop, results.time[-1] if results else None, getattr(default, "stopTime", None), start
     )
     if not stop > start:
         raise ValueError(f"its stop time is {stop:g} s; expected a time after {start:g} s")
-    step = _first_stated(experiment.step, getattr(default, "stepSize", None), (stop - start) / DEFAULT_STEPS)
+    step = _first_not_none(
+        experiment.step, getattr(default, "stepSize", None), (stop - start) / DEFAULT_STEPS
+    )
     if not step > 0.0 or (stop - start) / step > MAX_STEPS:
         raise ValueError(f"its step is {step:g} s; expected at least {(stop - start) / MAX_STEPS:g} s")
     count = int(np.ceil((stop - start) / step * (1.0 - 1e-12)))
@@ -156,6 +158,6 @@ def task_fields(fmu: Path, folder: str, interface: str, **other_fields: object) 
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **other_fields}
 
 
-def _first_stated(*values: Any) -> float:
+def _first_not_none(*values: Any) -> float:
     """First value that is not None."""
     return float(next(value for value in values if value is not None))

@@ -2,14 +2,21 @@
 
 from collections.abc import Iterator, Mapping
 
-from jointfmu_fmu_src.proof.standard import PURPOSES
+from jointfmu_fmu_src.proof.standard import EXPERIMENT_PURPOSES
 
 from ...common.shown import align_columns
 from .outcome import Outcome, Proof, WorstPoint
 
-_POINT_HEADS = ("time [s]", "value", "reference", "off by", "allowed")
-_EXPERIMENT_HEADS = ("experiment", "interface", "verdict", "points", "worst output", *_POINT_HEADS)
-_OUTPUT_HEADS = ("output", "worst in", "interface", *_POINT_HEADS)
+_POINT_COLUMN_HEADINGS = ("time [s]", "value", "reference", "off by", "allowed")
+_EXPERIMENT_TABLE_HEADINGS = (
+    "experiment",
+    "interface",
+    "verdict",
+    "points",
+    "worst output",
+    *_POINT_COLUMN_HEADINGS,
+)
+_OUTPUT_TABLE_HEADINGS = ("output", "worst in", "interface", *_POINT_COLUMN_HEADINGS)
 
 
 def format_lines(proof: Proof) -> Iterator[str]:
@@ -17,25 +24,27 @@ def format_lines(proof: Proof) -> Iterator[str]:
 
     Both tables state the worst point of each row.
     """
-    experiments: list[tuple[str, ...]] = [_EXPERIMENT_HEADS]
+    experiments: list[tuple[str, ...]] = [_EXPERIMENT_TABLE_HEADINGS]
     worst: dict[str, tuple[Outcome, WorstPoint]] = {}
     for outcome in proof.outcomes:
-        point = outcome.worst
+        point = outcome.worst_point
         verdict = _format_verdict(outcome), str(outcome.compared_points or ""), point.output if point else ""
-        cells = _format_cells(point) if point else ("",) * len(_POINT_HEADS)
+        cells = _format_cells(point) if point else ("",) * len(_POINT_COLUMN_HEADINGS)
         experiments.append((outcome.experiment.name, outcome.interface, *verdict, *cells))
-        for output_point in outcome.points:
+        for output_point in outcome.worst_points:
             name = output_point.output
             if name not in worst or output_point.error_ratio > worst[name][1].error_ratio:
                 worst[name] = outcome, output_point
     yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {format_counts(proof)}"
     if proof.outcomes:
         yield ""
-        yield from align_columns(experiments, len(_EXPERIMENT_HEADS) - len(_POINT_HEADS))
+        yield from align_columns(experiments, len(_EXPERIMENT_TABLE_HEADINGS) - len(_POINT_COLUMN_HEADINGS))
     if worst:
         yield ""
         rows = [(n, o.experiment.name, o.interface, *_format_cells(p)) for n, (o, p) in worst.items()]
-        yield from align_columns([_OUTPUT_HEADS, *rows], len(_OUTPUT_HEADS) - len(_POINT_HEADS))
+        yield from align_columns(
+            [_OUTPUT_TABLE_HEADINGS, *rows], len(_OUTPUT_TABLE_HEADINGS) - len(_POINT_COLUMN_HEADINGS)
+        )
     yield ""
     yield from (f"missed: {text}" for text in proof.failures)
     yield format_summary(proof)
@@ -45,9 +54,9 @@ def format_counts(proof: Proof) -> str:
     """Number of experiments of each purpose, and number of compared start values, as text."""
     experiments = {id(o.experiment): o.experiment for o in proof.outcomes}.values()
     purposes = [experiment.purpose for experiment in experiments]
-    ordered = (*PURPOSES, *sorted({*purposes} - {*PURPOSES}))
+    ordered = (*EXPERIMENT_PURPOSES, *sorted({*purposes} - {*EXPERIMENT_PURPOSES}))
     counts = [f"{purposes.count(p)} {p}" for p in ordered if p in purposes]
-    return f"{', '.join(counts) or 'no experiment executed'}; {proof.compared_starts} start values"
+    return f"{', '.join(counts) or 'no experiment executed'}; {proof.compared_start_count} start values"
 
 
 def format_summary(proof: Proof) -> str:
@@ -70,7 +79,7 @@ def build_document(proof: Proof) -> dict[str, object]:
         "importer": proof.importer,
         "interfaces": list(proof.interfaces),
         "passed": proof.has_passed,
-        "start_values": {"compared": proof.compared_starts, "differing": list(proof.start_differences)},
+        "start_values": {"compared": proof.compared_start_count, "differing": list(proof.start_differences)},
         "experiments": [_experiment_document(outcome) for outcome in proof.outcomes],
         "misses": proof.failures,
     }
@@ -85,7 +94,7 @@ def _experiment_document(outcome: Outcome) -> dict[str, object]:
         "verdict": _format_verdict(outcome),
         "error": outcome.error or outcome.exclusion_reason or None,
         "points": outcome.compared_points,
-        "outputs": [_point_document(point) for point in outcome.points],
+        "outputs": [_point_document(point) for point in outcome.worst_points],
     }
 
 
@@ -109,7 +118,7 @@ def _format_verdict(outcome: Outcome) -> str:
         return f"not executed: {outcome.exclusion_reason}"
     if not outcome.has_passed:
         return "missed"
-    return "passed" if outcome.points else "runs, no reference"
+    return "passed" if outcome.worst_points else "runs, no reference"
 
 
 def _format_cells(point: WorstPoint) -> tuple[str, ...]:

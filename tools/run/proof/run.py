@@ -36,7 +36,7 @@ class ExpectedContents:
 
     source: str
     start_values: Mapping[str, object]
-    members: Mapping[str, bytes]
+    member_contents: Mapping[str, bytes]
 
 
 def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None = None) -> Proof:
@@ -45,7 +45,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
     Raises ValueError, one line: no FMU, an FMU that does not run on this platform, no manifest, a broken
     manifest, an importer that is not installed or does not support the FMI version of the FMU.
     """
-    experiments = RelatedFiles(fmu, expected.members if expected else None).read_experiments()
+    experiments = RelatedFiles(fmu, expected.member_contents if expected else None).read_experiments()
     _check_importer(importer)
     with unpack_fmu(fmu, model_exchange=True) as (folder, description):
         if description.fmiVersion[0] not in FMI_VERSIONS[importer]:
@@ -81,7 +81,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
             for v in started
             if starts[v.name] != read_start_value(v)
         ]
-        differences += _list_differences(starts, expected) if expected else []
+        differences += _list_start_value_differences(starts, expected) if expected else []
         if importer != "fmpy":
             answers = _run_worker(importer, tasks)
         tracked_plans = track_progress(plans, fmu.stem, len(plans))
@@ -107,7 +107,9 @@ def _check_importer(importer: str) -> None:
             )
 
 
-def _list_differences(start_values: Mapping[str, object], expected: ExpectedContents) -> list[str]:
+def _list_start_value_differences(
+    start_values: Mapping[str, object], expected: ExpectedContents
+) -> list[str]:
     """A line for each start value of the FMU that differs from the expected one.
 
     start_values : {variable: start value} of the FMU

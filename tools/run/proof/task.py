@@ -35,7 +35,7 @@ class Task:
     inputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     inputs_before: Mapping[str, Sequence[float]] = field(default_factory=dict)
     outputs: Sequence[str] = ()
-    kinds: Mapping[str, str] = field(default_factory=dict)
+    variable_kinds: Mapping[str, str] = field(default_factory=dict)
     tolerance: float = 1e-5
     comparison_times: Sequence[float] = ()
 

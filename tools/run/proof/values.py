@@ -59,17 +59,20 @@ def convert_value(variable: "ScalarVariable", value: float) -> float | int | boo
 
 
 def input_values(
-    variable: "ScalarVariable", stimuli: TimeSeries, times: Array, left_limit: bool
+    variable: "ScalarVariable", stimuli: TimeSeries, times: Array, is_left_limit: bool
 ) -> list[Any]:
     """Values of an input at times (n) [s]: real inputs are interpolated linearly, others are held.
 
     is_left_limit : at a jump, take the value before it instead of the value after it; real inputs only
     """
     if variable_kind(variable) != "real":
-        return [convert_value(variable, value) for value in stimuli.hold(variable.name, times).tolist()]
+        return [
+            convert_value(variable, value)
+            for value in stimuli.interpolate_constant(variable.name, times).tolist()
+        ]
     values = (
         stimuli.interpolate_left(variable.name, times)
-        if left_limit
+        if is_left_limit
         else stimuli.interpolate(variable.name, times)
     )
     return list(values.tolist())

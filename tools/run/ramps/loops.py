@@ -22,12 +22,12 @@ WAVEFORMS = ("triangle", "sine")
 DEFAULT_POINTS, DEFAULT_CYCLES = 200, 2
 MIN_POINTS, MAX_POINTS = 8, 1_000_000
 MAX_CYCLES = 1000
-RELATIVE_ROUNDING = 1e-12
+RELATIVE_WORK_ROUNDING = 1e-12
 """Work over the area of the loop's bounding box [1] below which the work is round-off."""
 ENERGY_UNIT = units.base_exponents("J")
 FORCE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
 """Units of a force and of a torque; the other of two conjugate variables is the motion."""
-COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
+LOOP_COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
 """{unit of the motion: names of the columns of motion and force}, as `jointfmu fit loop` reads them."""
 
 
@@ -81,23 +81,23 @@ class HysteresisLoop:
     result: ramp.RampResult
 
     @property
-    def _cycle(self) -> tuple[Array, Array]:
+    def _last_cycle(self) -> tuple[Array, Array]:
         return self.motion[self.cycle_start :], self.force[self.cycle_start :]
 
     @property
     def amplitudes(self) -> tuple[float, float]:
         """Amplitudes of motion and force: half of their ranges in the last cycle."""
-        motion, force = self._cycle
+        motion, force = self._last_cycle
         return 0.5 * float(np.ptp(motion)), 0.5 * float(np.ptp(force))
 
     @property
     def energy_loss(self) -> float:
         """Energy loss [J] of the last cycle, by the trapezoidal rule; 0 if it is round-off."""
-        motion, force = self._cycle
+        motion, force = self._last_cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
-        return work if abs(work) > RELATIVE_ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
+        return work if abs(work) > RELATIVE_WORK_ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
 
-    def compute_row(self) -> dict[str, float]:
+    def compute_results(self) -> dict[str, float]:
         """Results of the loop: {name: value}.
 
         The secant stiffness K is that between the ends of the loop. The loss factor is loss/(pi K a^2) with
@@ -136,26 +136,26 @@ class HysteresisLoops:
     @property
     def column_names(self) -> tuple[str, str]:
         """Names of the columns of motion and force in files, as `jointfmu fit loop` reads them."""
-        return COLUMN_NAMES[self.units[0]]
+        return LOOP_COLUMN_NAMES[self.units[0]]
 
     @property
     def messages(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(text for loop in self.loops for text in loop.result.messages))
 
     @property
-    def row_units(self) -> dict[str, str]:
+    def result_units(self) -> dict[str, str]:
         """Units of the results of a loop: {name: unit}, without dimensionless results."""
         stiffness = "N/m" if self.units[0] == "m" else "N.m/rad"
         return {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
 
-    def compute_rows(self) -> list[dict[str, float]]:
-        return [loop.compute_row() for loop in self.loops]
+    def compute_loop_results(self) -> list[dict[str, float]]:
+        return [loop.compute_results() for loop in self.loops]
 
     def format_table(self) -> str:
         """Format the results of the loops as CSV text with six digits, one row for each loop."""
-        rows = self.compute_rows()
+        rows = self.compute_loop_results()
         own = dict(zip(("motion", "force"), self.column_names, strict=True))
-        given = {"E_loss": "J", "loss_factor": "1"} | self.row_units
+        given = {"E_loss": "J", "loss_factor": "1"} | self.result_units
         return columns.format_table(
             [(own.get(name, name), given[name]) for name in rows[0]],
             [np.array([row[name] for row in rows]) for name in rows[0]],
@@ -245,7 +245,11 @@ def input_and_output_units(description: "ModelDescription") -> tuple[dict[str, s
 
 
 def find_conjugate_output(
-    inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, fmu_label: str
+    input_units: Mapping[str, str],
+    output_units: Mapping[str, str],
+    input_name: str,
+    output: str | None,
+    fmu_label: str,
 ) -> str:
     """Find the output that is energy-conjugate to an input: the product of their units is an energy.
 
@@ -257,10 +261,10 @@ def find_conjugate_output(
 
     Raises ValueError if no output is conjugate, or if the stated output is not.
     """
-    if input_name not in inputs:
-        raise ValueError(f"{fmu_label}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
-    own = inputs[input_name]
-    fitting = [name for name, unit in outputs.items() if unit != "J" and _is_energy(own, unit)]
+    if input_name not in input_units:
+        raise ValueError(f"{fmu_label}: unknown input {input_name!r}, allowed are {', '.join(input_units)}")
+    own = input_units[input_name]
+    fitting = [name for name, unit in output_units.items() if unit != "J" and _is_energy(own, unit)]
     if output is not None:
         if output not in fitting:
             raise ValueError(

@@ -33,7 +33,7 @@ def calibrate(start_file: ParameterFile) -> ParameterFile:
         )
     known = {p.id: p for paper in own.papers for p in read_points(paper) if p.role == "calibration"}
     for fit in own.calibration:
-        start_file = _fit_unknowns(start_file, fit, [known[name] for name in fit.points])
+        start_file = _fit_unknowns(start_file, fit, [known[name] for name in fit.point_ids])
     return start_file
 
 
@@ -43,12 +43,12 @@ def _fit_unknowns(
     names = list(fit.unknowns)
     source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
-    def parameters_at(log_unknowns: Any) -> ParameterFile:
+    def make_parameter_file(log_unknowns: Any) -> ParameterFile:
         values = dict(zip(names, np.exp(log_unknowns).tolist(), strict=True))
         return start_file.with_values(values, "calibration", source)
 
     residuals = _residual_function(
-        parameters_at, load_published_numbers(KINDS[start_file.joint]).observables, calibration_points
+        make_parameter_file, load_published_numbers(KINDS[start_file.joint]).observables, calibration_points
     )
     first = np.log(list(fit.unknowns.values()))
     solution = least_squares(residuals, first, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=400)
@@ -57,16 +57,16 @@ def _fit_unknowns(
         raise RuntimeError(
             f"calibration of {', '.join(names)} does not meet a calibration point: deviation {worst:.2g}"
         )
-    return parameters_at(solution.x)
+    return make_parameter_file(solution.x)
 
 
 def _residual_function(
-    parameters_at: Callable[[object], ParameterFile],
+    make_parameter_file: Callable[[object], ParameterFile],
     observables: Mapping[str, Callable[..., float | bool]],
     calibration_points: Sequence[Point],
 ) -> Callable[[object], list[float]]:
     def residuals(log_unknowns: object) -> list[float]:
-        values = parameters_at(log_unknowns).values
+        values = make_parameter_file(log_unknowns).values
         return [observables[p.quantity](values, **p.where) / p.value - 1.0 for p in calibration_points]
 
     return residuals

@@ -20,7 +20,7 @@ class CalibrationFit:
     """
 
     unknowns: Mapping[str, float]
-    points: Sequence[str]
+    point_ids: Sequence[str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +37,9 @@ class PublishedNumbers:
     calibration: Sequence[CalibrationFit] = ()
 
 
-def load_published_numbers(kind: JointKind) -> PublishedNumbers:
+def load_published_numbers(joint_kind: JointKind) -> PublishedNumbers:
     """Published numbers that a joint defines; without papers if it defines none."""
-    own: PublishedNumbers = getattr(load_tool_module(kind, "published"), "PUBLISHED", PublishedNumbers())
+    own: PublishedNumbers = getattr(
+        load_tool_module(joint_kind, "published"), "PUBLISHED", PublishedNumbers()
+    )
     return own

@@ -13,7 +13,7 @@ from ...common.shown import align_columns
 from .computed import load_published_numbers
 from .reference import ROLES, UNTESTED_ROLES, Point, compute_trivial_guesses, read_points
 
-_TABLE_HEAD = (
+_TABLE_HEADINGS = (
     *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
     *("guess", "its error", "nearer", "number", "role", "verdict"),
 )
@@ -94,13 +94,13 @@ def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[
     return rows
 
 
-def missed_points(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
+def missed_points(validated_points: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
     """Points outside their tolerance, without calibration points and points met by construction."""
-    return [row for row in rows if row.point.role not in UNTESTED_ROLES and not row.has_passed]
+    return [row for row in validated_points if row.point.role not in UNTESTED_ROLES and not row.has_passed]
 
 
 @dataclass(frozen=True, slots=True)
-class Counts:
+class PublishedPointCounts:
     """Numbers of compared points by role and verdict, as the README, the report and the pages state them.
 
     numbers        : number of published numbers, without claims
@@ -125,51 +125,64 @@ class Counts:
     missed: list[str]
 
 
-def count_points(rows: Sequence[ValidatedPoint]) -> Counts:
+def count_points(validated_points: Sequence[ValidatedPoint]) -> PublishedPointCounts:
     """Count the compared points by role and verdict."""
-    numbers = [row.point for row in rows if row.point.role != "claim"]
+    numbers = [row.point for row in validated_points if row.point.role != "claim"]
     printed = sum(point.printed for point in numbers)
-    guessed = [row for row in rows if row.nearer_estimate]
+    guessed = [row for row in validated_points if row.nearer_estimate]
 
     def count_by_role(points: Sequence[ValidatedPoint]) -> dict[str, int]:
         found = Counter(row.point.role for row in points)
         return {role: found[role] for role in ROLES}
 
-    return Counts(
+    return PublishedPointCounts(
         numbers=len(numbers),
         printed=printed,
         derived=len(numbers) - printed,
-        roles=count_by_role(rows),
-        met=count_by_role([row for row in rows if row.has_passed]),
+        roles=count_by_role(validated_points),
+        met=count_by_role([row for row in validated_points if row.has_passed]),
         guessed=count_by_role(guessed),
         nearer=count_by_role([row for row in guessed if row.nearer_estimate == "law"]),
-        contradictions=[row.point.id for row in rows if row.point.text is not None],
-        missed=[row.point.id for row in missed_points(rows)],
+        contradictions=[row.point.id for row in validated_points if row.point.text is not None],
+        missed=[row.point.id for row in missed_points(validated_points)],
     )
 
 
-def format_table(rows: Sequence[ValidatedPoint]) -> str:
+def format_table(validated_points: Sequence[ValidatedPoint]) -> str:
     """Format the comparison as a table in text."""
-    return "\n".join(align_columns([_TABLE_HEAD, *map(_format_cells, rows)]))
+    return "\n".join(align_columns([_TABLE_HEADINGS, *map(_format_cells, validated_points)]))
 
 
-def _format_cells(row: ValidatedPoint) -> tuple[str, ...]:
-    p = row.point
+def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
+    p = validated_point.point
     if isinstance(p.value, bool):
-        shown = (format_claim(row), str(row.computed_value).lower(), "-", "-")
+        shown = (format_claim(validated_point), str(validated_point.computed_value).lower(), "-", "-")
         source = "text"
     else:
         shown = (
             f"{p.value:.6g}",
-            f"{row.computed_value:.6g}",
-            format_error(p, row.error),
+            f"{validated_point.computed_value:.6g}",
+            format_error(p, validated_point.error),
             format_tolerance(p),
         )
         source = "printed" if p.printed else "derived"
     guess = ("-", "-", "-")
-    if row.guess is not None and row.guess_error is not None:
-        guess = (f"{row.guess:.6g}", format_error(p, row.guess_error), row.nearer_estimate)
-    return (p.paper, p.id, p.unit, *shown, *guess, source, p.role, "pass" if row.has_passed else "MISS")
+    if validated_point.guess is not None and validated_point.guess_error is not None:
+        guess = (
+            f"{validated_point.guess:.6g}",
+            format_error(p, validated_point.guess_error),
+            validated_point.nearer_estimate,
+        )
+    return (
+        p.paper,
+        p.id,
+        p.unit,
+        *shown,
+        *guess,
+        source,
+        p.role,
+        "pass" if validated_point.has_passed else "MISS",
+    )
 
 
 def format_error(point: Point, error: float) -> str:
@@ -192,15 +205,15 @@ def _error_scale(point: Point) -> tuple[float, str]:
     return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")
 
 
-def format_claim(row: ValidatedPoint) -> str:
+def format_claim(validated_point: ValidatedPoint) -> str:
     """Format whether a claim holds; if the paper's equations contradict its text, also what it states."""
-    p = row.point
+    p = validated_point.point
     return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
 
 
-def format_summary(rows: Sequence[ValidatedPoint]) -> str:
+def format_summary(validated_points: Sequence[ValidatedPoint]) -> str:
     """Summary in one line: counts by role, how often the law is nearer than the guess, missed points."""
-    found = count_points(rows)
+    found = count_points(validated_points)
     roles = ", ".join(
         f"{n} {role}" + ("" if found.met[role] == n else f" ({found.met[role]} met)")
         for role, n in found.roles.items()

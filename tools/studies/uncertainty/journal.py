@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files.reading import check_regular, read_bytes
+from jointfmu.files.reading import check_regular_file, read_bytes
 from jointfmu.files.text import check_text, replace_unprintable
 from jointfmu.files.writing import ensure_folder, write_text
 
@@ -104,7 +104,7 @@ class Journal:
         self.first_failure: dict[str, object] | None = None
 
     def __enter__(self) -> "Journal":
-        check_regular(self.path, "the journal of a study")
+        check_regular_file(self.path, "the journal of a study")
         self.file = self.path.open("ab")
         try:
             _lock_file(self.file.fileno())
@@ -160,7 +160,7 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
     Raises ValueError, one line, for a row that is not a run, a repeated run, or columns of another length.
     """
     end, rows, shape = 0, dict[int, int](), dict[str, int]()
-    check_regular(path, "the journal of a study")
+    check_regular_file(path, "the journal of a study")
     with path.open("rb") as file:
         for row, line in enumerate(file, 1):
             if not line.endswith(b"\n"):

@@ -22,7 +22,9 @@ def assemble_system(system: System) -> SystemModel:
         feeds[wire.target][wire.input] = InputSource(wire.source, wire.output)
     for first, second in find_connections(system):
         if first.is_joint and first.component and second.component is None:  # fixed to the ground
-            zero_inputs = {variable: None for m, variable in first.members.items() if m != first.flow_member}
+            zero_inputs = {
+                variable: None for m, variable in first.variables_by_member.items() if m != first.flow_member
+            }
             feeds[first.component.name] |= zero_inputs
     components = []
     for name, component in system.components.items():

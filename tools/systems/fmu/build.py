@@ -7,11 +7,11 @@ from jointfmu_fmu_src.archive import staging_folder, write_archive
 from jointfmu_fmu_src.joint_parts.data import EMPTY_TABLES, ParameterSplit
 from jointfmu_fmu_src.licence import licence_files
 from jointfmu_fmu_src.native.build import fmu_members
-from jointfmu_fmu_src.native.compiled.compiler import TARGETS, compile_libraries, select_units
+from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries, select_source_files
 from jointfmu_fmu_src.native.data import make_fmu_data
 from jointfmu_fmu_src.native.page import render_variables_page
 
-from jointfmu.files.outputs import ARCHIVE, check_outputs
+from jointfmu.files.outputs import ARCHIVE_FILE, check_outputs
 
 from ...run.host import is_needed_to_run
 from .code import generate_sources
@@ -29,7 +29,7 @@ def make_sources(system_model: SystemModel) -> tuple[dict[str, str], str]:
     model, files = system_model.make_model(), generate_sources(system_model)
     parameters = system_model.make_parameters(model)
     parameter_split = ParameterSplit((), {}, {}, model.parameters, EMPTY_TABLES)
-    data = make_fmu_data(model, parameters, parameter_split, files, has_file=False)
+    data = make_fmu_data(model, parameters, parameter_split, files, has_parameter_file=False)
     files |= {
         "data.h": data.make_header(),
         "data.c": data.make_source(f" from the system {system_model.name!r}"),
@@ -41,7 +41,7 @@ def build_system(
     system_model: SystemModel,
     out: Path,
     versions: Sequence[str] = ("2", "3"),
-    platforms: Sequence[str] = tuple(TARGETS),
+    platforms: Sequence[str] = tuple(ZIG_TARGETS),
     force: bool = False,
 ) -> list[Path]:
     """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` with reference results.
@@ -57,7 +57,7 @@ def build_system(
     """
     model = system_model.make_model()
     files_out = fmu_paths(model.title, out, versions)
-    check_outputs(files_out, ARCHIVE, force)
+    check_outputs(files_out, ARCHIVE_FILE, force)
     parameters = system_model.make_parameters(model)
     files, token = make_sources(system_model)
     page = render_variables_page(model, parameters, Path(__file__).with_name("page.html")).encode()
@@ -65,7 +65,9 @@ def build_system(
     pages = {f"documentation/{path}": content for path, content in documents.items()}
     written_files, proof_files = [], None
     for version, target in zip(versions, files_out, strict=True):
-        binaries = compile_libraries(model.name, files, select_units(sorted(files), version), platforms)
+        binaries = compile_libraries(
+            model.name, files, select_source_files(sorted(files), version), platforms
+        )
         members = fmu_members(model, parameters, version, files, token, binaries) | pages
         with staging_folder(target) as work:
             if proof_files is None:  # the first FMU computes the reference results of both

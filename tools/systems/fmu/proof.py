@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.files import TEXT_PATH, RelatedFile, proof_members
+from jointfmu_fmu_src.proof.files import EXPERIMENT_TEXT_PATH, RelatedFile, proof_members
 from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialize_xml
@@ -101,7 +101,9 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
                 )
             results = _first_rows(results, count * substeps + 1)
     except Exception as error:  # fmpy raises bare Exception
-        return {TEXT_PATH: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
+        return {
+            EXPERIMENT_TEXT_PATH: f"There is no proof inside this FMU: where it was built {error}\n".encode()
+        }
     scales = _find_scales(model, results)
     smooth = _is_smooth(results, scales)
     short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONG_STEP_RATIO))
@@ -116,7 +118,7 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
         RelatedFile(
             "../../documentation/index.html", "text/html", "requirement", "what the FMU takes and gives"
         ),
-        RelatedFile(f"../../{TEXT_PATH}", "text/plain", "document", "experiments and tolerance"),
+        RelatedFile(f"../../{EXPERIMENT_TEXT_PATH}", "text/plain", "document", "experiments and tolerance"),
         *(
             RelatedFile(path, standard.CSV_TYPE, "result", "by model exchange at a tight tolerance")
             for path in members
@@ -155,17 +157,17 @@ def _find_scales(model: Model, results: TimeSeries) -> dict[str, float]:
     }
 
 
-def _first_difference(model: Model, fine: TimeSeries, coarse: TimeSeries) -> int:
+def _first_difference(model: Model, fine_results: TimeSeries, coarse_results: TimeSeries) -> int:
     """Index of the first row at which two results differ by more than OUTPUT_TOLERANCE.
 
     It is the number of rows if there is no difference. Rows near jumps are not compared.
     """
-    scales, rows = _find_scales(model, fine), fine.time.size
+    scales, rows = _find_scales(model, fine_results), fine_results.time.size
     differs = [
-        np.abs(column - coarse.columns[name][:rows]) > OUTPUT_TOLERANCE * scales[name]
-        for name, column in fine.columns.items()
+        np.abs(column - coarse_results.columns[name][:rows]) > OUTPUT_TOLERANCE * scales[name]
+        for name, column in fine_results.columns.items()
     ]
-    rows_differing = np.flatnonzero(np.any(differs, axis=0) & _is_smooth(fine, scales))
+    rows_differing = np.flatnonzero(np.any(differs, axis=0) & _is_smooth(fine_results, scales))
     return int(rows_differing[0]) if rows_differing.size else rows
 
 
@@ -188,7 +190,7 @@ def _simulate(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> T
             MODEL_EXCHANGE,
             times=times.tolist(),
             outputs=names,
-            kinds=dict.fromkeys(names, "real"),
+            variable_kinds=dict.fromkeys(names, "real"),
             tolerance=tolerance,
         )
         try:

@@ -70,14 +70,14 @@ class Hu2023(CheckedParameters):
         """Regimes of a spot and size distribution (Eq. 17) of the chosen reading; reference area s_min."""
         return corrected_distribution(self) if self.reading == "corrected" else printed_distribution(self)
 
-    def state(self, largest_log_area: Number) -> dict[str, Number]:
+    def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities at the log-area u [1] of the largest spot.
 
         F [N] Eq. 27, or P A_0 as printed; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22.
         """
         s = self.spots()
         names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
-        return {symbol: s.total(name, largest_log_area) for symbol, name in names.items()}
+        return {symbol: s.sum_over_spots(name, largest_log_area) for symbol, name in names.items()}
 
 
 def curvature_radius(law: Hu2023) -> Number:
@@ -144,8 +144,8 @@ def printed_distribution(law: Hu2023) -> SpotDistribution:
             exponent=0.5,
             slip_coefficient=slip,
             slip_exponent=0.5,
-            lower=-np.inf,
-            upper=np.inf,
+            lower_log_area=-np.inf,
+            upper_log_area=np.inf,
         )
     terms: dict[str, tuple[RegimeTerm, ...]] = {
         "load": (PowerTerm(law.A_0 * P * (0.5 - m) / (m * weight), 0.5),),
@@ -181,7 +181,7 @@ def corrected_distribution(law: Hu2023) -> SpotDistribution:
     bounds = [None, *ends]
     stages = [eliminate_deformation(FIRST_STAGE), eliminate_deformation(SECOND_STAGE)]
 
-    def regime(
+    def make_regime_term(
         coefficient: Number, exponent: float, regime_index: int, first_bound: Number = None
     ) -> PowerTerm:
         """Power law coefficient (s/s_ec)^exponent of a regime, as a function of s/s_min.
@@ -193,16 +193,20 @@ def corrected_distribution(law: Hu2023) -> SpotDistribution:
         return PowerTerm(coefficient * np.exp(-exponent * edge), exponent, lower, upper)
 
     load = [
-        regime(f_ec, 1.5, 0),
-        *(regime(f_ec * st.load_factor, st.load_exponent, i + 1) for i, st in enumerate(stages)),
+        make_regime_term(f_ec, 1.5, 0),
+        *(make_regime_term(f_ec * st.load_factor, st.load_exponent, i + 1) for i, st in enumerate(stages)),
     ]
-    normal = [regime(1.5 * k_ec, 0.5, 0, 0.0)]
+    normal = [make_regime_term(1.5 * k_ec, 0.5, 0, 0.0)]
     normal += [
-        regime(k_ec * st.stiffness_factor, st.stiffness_exponent, i + 1) for i, st in enumerate(stages)
+        make_regime_term(k_ec * st.stiffness_factor, st.stiffness_exponent, i + 1)
+        for i, st in enumerate(stages)
     ]
-    normal = [replace(t, lower=np.maximum(t.lower, 0.0), upper=np.maximum(t.upper, 0.0)) for t in normal]
+    normal = [
+        replace(t, lower=np.maximum(t.lower_log_area, 0.0), upper=np.maximum(t.upper_log_area, 0.0))
+        for t in normal
+    ]
     terms: dict[str, tuple[RegimeTerm, ...]] = {
-        "load": (*load, regime(H * s_ec, 1.0, 3)),
+        "load": (*load, make_regime_term(H * s_ec, 1.0, 3)),
         "normal": tuple(normal),
         "tangential": _tangential_terms(law, load, bounds),
         "area": (PowerTerm(s_min, 1.0),),
@@ -239,8 +243,8 @@ def _tangential_terms(
             exponent=0.5,
             slip_coefficient=law.shear_traction * law.surface.s_min / (law.mu * term.coefficient),
             slip_exponent=term.exponent - 1.0,
-            lower=0.0 if term.lower is None else np.maximum(term.lower, 0.0),
-            upper=np.maximum(term.upper, 0.0),
+            lower_log_area=0.0 if term.lower_log_area is None else np.maximum(term.lower_log_area, 0.0),
+            upper_log_area=np.maximum(term.upper_log_area, 0.0),
         )
         for term in load_terms
     )

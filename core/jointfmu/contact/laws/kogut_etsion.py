@@ -25,7 +25,7 @@ PLASTIC_DEFORMATION_RATIO = 110.0
 
 
 @dataclass(frozen=True, slots=True)
-class AreaPowers:
+class AreaPowerLaws:
     """Load and stiffness of a spot in one elastic-plastic stage, as powers of its area a.
 
     load = f_c load_factor (a/a_c)^load_exponent,
@@ -38,10 +38,10 @@ class AreaPowers:
     stiffness_exponent: float
 
 
-def eliminate_deformation(stage: PlasticStage) -> AreaPowers:
+def eliminate_deformation(stage: PlasticStage) -> AreaPowerLaws:
     """Express load and stiffness of a stage by the area instead of w: exponents d/n and (d - 1)/n."""
     p, q = stage.load_exponent / stage.area_exponent, (stage.load_exponent - 1.0) / stage.area_exponent
-    return AreaPowers(
+    return AreaPowerLaws(
         stage.load_factor * stage.area_factor**-p,
         p,
         stage.load_factor * stage.load_exponent * stage.area_factor**-q,

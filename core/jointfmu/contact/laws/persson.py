@@ -28,15 +28,15 @@ def contact_area_shares(
     """
     x = np.minimum(pressure / hardness, 1.0)
     t = (pressure_standard_deviation / hardness) ** 2
-    image_series = _image_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE))
-    mode_series = _mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE))
+    image_series = _image_source_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE))
+    mode_series = _diffusion_mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE))
     elastic, load = (
         select(t < _MAX_IMAGE_VARIANCE, a, b) for a, b in zip(image_series, mode_series, strict=True)
     )
     return elastic, np.maximum(x - load, 0.0)
 
 
-def _mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
+def _diffusion_mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
     """Area share in elastic contact, and its load over the hardness [1]: series of diffusion modes.
 
     pressure_ratio : pressure over hardness [1]
@@ -56,7 +56,7 @@ def _mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number
     return share, load
 
 
-def _image_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
+def _image_source_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
     """Area share in elastic contact, and its load over the hardness [1]: series of image sources.
 
     Arguments as in `_diffusion_mode_series`; it converges faster for small variance.

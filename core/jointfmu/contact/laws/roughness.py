@@ -89,11 +89,14 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
             size_exponent=_SIZE_EXPONENT,
             size_prefactor=1.0 / _SIZE_EXPONENT,
             regime_terms={
-                "load": (_sum_term(p * A, 1.0),),
-                "normal": (_sum_term(many_spots, 1.0), _sum_term(few_spots, power)),
-                "tangential": (_sum_term(rho * many_spots, 1.0), _sum_term(rho * few_spots, power)),
-                "elastic_work": (_sum_term(self.gamma * self.h * p * A, 1.0),),
-                "plastic_work": (_sum_term(0.0, 1.0),),
+                "load": (_power_term_of_sum(p * A, 1.0),),
+                "normal": (_power_term_of_sum(many_spots, 1.0), _power_term_of_sum(few_spots, power)),
+                "tangential": (
+                    _power_term_of_sum(rho * many_spots, 1.0),
+                    _power_term_of_sum(rho * few_spots, power),
+                ),
+                "elastic_work": (_power_term_of_sum(self.gamma * self.h * p * A, 1.0),),
+                "plastic_work": (_power_term_of_sum(0.0, 1.0),),
             },
             onset_log_area=0.0,
             has_spot_area=False,
@@ -136,7 +139,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         """Loss factor eta_t [1] of tangential motion at the traction ratio."""
         return loss_factor(self.traction_ratio)
 
-    def state(self, largest_log_area: Number) -> dict[str, Number]:
+    def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities of the nominal area A_0 at the log-pressure u [1]; p = p_1 exp(u).
 
         F [N] load, approach [m]; K_N, K_T [N/m] stiffness for small motions, also on unloading of a plastic
@@ -146,14 +149,14 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         s_0 = mu gamma h/rho [m] of the contact of many spots.
         """
         s, p = self.spots(), onset_pressure(self) * np.exp(largest_log_area)
-        F, K_N = s.total("load", largest_log_area), s.total("normal", largest_log_area)
+        F, K_N = s.sum_over_spots("load", largest_log_area), s.sum_over_spots("normal", largest_log_area)
         A_r, elastic = self.real_area(p)
         flowing = np.minimum((1.0 - elastic) * A_r * self.H / F, 1.0)
         loading = 1.0 / (1.0 / K_N + flowing * self.h / (F * bearing_curve_log_slope(p / self.H)))
         return {
             "F": F,
             "K_N": K_N,
-            "K_T": s.total("tangential", largest_log_area),
+            "K_T": s.sum_over_spots("tangential", largest_log_area),
             "A_r": A_r,
             "eta_n": 0.0 * F,
             "eta_t": self.loss_factor() + 0.0 * F,
@@ -170,7 +173,7 @@ def onset_pressure(law: RoughnessLaw) -> Number:
     return ONSET_LOAD_RATIO * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
 
 
-def _sum_term(coefficient: Number, exponent: Number) -> PowerTerm:
+def _power_term_of_sum(coefficient: Number, exponent: Number) -> PowerTerm:
     """Power law of a spot whose sum over all spots is coefficient exp(exponent u)."""
     return PowerTerm(coefficient * (exponent - _SIZE_EXPONENT), exponent)
 

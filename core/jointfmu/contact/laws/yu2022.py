@@ -13,10 +13,10 @@ import numpy as np
 from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field, select
 from ..powerlaw import PowerTerm, SmoothTerm, SpotDistribution
 from ..surface import (
+    CommonFlankParameters,
     ElasticConstants,
     FlankSurface,
-    Spectrum,
-    complete_elliptic,
+    complete_elliptic_integrals,
     contact_modulus,
     hardness_coefficient,
 )
@@ -37,7 +37,7 @@ class Yu2022(CheckedParameters):
 
     surface1: FlankSurface = group_field("fractal parameters along the major axis")
     surface2: FlankSurface = group_field("fractal parameters along the minor axis")
-    surface: Spectrum = group_field("frequency ratio of both directions")
+    surface: CommonFlankParameters = group_field("frequency ratio of both directions")
     e: float = quantity_field("1", "eccentricity of the contact ellipses", ge=0.0, lt=1.0)
     lambda_: float = quantity_field("1", "contact coefficient of the curved flanks", gt=0.0, le=1.0)
     side1: ElasticConstants = group_field("first body")
@@ -64,15 +64,15 @@ class Yu2022(CheckedParameters):
 
     def spots(self) -> SpotDistribution:
         """Regimes of a spot and size distribution (Eqs. 44, 46); reference area a_nec, the onset of yield."""
-        return self._spots
+        return self._cached_distribution
 
     @cached_property
-    def _spots(self) -> SpotDistribution:
+    def _cached_distribution(self) -> SpotDistribution:
         """Size distribution (lambda times Eq. 44) and the four regimes of a spot, cached.
 
         Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
         """
-        stages, areas = _plastic_stages(self)
+        stages, areas = _elastic_plastic_stages(self)
         log_nec = critical_log_area(self, 1.0)
         plastic, middle = (critical_log_area(self, area) - log_nec for area in areas)
         a = np.exp(log_nec)
@@ -87,8 +87,10 @@ class Yu2022(CheckedParameters):
             """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1]; log-area relative to a_nec."""
             return (c1 * np.exp(-p1 * log_area) + c2 * np.exp(-p2 * log_area)) / (c1 + c2)
 
-        def stage_load(stage: PlasticStage, lower: Number, upper: Number) -> SmoothTerm:
-            def load(log_area: Number) -> Number:
+        def make_stage_load(
+            stage: PlasticStage, lower_log_area: Number, upper_log_area: Number
+        ) -> SmoothTerm:
+            def spot_load(log_area: Number) -> Number:
                 sharp = curvature_ratio(log_area)
                 ratio = np.exp(log_area) * sharp**2  # a/a_nec of this spot's own curvature
                 return (
@@ -99,16 +101,18 @@ class Yu2022(CheckedParameters):
                     / sharp**2
                 )
 
-            return SmoothTerm(load, lower, upper)
+            return SmoothTerm(spot_load, lower_log_area, upper_log_area)
 
-        def stage_stiffness(stage: PlasticStage, lower: Number, upper: Number) -> SmoothTerm:
-            def stiffness(log_area: Number) -> Number:
+        def make_stage_stiffness(
+            stage: PlasticStage, lower_log_area: Number, upper_log_area: Number
+        ) -> SmoothTerm:
+            def spot_stiffness(log_area: Number) -> Number:
                 sharp = curvature_ratio(log_area)
                 ratio = np.exp(log_area) * sharp**2
                 power = (ratio / stage.area_factor) ** ((stage.load_exponent - 1.0) / stage.area_exponent)
                 return hertz / 1.5 * stage.load_factor * stage.load_exponent * power / sharp
 
-            return SmoothTerm(stiffness, lower, upper)
+            return SmoothTerm(spot_stiffness, lower_log_area, upper_log_area)
 
         first, second = stages
         H = self.hardness
@@ -118,15 +122,15 @@ class Yu2022(CheckedParameters):
             size_prefactor=self.lambda_,
             regime_terms={
                 "load": (
-                    PowerTerm(H * a, 1.0, upper=plastic),
-                    stage_load(second, plastic, middle),
-                    stage_load(first, middle, 0.0),
+                    PowerTerm(H * a, 1.0, upper_log_area=plastic),
+                    make_stage_load(second, plastic, middle),
+                    make_stage_load(first, middle, 0.0),
                     PowerTerm(elastic * c1, 1.5 - p1, 0.0),
                     PowerTerm(elastic * c2, 1.5 - p2, 0.0),
                 ),
                 "normal": (
-                    stage_stiffness(second, plastic, middle),
-                    stage_stiffness(first, middle, 0.0),
+                    make_stage_stiffness(second, plastic, middle),
+                    make_stage_stiffness(first, middle, 0.0),
                     PowerTerm(hertz, 0.5, 0.0),
                 ),
                 "area": (PowerTerm(a, 1.0),),
@@ -134,7 +138,7 @@ class Yu2022(CheckedParameters):
             },
         )
 
-    def state(self, largest_log_area: Number) -> dict[str, Number]:
+    def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities at the log-area u [1] of the largest spot.
 
         F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1].
@@ -142,17 +146,17 @@ class Yu2022(CheckedParameters):
         s = self.spots()
         area, elastic = real_area(s, largest_log_area)
         return {
-            "F": s.total("load", largest_log_area),
-            "K_N": s.total("normal", largest_log_area),
+            "F": s.sum_over_spots("load", largest_log_area),
+            "K_N": s.sum_over_spots("normal", largest_log_area),
             "A_r": area,
             "elastic_fraction": elastic,
         }
 
 
-def real_area(spots: SpotDistribution, largest_log_area: Number) -> tuple[Number, Number]:
+def real_area(spot_distribution: SpotDistribution, largest_log_area: Number) -> tuple[Number, Number]:
     """Real area [m2], Eq. 54, and its elastic fraction [1]."""
-    area = spots.total("area", largest_log_area)
-    return area, spots.total("elastic_area", largest_log_area) / area
+    area = spot_distribution.sum_over_spots("area", largest_log_area)
+    return area, spot_distribution.sum_over_spots("elastic_area", largest_log_area) / area
 
 
 def effective_modulus(law: Yu2022) -> Number:
@@ -163,7 +167,7 @@ def effective_modulus(law: Yu2022) -> Number:
 
 def ellipse_factors(eccentricity: Number) -> tuple[Number, Number]:
     """Factors f1, f2 [1] of an elliptical elastic contact, Eqs. 22-23; both are 1 for a circle (e = 0)."""
-    K, E = complete_elliptic(eccentricity)
+    K, E = complete_elliptic_integrals(eccentricity)
     slender = np.sqrt((1.0 - eccentricity) * (1.0 + eccentricity))
     f1 = E / (K * slender)
     return f1, 0.5 * np.pi * np.sqrt(E) / (K**1.5 * slender)
@@ -183,16 +187,16 @@ def curvature_terms(law: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, N
     root = np.sqrt(np.log(law.surface.gamma))
     log_axes = 0.25 * np.log1p(-(law.e**2))
 
-    def term(surface: FlankSurface, exponent_sign: float) -> tuple[Number, Number]:
+    def make_curvature_term(surface: FlankSurface, exponent_sign: float) -> tuple[Number, Number]:
         b = 2.0 ** (4.0 - surface.D) * np.pi ** (0.5 * surface.D) * surface.G ** (surface.D - 1.0) * root
         return b * np.exp(exponent_sign * surface.D * log_axes), 0.5 * surface.D
 
-    return term(law.surface1, 1.0), term(law.surface2, -1.0)
+    return make_curvature_term(law.surface1, 1.0), make_curvature_term(law.surface2, -1.0)
 
 
 def yield_onset_parameter(law: Yu2022) -> Number:
     """Value of a (1/R_x + 1/R_y)^2 [1] at the onset of yield: 4 pi f1 K(e) E(e) (K H/E')^2, Eq. 28."""
-    K, E = complete_elliptic(law.e)
+    K, E = complete_elliptic_integrals(law.e)
     f1, _ = ellipse_factors(law.e)
     strain = hardness_coefficient(law.side1.nu) * law.hardness / effective_modulus(law)
     return 4.0 * np.pi * f1 * K * E * strain**2
@@ -217,7 +221,7 @@ def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
     return t
 
 
-def _plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tuple[float, float]]:
+def _elastic_plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tuple[float, float]]:
     """Two elastic-plastic stages, and the limits of plastic and second stage as areas over a_nec(R_m) [1].
 
     They depend on the choice `plastic_area`, the relation between area a and deformation w of a spot:

@@ -62,13 +62,13 @@ class Zhao2018(CheckedParameters):
         work = 8.0 / 15.0 * modulus * np.sqrt(radius) * delta**2.5
         terms = {
             "load": (
-                PowerTerm(self.H * a, 1.0, upper=0.0),
+                PowerTerm(self.H * a, 1.0, upper_log_area=0.0),
                 PowerTerm(elastic_load(self, a), 1.5 - 0.5 * D, 0.0),
             ),
             "normal": (PowerTerm(normal_stiffness(self, a), 0.5, 0.0),),
             "tangential": (PowerTerm(tangential_stiffness(self, a), 0.5, 0.0),),
-            "area": (PowerTerm(a, 1.0, upper=0.0), PowerTerm(0.5 * a, 1.0, 0.0)),
-            "plastic_work": (PowerTerm(self.H * a * delta, 2.0 - 0.5 * D, upper=0.0),),
+            "area": (PowerTerm(a, 1.0, upper_log_area=0.0), PowerTerm(0.5 * a, 1.0, 0.0)),
+            "plastic_work": (PowerTerm(self.H * a * delta, 2.0 - 0.5 * D, upper_log_area=0.0),),
             "elastic_work": (PowerTerm(work, 2.5 - D, 0.0),),
             "loop_area": (PowerTerm(a**1.5, 1.5, 0.0),),
         }
@@ -85,7 +85,7 @@ class Zhao2018(CheckedParameters):
         """Loss factor eta_t [1] of tangential motion at the traction ratio, Eqs. 27-29."""
         return mindlin.loss_factor(self.traction_ratio)
 
-    def state(self, largest_log_area: Number) -> dict[str, Number]:
+    def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities of the nominal area A_0 for a largest spot of log-area u [1], relative to a'_c.
 
         F [N] Eqs. 9-10; K_N [N/m] Eq. 14; K_T [N/m] Eq. 22; A_r [m2] Eq. 11; W_NP, W_NE [J] Eqs. 16, 18;
@@ -95,14 +95,14 @@ class Zhao2018(CheckedParameters):
         """
         s = self.spots()
         F, A_r, K_N, K_T = (
-            s.total(name, largest_log_area) for name in ("load", "area", "normal", "tangential")
+            s.sum_over_spots(name, largest_log_area) for name in ("load", "area", "normal", "tangential")
         )
-        plastic = s.total("plastic_work", largest_log_area)
-        elastic = s.total("elastic_work", largest_log_area)
+        plastic = s.sum_over_spots("plastic_work", largest_log_area)
+        elastic = s.sum_over_spots("elastic_work", largest_log_area)
         with np.errstate(divide="ignore", invalid="ignore"):
             eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
             C_N = np.where(K_N > 0.0, mindlin.equivalent_damping(eta_n, self.mass, K_N), 0.0)
-        W_d, W = shear_energies(self, F, A_r, s.total("loop_area", largest_log_area))
+        W_d, W = shear_energies(self, F, A_r, s.sum_over_spots("loop_area", largest_log_area))
         eta_t = self.loss_factor()
         return {
             "F": F,

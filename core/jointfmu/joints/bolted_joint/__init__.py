@@ -1,7 +1,7 @@
 """Bolted joint: an interface under the uneven pressure of its bolts."""
 
 from ..kind import JointKind, RoughSurface
-from .law import BoltedJoint, RoughBoltedJoint, contradictions
+from .law import BoltedJoint, RoughBoltedJoint, find_contradictions
 from .variables import MODELS
 
 KIND = JointKind(
@@ -12,5 +12,5 @@ KIND = JointKind(
     models=MODELS,
     surfaces=(RoughSurface("surface"),),
     working_point=("preload", "moment"),
-    find_contradictions=contradictions,
+    find_contradictions=find_contradictions,
 )

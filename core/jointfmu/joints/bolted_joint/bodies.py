@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...quantity import Array
-from .law import MODAL_SERIES, ElasticBodies
+from .law import MODAL_ENTRIES, ElasticBodies
 
 MODE_DECIMALS = 4
 """Decimals to which the displacements of a mode are rounded [1]; the displacements are at most 1."""
@@ -19,7 +19,7 @@ POSITION_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class Modes:
+class MemberModes:
     """Deformation modes of the members: stiffness of k modes, and displacements per modal coordinate.
 
     The displacements are those of n contact points, m friction patches and b bolts.
@@ -36,12 +36,16 @@ class Modes:
     bolt_elongation: Array
 
     @classmethod
-    def for_rigid_bodies(cls, points: int, patches: int, bolts: int) -> "Modes":
+    def for_rigid_bodies(cls, point_count: int, patch_count: int, bolt_count: int) -> "MemberModes":
         """No modes: rigid members, for numbers of points, patches and bolts."""
-        return cls(np.zeros(0), np.zeros((points, 0)), np.zeros((3, patches, 0)), np.zeros((bolts, 0)))
+        return cls(
+            np.zeros(0), np.zeros((point_count, 0)), np.zeros((3, patch_count, 0)), np.zeros((bolt_count, 0))
+        )
 
     @classmethod
-    def of(cls, bodies: ElasticBodies, points: int, patches: Array) -> "Modes":
+    def for_bodies(
+        cls, elastic_bodies: ElasticBodies, point_count: int, patch_positions: Array
+    ) -> "MemberModes":
         """Modes of the section [bodies] of a parameter file.
 
         point_count     : number n of contact points
@@ -49,16 +53,16 @@ class Modes:
 
         Raises ValueError if they were computed for another contact.
         """
-        count = len(bodies.stiffness)
-        position = np.stack([bodies.x, bodies.y], axis=1)
-        if len(bodies.opening) != points * count or position.shape != patches.shape:
-            stated = f"{len(bodies.opening) // count} points and {len(position)} patches"
-            raise ValueError(f"[bodies] has {stated}, the contact {points} and {len(patches)}")
-        if (distance := float(np.max(np.abs(position - patches)))) > POSITION_TOLERANCE:
+        count = len(elastic_bodies.stiffness)
+        position = np.stack([elastic_bodies.x, elastic_bodies.y], axis=1)
+        if len(elastic_bodies.opening) != point_count * count or position.shape != patch_positions.shape:
+            stated = f"{len(elastic_bodies.opening) // count} points and {len(position)} patches"
+            raise ValueError(f"[bodies] has {stated}, the contact {point_count} and {len(patch_positions)}")
+        if (distance := float(np.max(np.abs(position - patch_positions)))) > POSITION_TOLERANCE:
             raise ValueError(
                 f"[bodies] lies {distance:.3g} m away from the contact: it was computed for another contact; "
                 f"expected at most {POSITION_TOLERANCE:g} m"
             )
-        rows = {name: np.array(getattr(bodies, name)).reshape(-1, count) for name in MODAL_SERIES}
+        rows = {name: np.array(getattr(elastic_bodies, name)).reshape(-1, count) for name in MODAL_ENTRIES}
         patch_displacement = np.stack([rows[f"patch_{direction}"] for direction in ("x", "y", "around")])
-        return cls(np.array(bodies.stiffness), rows["opening"], patch_displacement, rows["stretch"])
+        return cls(np.array(elastic_bodies.stiffness), rows["opening"], patch_displacement, rows["stretch"])

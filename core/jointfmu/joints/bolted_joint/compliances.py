@@ -7,9 +7,9 @@ import numpy as np
 from ...quantity import Array
 from .equilibrium import JointAssembly, condense_stiffness
 
-DIRECTIONS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
+STIFFNESS_UNITS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
 """{force along or moment about an axis: unit of its stiffness}."""
-COMPONENTS = ("interface", "members", "bolts")
+COMPLIANCE_COMPONENTS = ("interface", "members", "bolts")
 MIN_INTERFACE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
 RELATIVE_ROUND_OFF = 1e-9
@@ -26,65 +26,70 @@ class Compliances(NamedTuple):
     bolt_force            : (b, 6) [1, 1/m] force of each bolt at a unit force or moment, other motions free
     """
 
-    components: Array
+    component_compliances: Array
     interface_compliance: Array
     bolt_stiffness: Array
     bolt_force: Array
 
     @classmethod
-    def of(cls, assembly: JointAssembly, H: Array, bolt_tangent: Array) -> "Compliances":
+    def for_assembly(
+        cls, assembly: JointAssembly, tangent_stiffness: Array, bolt_tangent: Array
+    ) -> "Compliances":
         """Compliances of a tightened joint.
 
         tangent_stiffness : H (6 + k, 6 + k) of the assembly, see `JointAssembly.tangent_stiffness`
         bolt_tangent      : (b) [N/m] of the bolts, part of H
         """
-        K, follow = condense_stiffness(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
+        K, follow = (
+            condense_stiffness(tangent_stiffness),
+            -np.linalg.solve(tangent_stiffness[6:, 6:], tangent_stiffness[6:, :6]),
+        )
         rigid, bolt = assembly.elongation_jacobian[:, :6], bolt_tangent[:, None]
         elongation = rigid + assembly.modes.bolt_elongation @ follow
         members = assembly.modes.stiffness @ follow**2
         bolts, rigid_bolts = (np.sum(bolt * each**2, axis=0) for each in (elongation, rigid))
         held = np.diag(K)
         parts = np.stack([held - members - bolts, members, bolts]) / held**2
-        interface = 1.0 / (np.diag(H)[:6] - rigid_bolts)
+        interface = 1.0 / (np.diag(tangent_stiffness)[:6] - rigid_bolts)
         return cls(parts, interface, rigid_bolts, bolt * elongation @ np.linalg.inv(K))
 
     @property
-    def total(self) -> Array:
+    def total_compliance(self) -> Array:
         """Compliance (6) [m/N, rad/(N.m)] of the joint."""
-        return np.asarray(self.components.sum(axis=0))
+        return np.asarray(self.component_compliances.sum(axis=0))
 
     @property
-    def shares(self) -> Array:
+    def compliance_shares(self) -> Array:
         """Shares (3, 6) [1] of interface, members and bolts in the compliance of the joint."""
-        return self.components / self.total
+        return self.component_compliances / self.total_compliance
 
     @property
     def member_stiffness(self) -> Array:
         """Stiffness (6) [N/m, N.m/rad] of the members as springs in series with interface and bolts."""
-        return np.asarray(1.0 / self.components[1])
+        return np.asarray(1.0 / self.component_compliances[1])
 
-    def rows(self) -> list[tuple[str, str, list[float], list[float]]]:
+    def table_rows(self) -> list[tuple[str, str, list[float], list[float]]]:
         """Row of a table for each direction: name, unit, stiffness of joint, interface, members and bolts (0:
         none), and the shares [1] of the last three in the compliance."""
-        joint = 1.0 / self.total
+        joint = 1.0 / self.total_compliance
         bolts = np.where(self.bolt_stiffness > RELATIVE_ROUND_OFF * joint, self.bolt_stiffness, 0.0)
         each = np.stack([joint, 1.0 / self.interface_compliance, self.member_stiffness, bolts])
         return [
-            (_stiffness_name(name), unit, each[:, i].tolist(), self.shares[:, i].tolist())
-            for i, (name, unit) in enumerate(DIRECTIONS.items())
+            (_stiffness_name(name), unit, each[:, i].tolist(), self.compliance_shares[:, i].tolist())
+            for i, (name, unit) in enumerate(STIFFNESS_UNITS.items())
         ]
 
     @property
-    def interface_matters(self) -> bool:
+    def is_interface_relevant(self) -> bool:
         """Whether the share of the interface reaches MIN_INTERFACE_SHARE in any direction."""
-        return bool(np.max(self.shares[0]) >= MIN_INTERFACE_SHARE)
+        return bool(np.max(self.compliance_shares[0]) >= MIN_INTERFACE_SHARE)
 
     @property
     def load_factor(self) -> float:
         """Share of all bolts in a force along z [1]: n Phi_K of VDI 2230."""
         return float(self.bolt_force[:, 2].sum())
 
-    def opening_load(self, tension: float) -> float:
+    def opening_load(self, tightening_force: float) -> float:
         """Force [N] along z at which the contact around the most loaded bolt opens, by linear theory.
 
         tightening_force : [N] of a bolt. The contact around a bolt has the same share of the force on the
@@ -92,7 +97,7 @@ class Compliances(NamedTuple):
         """
         force = self.bolt_force[:, 2]
         share = force.max() / force.sum() if np.any(force) else 1.0 / len(force)
-        return tension / float(share * (1.0 - self.load_factor))
+        return tightening_force / float(share * (1.0 - self.load_factor))
 
 
 def _stiffness_name(direction: str) -> str:

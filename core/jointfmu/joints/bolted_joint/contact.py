@@ -14,12 +14,12 @@ from ...mechanics.curve import Curve
 from ...mechanics.footprint.distribution import FrictionPatches, PressureDistribution
 from ...quantity import Array, Number, select
 from .kinematics import rigid_opening
-from .law import Bolted, preload_pressure
+from .law import AnyBoltedJoint, preload_pressure
 
 MIN_PRESSURE_RATIO = 0.01
 """Pressure over the mean pressure [1] added to all points and patches when the normal force is distributed,
 so that open points and patches take part."""
-BALANCE_ITERATIONS = 100
+SINKHORN_ITERATIONS = 100
 """Number of Sinkhorn iterations [1]: with all patches, and again with the selected patches of each point."""
 MIN_TRANSFER_SHARE, MAX_PATCHES_PER_POINT = 0.02, 8
 """Smallest share of the force of a point for a patch [1], and largest number of patches of a point [1]."""
@@ -67,7 +67,7 @@ class Contact:
     curve: Curve
     points: PressureDistribution
     patches: FrictionPatches
-    elastic: bool
+    has_elastic_members: bool
 
     @cached_property
     def pressure_transfer(self) -> Array:
@@ -83,26 +83,32 @@ class Contact:
         nearest = np.max(np.where(self.pressure_transfer > 0.0, approach, -np.inf), axis=1)
         return np.where(p > 0.0, self.curve.inverse(p), np.minimum(nearest, self.curve.displacement[0]))
 
-    def preloaded_approach(self, joint: Bolted, preload: float, moment: float) -> Array:
+    def preloaded_approach(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m]."""
         return self.curve.inverse(preload_pressure(joint, self.points, preload, moment))
 
-    def preload_state(self, joint: Bolted, preload: float, moment: float) -> PreloadState:
+    def preload_state(self, joint: AnyBoltedJoint, preload: float, moment: float) -> PreloadState:
         """State of the tightened joint under a preload [N] of each bolt and a moment [N.m]."""
         approach = self.preloaded_approach(joint, preload, moment)
-        if self.elastic:
+        if self.has_elastic_members:
             patch_approach = self.patch_approach(approach)
         else:
             patch_approach = self.curve.inverse(preload_pressure(joint, self.patches, preload, moment))
         return PreloadState(approach, self.curve.derivatives(approach, 0)[0], patch_approach)
 
-    def evaluate_normal(self, preload: PreloadState, q: Array, elastic_opening: Array) -> NormalState:
+    def evaluate_normal(
+        self, preload_state: PreloadState, relative_displacement: Array, elastic_opening: Array
+    ) -> NormalState:
         """State at relative displacement q (6), with an opening (n) [m] of the points by elastic members."""
-        approach = preload.approach - (rigid_opening(self.points.position, q) + elastic_opening)
-        if self.elastic:
+        approach = preload_state.approach - (
+            rigid_opening(self.points.position, relative_displacement) + elastic_opening
+        )
+        if self.has_elastic_members:
             patch_approach = self.patch_approach(approach)
         else:
-            patch_approach = preload.patch_approach - rigid_opening(self.patches.position, q)
+            patch_approach = preload_state.patch_approach - rigid_opening(
+                self.patches.position, relative_displacement
+            )
         pressure, stiffness = self.curve.derivatives(approach, 1)
         return NormalState(approach, pressure, stiffness, patch_approach)
 
@@ -117,13 +123,13 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
     square = np.sum((patches.position[:, None] - points.position) ** 2, axis=2)
     nearest = np.min(square, axis=0)
     point_force, patch_force = (
-        nodes.area_share * (nodes.preload_shape + MIN_PRESSURE_RATIO) for nodes in (points, patches)
+        nodes.area_share * (nodes.preload_pressure_ratio + MIN_PRESSURE_RATIO) for nodes in (points, patches)
     )
     width = np.maximum(point_force @ nearest / np.sum(point_force), np.finfo(float).tiny)
     kernel = np.exp(-np.minimum((square - nearest) / width, MAX_SQUARE_DISTANCE_RATIO))
     scale = np.ones_like(patch_force)
     for _ in range(2):
-        for _ in range(BALANCE_ITERATIONS):
+        for _ in range(SINKHORN_ITERATIONS):
             share = scale[:, None] * kernel
             share = share / np.sum(share, axis=0)
             scale = scale * patch_force / (share @ point_force)
@@ -139,7 +145,11 @@ def pressure_transfer(points: PressureDistribution, patches: FrictionPatches) ->
 
 
 def elastic_shear(
-    limit: Number, rho: Number, derivatives: Sequence[Number], u_x: Number, u_y: Number
+    friction_limit: Number,
+    stiffness_ratio: Number,
+    pressure_derivatives: Sequence[Number],
+    u_x: Number,
+    u_y: Number,
 ) -> tuple[Number, ...]:
     """Shear traction of a contact point without friction history, from the potential per area
 
@@ -154,10 +164,10 @@ def elastic_shear(
     [Pa/m], and two terms by shear: in the normal traction [Pa], rho k' u^2/(R (1 + R)) <= l^2 k'/(rho k^2),
     and in the normal stiffness [Pa/m].
     """
-    _, k, d2p, d3p = derivatives
-    carries, touches = limit > 0.0, k > 0.0
-    t, square = rho * k, u_x * u_x + u_y * u_y
-    per = select(carries, t / select(carries, limit, 1.0), 0.0 * t) ** 2
+    _, k, d2p, d3p = pressure_derivatives
+    carries, touches = friction_limit > 0.0, k > 0.0
+    t, square = stiffness_ratio * k, u_x * u_x + u_y * u_y
+    per = select(carries, t / select(carries, friction_limit, 1.0), 0.0 * t) ** 2
     R = np.sqrt(1.0 + per * square)
     secant, turn = select(carries, t / R, 0.0 * t), per / (R * R)
     g = select(carries, square / (R * (1.0 + R)), 0.0 * square)
@@ -168,6 +178,6 @@ def elastic_shear(
         secant * (1.0 - turn * u_x * u_x),
         -secant * turn * u_x * u_y,
         secant * (1.0 - turn * u_y * u_y),
-        rho * d2p * g,
-        rho * (d3p * g + d2p * slope),
+        stiffness_ratio * d2p * g,
+        stiffness_ratio * (d3p * g + d2p * slope),
     )

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...quantity import Array
-from .bodies import Modes
+from .bodies import MemberModes
 from .bolts import BoltSprings
 from .contact import Contact, NormalState, PreloadState
 from .friction import FrictionUpdate
@@ -66,12 +66,12 @@ class TrialState:
     """
 
     modal_coordinates: Array
-    normal: NormalState
+    normal_state: NormalState
     tangential_increment: Array
-    friction: FrictionUpdate
+    friction_update: FrictionUpdate
     elongation: Array
     residual: Array
-    tolerance: float
+    residual_tolerance: float
 
     @property
     def residual_norm(self) -> float:
@@ -87,19 +87,19 @@ class JointAssembly:
     """
 
     contact: Contact
-    modes: Modes
+    modes: MemberModes
     bolts: BoltSprings
-    area: float
+    nominal_area: float
 
     @cached_property
     def point_area(self) -> Array:
         """Nominal areas (n) [m2] of the points."""
-        return self.area * self.contact.points.area_share
+        return self.nominal_area * self.contact.points.area_share
 
     @cached_property
     def patch_area(self) -> Array:
         """Nominal areas (m) [m2] of the patches."""
-        return self.area * self.contact.patches.area_share
+        return self.nominal_area * self.contact.patches.area_share
 
     @cached_property
     def opening_jacobian(self) -> Array:
@@ -117,27 +117,36 @@ class JointAssembly:
         """Jacobian G (b, 6 + k) [1, m] of the elongation of the bolts."""
         return np.hstack([opening_jacobian(self.bolts.position), self.modes.bolt_elongation])
 
-    def evaluate_normal(self, preload: PreloadState, q: Array, a: Array) -> NormalState:
+    def evaluate_normal(
+        self, preload_state: PreloadState, relative_displacement: Array, modal_coordinates: Array
+    ) -> NormalState:
         """Contact at relative displacement q (6) and modal coordinates a (k) [m]."""
-        return self.contact.evaluate_normal(preload, q, self.modes.opening @ a)
+        return self.contact.evaluate_normal(
+            preload_state, relative_displacement, self.modes.opening @ modal_coordinates
+        )
 
-    def tangential_displacement(self, q: Array, a: Array) -> Array:
+    def tangential_displacement(self, relative_displacement: Array, modal_coordinates: Array) -> Array:
         """Displacement (m, 3) [m] of the patches along x, along y and around their centres."""
-        elastic = (self.modes.patch_displacement @ a).T
-        return np.asarray(tangential_displacement(self.contact.patches, q) + elastic)
+        elastic = (self.modes.patch_displacement @ modal_coordinates).T
+        return np.asarray(tangential_displacement(self.contact.patches, relative_displacement) + elastic)
 
-    def elongation(self, q: Array, a: Array) -> Array:
+    def elongation(self, relative_displacement: Array, modal_coordinates: Array) -> Array:
         """Elongation (b) [m] of the bolts."""
-        return np.asarray(rigid_opening(self.bolts.position, q) + self.modes.bolt_elongation @ a)
+        return np.asarray(
+            rigid_opening(self.bolts.position, relative_displacement)
+            + self.modes.bolt_elongation @ modal_coordinates
+        )
 
-    def residual(self, a: Array, pressure_change: Array, traction: Array, bolt_force_change: Array) -> Array:
+    def residual(
+        self, modal_coordinates: Array, pressure_change: Array, traction: Array, bolt_force_change: Array
+    ) -> Array:
         """Residual r (k) [N] of modal coordinates a (k) [m].
 
         traction                           : t (m, 3) [Pa] against the displacement of the patches
         pressure_change, bolt_force_change : (n) [Pa], (b) [N] since tightening
         """
         modes = self.modes
-        r = modes.stiffness * a + modes.bolt_elongation.T @ bolt_force_change
+        r = modes.stiffness * modal_coordinates + modes.bolt_elongation.T @ bolt_force_change
         r = r - modes.opening.T @ (self.point_area * pressure_change)
         for axis in range(3):
             r = r + modes.patch_displacement[axis].T @ (self.patch_area * traction[:, axis])
@@ -176,68 +185,82 @@ class LoadStep:
     """
 
     assembly: JointAssembly
-    preload: PreloadState
-    bolt_force: Array
-    start: Array
-    end: Array
+    preload_state: PreloadState
+    preload_bolt_force: Array
+    start_displacement: Array
+    end_displacement: Array
     modal_coordinates: Array
     friction_tangent: Array
     update_friction: Callable[[Array, Array], FrictionUpdate]
     input_summary: str
 
-    def displacement(self, load_factor: float) -> Array:
+    def displacement_at(self, load_factor: float) -> Array:
         """Relative displacement q (6) [m, rad] at a load factor [1]."""
-        return self.end if load_factor == 1.0 else self.start + load_factor * (self.end - self.start)
+        return (
+            self.end_displacement
+            if load_factor == 1.0
+            else self.start_displacement + load_factor * (self.end_displacement - self.start_displacement)
+        )
 
-    def evaluate_trial(self, q: Array, a: Array) -> TrialState:
+    def evaluate_trial(self, relative_displacement: Array, modal_coordinates: Array) -> TrialState:
         """Contact, friction and residual at relative displacement q (6) and modal coordinates a (k) [m]."""
         assembly, bolts = self.assembly, self.assembly.bolts
-        normal = assembly.evaluate_normal(self.preload, q, a)
-        increment = assembly.tangential_displacement(q - self.start, a - self.modal_coordinates)
+        normal = assembly.evaluate_normal(self.preload_state, relative_displacement, modal_coordinates)
+        increment = assembly.tangential_displacement(
+            relative_displacement - self.start_displacement, modal_coordinates - self.modal_coordinates
+        )
         friction = self.update_friction(normal.patch_approach, increment)
-        elongation = assembly.elongation(q, a)
-        traction, preload_pressure = friction.traction, self.preload.pressure
-        bolt_force_change = bolts.stiffness * (elongation + bolts.gap(self.bolt_force, elongation))
-        residual = assembly.residual(a, normal.pressure - preload_pressure, traction, bolt_force_change)
+        elongation = assembly.elongation(relative_displacement, modal_coordinates)
+        traction, preload_pressure = friction.traction, self.preload_state.pressure
+        bolt_force_change = bolts.stiffness * (
+            elongation + bolts.head_gap(self.preload_bolt_force, elongation)
+        )
+        residual = assembly.residual(
+            modal_coordinates, normal.pressure - preload_pressure, traction, bolt_force_change
+        )
 
         force_sum = assembly.point_area @ (normal.pressure + preload_pressure)
         force_sum += np.sum(np.abs(bolt_force_change)) + np.sum(assembly.patch_area @ np.abs(traction))
-        rigid = np.max(np.abs(rigid_opening(assembly.contact.points.position, q)))
+        rigid = np.max(np.abs(rigid_opening(assembly.contact.points.position, relative_displacement)))
         force_sum += (assembly.point_area @ normal.stiffness) * rigid * CANCELLATION_RATIO
-        force_sum += assembly.area * assembly.contact.curve.closing_end_load
+        force_sum += assembly.nominal_area * assembly.contact.curve.closing_end_load
         tolerance = float(RELATIVE_TOLERANCE * force_sum)
-        return TrialState(a, normal, increment, friction, elongation, residual, tolerance)
+        return TrialState(modal_coordinates, normal, increment, friction, elongation, residual, tolerance)
 
-    def modal_tangent(self, state: TrialState) -> Array:
+    def modal_tangent(self, trial_state: TrialState) -> Array:
         """Tangent J = dr/da (k, k) [N/m] of the modal coordinates."""
         assembly, modes = self.assembly, self.assembly.modes
-        bolt_tangent = assembly.bolts.tangent(self.bolt_force, state.elongation)
+        bolt_tangent = assembly.bolts.tangent_stiffness(self.preload_bolt_force, trial_state.elongation)
         J = np.diag(modes.stiffness) + (bolt_tangent * modes.bolt_elongation.T) @ modes.bolt_elongation
-        J += modes.opening.T @ ((assembly.point_area * state.normal.stiffness)[:, None] * modes.opening)
-        motions = np.concatenate([modes.patch_displacement, self.modal_opening(state.normal)[None]])
-        derivatives = self.traction_derivatives(state)
+        J += modes.opening.T @ (
+            (assembly.point_area * trial_state.normal_state.stiffness)[:, None] * modes.opening
+        )
+        motions = np.concatenate(
+            [modes.patch_displacement, self.modal_opening(trial_state.normal_state)[None]]
+        )
+        derivatives = self.traction_derivatives(trial_state)
         for axis in range(3):
             J += modes.patch_displacement[axis].T @ np.einsum(
                 "m,mc,cmk->mk", assembly.patch_area, derivatives[:, axis], motions
             )
         return np.asarray(J)
 
-    def modal_opening(self, normal: NormalState) -> Array:
+    def modal_opening(self, normal_state: NormalState) -> Array:
         """Derivative (m, k) [1] of the opening of the patches with respect to the modal coordinates."""
         contact = self.assembly.contact
-        stiffness = contact.curve.derivatives(normal.patch_approach, 1)[1][:, None]
+        stiffness = contact.curve.derivatives(normal_state.patch_approach, 1)[1][:, None]
         closed = stiffness > 0.0
-        pressure = (contact.pressure_transfer * normal.stiffness) @ self.assembly.modes.opening
+        pressure = (contact.pressure_transfer * normal_state.stiffness) @ self.assembly.modes.opening
         return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
 
-    def traction_derivatives(self, state: TrialState) -> Array:
+    def traction_derivatives(self, trial_state: TrialState) -> Array:
         """Finite differences (m, 3, 4) [Pa/m] of tractions by tangential displacement (3) and opening."""
         first = self.assembly.contact.curve.displacement[0]
-        size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload.patch_approach, 0.0) - first))
-        traction, columns = state.friction.traction, []
+        size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first))
+        traction, columns = trial_state.friction_update.traction, []
         for motion in size * np.eye(4):
-            increment = state.tangential_increment + motion[:3]
-            friction = self.update_friction(state.normal.patch_approach - motion[3], increment)
+            increment = trial_state.tangential_increment + motion[:3]
+            friction = self.update_friction(trial_state.normal_state.patch_approach - motion[3], increment)
             columns.append((friction.traction - traction) / size)
         return np.stack(columns, axis=-1)
 
@@ -246,25 +269,27 @@ class ModalPredictor(NamedTuple):
     """Modal coordinates (k) [m] at the end of a load step by the tangent (k, k) [N/m] at its start."""
 
     modal_coordinates: Array
-    tangent: Array
+    modal_tangent: Array
 
 
-def solve_equilibrium(step: LoadStep) -> TrialState:
+def solve_equilibrium(load_step: LoadStep) -> TrialState:
     """Equilibrium at the end of a load step, which is divided where Newton's method does not converge.
 
     Raises ValueError if there is no equilibrium, with the inputs, the load factor and the residual.
     """
-    a, load_factor, increment = step.modal_coordinates, 0.0, 1.0
-    predictor = predict_by_tangent(step)
+    a, load_factor, increment = load_step.modal_coordinates, 0.0, 1.0
+    predictor = predict_by_tangent(load_step)
     rate = predictor.modal_coordinates - a
     while True:
         target = min(load_factor + increment, 1.0)
-        state, converged = solve_newton(step, target, a + (target - load_factor) * rate, predictor.tangent)
+        state, converged = solve_newton(
+            load_step, target, a + (target - load_factor) * rate, predictor.modal_tangent
+        )
         if not converged:
             increment *= 0.5
             if increment < MIN_LOAD_STEP:
                 raise ValueError(
-                    f"{step.input_summary}: no equilibrium of the joint was found beyond a fraction "
+                    f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction "
                     f"of {load_factor:.3g} of the way, the residual is {state.residual_norm:.2g} N"
                 )
         elif target == 1.0:
@@ -274,61 +299,74 @@ def solve_equilibrium(step: LoadStep) -> TrialState:
             a, load_factor, increment = state.modal_coordinates, target, 2.0 * increment
 
 
-def predict_by_tangent(step: LoadStep) -> ModalPredictor:
+def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
     """Predictor with the tangent stiffness at the start of a load step.
 
     Raises ValueError if this tangent is singular.
     """
-    assembly, a = step.assembly, step.modal_coordinates
-    normal = assembly.evaluate_normal(step.preload, step.start, a)
-    bolt_tangent = assembly.bolts.tangent(step.bolt_force, assembly.elongation(step.start, a))
-    H = assembly.tangent_stiffness(normal.stiffness, step.friction_tangent, bolt_tangent)
+    assembly, a = load_step.assembly, load_step.modal_coordinates
+    normal = assembly.evaluate_normal(load_step.preload_state, load_step.start_displacement, a)
+    bolt_tangent = assembly.bolts.tangent_stiffness(
+        load_step.preload_bolt_force, assembly.elongation(load_step.start_displacement, a)
+    )
+    H = assembly.tangent_stiffness(normal.stiffness, load_step.friction_tangent, bolt_tangent)
     try:
-        change = np.linalg.solve(H[6:, 6:], H[6:, :6] @ (step.end - step.start))
-    except np.linalg.LinAlgError:
-        reason = (
-            f"{step.input_summary}: no equilibrium of the joint was found beyond a fraction of 0 of the way"
+        change = np.linalg.solve(
+            H[6:, 6:], H[6:, :6] @ (load_step.end_displacement - load_step.start_displacement)
         )
+    except np.linalg.LinAlgError:
+        reason = f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction of 0 of the way"
         raise ValueError(f"{reason}, the tangent stiffness is singular there") from None
     return ModalPredictor(np.asarray(a - change), H[6:, 6:])
 
 
-def condense_stiffness(H: Array) -> Array:
+def condense_stiffness(tangent_stiffness: Array) -> Array:
     """Stiffness (6, 6) [N/m, N, N.m] with the members in equilibrium: static condensation of H to q."""
-    return np.asarray(H[:6, :6] - H[:6, 6:] @ np.linalg.solve(H[6:, 6:], H[6:, :6]))
+    return np.asarray(
+        tangent_stiffness[:6, :6]
+        - tangent_stiffness[:6, 6:] @ np.linalg.solve(tangent_stiffness[6:, 6:], tangent_stiffness[6:, :6])
+    )
 
 
-def solve_newton(step: LoadStep, load_factor: float, a: Array, J: Array) -> tuple[TrialState, bool]:
+def solve_newton(
+    load_step: LoadStep, load_factor: float, modal_coordinates: Array, modal_tangent: Array
+) -> tuple[TrialState, bool]:
     """Newton's method at a load factor [1]: last trial state, and whether the method converged.
 
     It starts at modal coordinates a (k) [m] with the tangent J (k, k) [N/m] of an earlier state. J is reused,
     with Broyden's update, after an iteration that reduces the residual to TANGENT_REUSE_RATIO.
     """
-    q = step.displacement(load_factor)
+    q = load_step.displacement_at(load_factor)
     tolerance_factor = 1.0 if load_factor == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
-    state, last_norm, tangent_is_current = step.evaluate_trial(q, a), np.inf, False
+    state, last_norm, tangent_is_current = load_step.evaluate_trial(q, modal_coordinates), np.inf, False
     corrections: list[Array] = []  # since J was computed
     for iteration in range(MAX_NEWTON_ITERATIONS + 1):
         norm = state.residual_norm
-        if norm <= tolerance_factor * state.tolerance:
+        if norm <= tolerance_factor * state.residual_tolerance:
             return state, True
         if iteration == MAX_NEWTON_ITERATIONS:
             break
         if not norm < TANGENT_REUSE_RATIO * last_norm:
-            J, corrections, tangent_is_current = step.modal_tangent(state), [], True
+            modal_tangent, corrections, tangent_is_current = load_step.modal_tangent(state), [], True
         try:
-            correction = apply_broyden(np.asarray(-np.linalg.solve(J, state.residual)), corrections)
+            correction = apply_broyden(
+                np.asarray(-np.linalg.solve(modal_tangent, state.residual)), corrections
+            )
         except np.linalg.LinAlgError:  # J is singular
             break
         corrections.append(correction)
-        state, is_full = search_line(step, q, state, correction, tangent_is_current)
+        state, is_full = search_line(load_step, q, state, correction, tangent_is_current)
         last_norm = norm if is_full else 0.0  # 0: the next iteration computes J
         tangent_is_current = False
     return state, False
 
 
 def search_line(
-    step: LoadStep, q: Array, state: TrialState, correction: Array, tangent_is_current: bool
+    load_step: LoadStep,
+    relative_displacement: Array,
+    trial_state: TrialState,
+    correction: Array,
+    tangent_is_current: bool,
 ) -> tuple[TrialState, bool]:
     """State after a correction (k) [m] of the modal coordinates, and whether it is the full correction.
 
@@ -336,25 +374,27 @@ def search_line(
     shortened by regula falsi, or dropped if the tangent is that of an earlier state. If the initial slope is
     positive, too, regula falsi has no zero: the correction is shortened to MIN_LENGTH_RATIO.
     """
-    length, energy_slope_0 = 1.0, float(state.residual @ correction)
+    length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
     for shortenings in range(MAX_LINE_SEARCH):
-        trial = step.evaluate_trial(q, state.modal_coordinates + length * correction)
+        trial = load_step.evaluate_trial(
+            relative_displacement, trial_state.modal_coordinates + length * correction
+        )
         energy_slope_1 = float(trial.residual @ correction)
         if not energy_slope_1 > MAX_ENERGY_SLOPE_RATIO * abs(energy_slope_0):
             return trial, shortenings == 0
         if not tangent_is_current:
-            return state, False
+            return trial_state, False
         has_zero = energy_slope_0 < 0.0 < energy_slope_1
         zero = energy_slope_0 / (energy_slope_0 - energy_slope_1) if has_zero else 0.0
         length *= max(zero, MIN_LENGTH_RATIO)
     return trial, False
 
 
-def apply_broyden(correction: Array, corrections: Sequence[Array]) -> Array:
+def apply_broyden(correction: Array, earlier_corrections: Sequence[Array]) -> Array:
     """Correction (k) [m] after Broyden's good update of J by earlier corrections (Kelley 1995, chapter 7)."""
-    for last, following in pairwise(corrections):
+    for last, following in pairwise(earlier_corrections):
         correction = correction + (last @ correction) / (last @ last) * following
-    if corrections:
-        last = corrections[-1]
+    if earlier_corrections:
+        last = earlier_corrections[-1]
         correction = correction / (1.0 - last @ correction / (last @ last))
     return np.asarray(correction)

@@ -19,19 +19,19 @@ from ...mechanics.sliders import (
     sum_slider_forces,
 )
 from ...quantity import Array
-from .kinematics import TANGENTIAL, tangential_displacement
+from .kinematics import TANGENTIAL_COMPONENTS, tangential_displacement
 from .law import MAX_MODES
 
 History = Mapping[str, Array]
 """{name: history variable}, see `history_layout`."""
 
-UNKNOWN, FULL_STICK, SLIP_1D, SLIP_2D = range(4)
+NO_HISTORY, FULL_STICK, SLIP_1D, SLIP_2D = range(4)
 """State of friction: before the first step; no slider has slipped; slip along x alone; slip in the plane."""
 STICK_TANGENT = np.array([1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
 """Tangent (6) [1] of a patch in full stick over its stiffness: xx, xy, yy, xt, yt, tt."""
 
 
-def history_layout(patches: int) -> HistoryLayout:
+def history_layout(patch_count: int) -> HistoryLayout:
     """History variables of a joint with m patches.
 
     state             : friction state; NO_HISTORY: the path starts at the present approach with q = 0
@@ -45,7 +45,7 @@ def history_layout(patches: int) -> HistoryLayout:
     modal_coordinates : (MAX_MODES) [m]
     tangent           : (m, 6) [Pa/m] of the patches, see `SliderUpdate`
     """
-    one = (patches,)
+    one = (patch_count,)
     return HistoryLayout(
         {
             "state": (),
@@ -62,13 +62,13 @@ def history_layout(patches: int) -> HistoryLayout:
     )
 
 
-def full_stick_force(force: Array) -> Array:
+def full_stick_force(packed_forces: Array) -> Array:
     """Traction (m, 3) [Pa] of patches in full stick, from the history variable `packed_forces` (m, 2, n).
 
     The first slider has the sum of all sliders, and y of the second one the force around the centre. So the
     heights of the sliders may follow the load.
     """
-    return np.column_stack([force[..., 0], force[:, 1, 1]])
+    return np.column_stack([packed_forces[..., 0], packed_forces[:, 1, 1]])
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class FrictionUpdate:
     stick_stiffness : (m) [Pa/m] of all sliders of a patch
     """
 
-    state: int
+    friction_state: int
     onset_approach: Array
     min_approach: Array
     approach: Array
@@ -92,7 +92,7 @@ class FrictionUpdate:
     def traction(self) -> Array:
         """Traction (m, 3) [Pa] against the displacement along x, along y and around the centre."""
         force = self.slider_update.force
-        return full_stick_force(force) if self.state == FULL_STICK else sum_slider_forces(force)
+        return full_stick_force(force) if self.friction_state == FULL_STICK else sum_slider_forces(force)
 
 
 @dataclass(frozen=True)
@@ -109,19 +109,19 @@ class FrictionLaw:
     stiffness_ratio: float
     friction_coefficient: float
     patches: FrictionPatches
-    elastic: bool
+    has_elastic_members: bool
 
     @cached_property
-    def _foundations(self) -> Callable[[bytes, bytes], Foundation]:
+    def _cached_foundation(self) -> Callable[[bytes, bytes], Foundation]:
         """Cached `foundation`: function of onset approach and smallest approach, as bytes."""
-        offsets = height_offsets(self.patches.preload_shape)
+        offsets = height_offsets(self.patches.preload_pressure_ratio)
 
-        def build(*approaches: bytes) -> Foundation:
+        def build_foundation(*approaches: bytes) -> Foundation:
             onset, smallest = (np.frombuffer(each) for each in approaches)
             heights = heights_after_liftoff(slider_heights(self.curve, onset, offsets), smallest)
             return Foundation(self.curve, self.stiffness_ratio, self.friction_coefficient, heights)
 
-        return lru_cache(maxsize=4)(build)
+        return lru_cache(maxsize=4)(build_foundation)
 
     def foundation(
         self, onset_approach: Array | None = None, min_approach: Array | None = None
@@ -133,18 +133,20 @@ class FrictionLaw:
         """
         onset = np.zeros(self.patches.area_share.size) if onset_approach is None else onset_approach
         both = onset, onset if min_approach is None else min_approach
-        return self._foundations(*(np.ascontiguousarray(each).tobytes() for each in both))
+        return self._cached_foundation(*(np.ascontiguousarray(each).tobytes() for each in both))
 
     def stick_tangent(self, approach: Array) -> Array:
         """Tangent (m, 6) [Pa/m] of patches in full stick at approaches (m) [m]."""
         return np.asarray(self.foundation().stick_stiffness(approach)[:, None] * STICK_TANGENT)
 
-    def update_friction(self, history: History, approach: Array, increment: Array) -> FrictionUpdate:
+    def update_friction(
+        self, history: History, approach: Array, tangential_increment: Array
+    ) -> FrictionUpdate:
         """Friction after a straight path to approaches (m) [m] by tangential displacements (m, 3) [m]."""
-        start = approach if history["state"] == UNKNOWN else history["approach"]
+        start = approach if history["state"] == NO_HISTORY else history["approach"]
         stick, force = self.foundation().stick_stiffness(approach), history["force"]
         if history["state"] < SLIP_1D:
-            update = self.full_stick_update(force, start, approach, increment, stick)
+            update = self.full_stick_update(force, start, approach, tangential_increment, stick)
             if update is not None:
                 return FrictionUpdate(FULL_STICK, approach, approach, approach, update, stick)
             onset = smallest = start
@@ -153,14 +155,19 @@ class FrictionLaw:
             was_open = history["min_approach"] < self.curve.displacement[0]
             smallest = np.where(was_open, start, np.minimum(history["min_approach"], start))
         foundation = self.foundation(onset, smallest)
-        state = self._slip_state(history, increment)
+        state = self._slip_state(history, tangential_increment)
         if history["state"] < SLIP_1D:
             force = foundation.distribute_stick_force(full_stick_force(force), start)
-        update = foundation.advance(force, start, approach, increment)
+        update = foundation.advance(force, start, approach, tangential_increment)
         return FrictionUpdate(state, onset, smallest, approach, update, stick)
 
     def full_stick_update(
-        self, force: Array, start: Array, end: Array, increment: Array, stick_stiffness: Array
+        self,
+        packed_forces: Array,
+        start_approach: Array,
+        end_approach: Array,
+        tangential_increment: Array,
+        stick_stiffness: Array,
     ) -> SliderUpdate | None:
         """Update in which all sliders stick; None if a patch exceeds the limit of full stick.
 
@@ -168,22 +175,28 @@ class FrictionLaw:
         start_approach, end_approach : (m) [m] approaches
         tangential_increment         : (m, 3) [m] tangential displacement
         """
-        traction, sticks = self.foundation().full_stick_update(full_stick_force(force), start, end, increment)
+        traction, sticks = self.foundation().full_stick_update(
+            full_stick_force(packed_forces), start_approach, end_approach, tangential_increment
+        )
         if not np.all(sticks):
             return None
-        force = np.zeros_like(force)
-        force[..., 0], force[:, 1, 1] = traction[:, :2], traction[:, 2]
-        return SliderUpdate(force, np.zeros_like(stick_stiffness), stick_stiffness[:, None] * STICK_TANGENT)
+        packed_forces = np.zeros_like(packed_forces)
+        packed_forces[..., 0], packed_forces[:, 1, 1] = traction[:, :2], traction[:, 2]
+        return SliderUpdate(
+            packed_forces, np.zeros_like(stick_stiffness), stick_stiffness[:, None] * STICK_TANGENT
+        )
 
-    def _slip_state(self, history: History, increment: Array) -> int:
+    def _slip_state(self, history: History, tangential_increment: Array) -> int:
         """SLIP_1D if all displacements and forces so far are along x, else SLIP_2D."""
-        in_plane = self.elastic or history["state"] == SLIP_2D or np.any(history["force"][:, 1, :2])
-        return SLIP_2D if in_plane or np.any(increment[:, 1:]) else SLIP_1D
+        in_plane = (
+            self.has_elastic_members or history["state"] == SLIP_2D or np.any(history["force"][:, 1, :2])
+        )
+        return SLIP_2D if in_plane or np.any(tangential_increment[:, 1:]) else SLIP_1D
 
 
 def unit_displacements(patches: FrictionPatches) -> list[Array]:
     """Tangential displacements (m, 3) [1, m] by a unit s_x, s_y and theta_z."""
-    return [tangential_displacement(patches, unit) for unit in np.eye(6)[TANGENTIAL]]
+    return [tangential_displacement(patches, unit) for unit in np.eye(6)[TANGENTIAL_COMPONENTS]]
 
 
 def directional_stiffness(tangent: Array, direction: Array) -> Array:
@@ -192,13 +205,17 @@ def directional_stiffness(tangent: Array, direction: Array) -> Array:
     return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
 
 
-def consistent_tangent(patches: FrictionPatches, update: FrictionUpdate) -> list[float]:
+def consistent_tangent(patches: FrictionPatches, friction_update: FrictionUpdate) -> list[float]:
     """Tangent stiffness per area [Pa/m], [Pa.m] for further displacements s_x, s_y and rotation theta_z.
 
     In the direction of the traction of their patch, sliders at their limits continue to slip; in the opposite
     direction they stick. The result is for the direction in which more of the stiffness is lost.
     """
-    tangent, traction, stick = update.slider_update.tangent, update.traction, update.stick_stiffness
+    tangent, traction, stick = (
+        friction_update.slider_update.tangent,
+        friction_update.traction,
+        friction_update.stick_stiffness,
+    )
     lost_tangent, result = stick[:, None] * STICK_TANGENT - tangent, []
     for direction in unit_displacements(patches):
         lost = patches.area_share * directional_stiffness(lost_tangent, direction)

@@ -15,14 +15,14 @@ from ...mechanics.footprint.patch_reduction import reduce_patches
 from ...mechanics.footprint.point_reduction import reduce_points
 from ...mechanics.history_layout import HistoryLayout
 from ...quantity import Array, Number
-from .bodies import Modes
+from .bodies import MemberModes
 from .bolts import BoltSprings, bolt_positions
 from .compliances import Compliances
 from .contact import Contact, NormalState, PreloadState, elastic_shear
 from .equilibrium import JointAssembly, LoadStep, solve_equilibrium
-from .friction import UNKNOWN, FrictionLaw, FrictionUpdate, History, consistent_tangent, history_layout
-from .kinematics import NORMAL, TANGENTIAL, point_displacement, tangential_displacement
-from .law import MAX_MODES, Bolted, ElasticBodies, interface_alone
+from .friction import NO_HISTORY, FrictionLaw, FrictionUpdate, History, consistent_tangent, history_layout
+from .kinematics import NORMAL_COMPONENTS, TANGENTIAL_COMPONENTS, point_displacement, tangential_displacement
+from .law import MAX_MODES, AnyBoltedJoint, ElasticBodies, with_rigid_members
 from .outputs import (
     assembly_sums,
     bolt_force_name,
@@ -41,16 +41,16 @@ ZERO_MOTION = (0.0, 0.0, 0.0)
 
 
 @lru_cache(maxsize=8)
-def contact_points(pattern: PressureSource) -> PressureDistribution:
+def contact_points(pressure_source: PressureSource) -> PressureDistribution:
     """Points that carry the normal force of a joint."""
-    return reduce_points(pressure_distribution(pattern), MAX_POINTS)
+    return reduce_points(pressure_distribution(pressure_source), MAX_POINTS)
 
 
 @lru_cache(maxsize=8)
-def friction_patches_of(pattern: PressureSource) -> FrictionPatches:
+def find_friction_patches(pressure_source: PressureSource) -> FrictionPatches:
     """Patches that carry the friction of a joint."""
-    stated = pattern.friction_patches() if isinstance(pattern, NodalField) else None
-    return stated or reduce_patches(pressure_distribution(pattern), MAX_PATCHES)
+    stated = pressure_source.friction_patches() if isinstance(pressure_source, NodalField) else None
+    return stated or reduce_patches(pressure_distribution(pressure_source), MAX_PATCHES)
 
 
 class JointInputs(NamedTuple):
@@ -68,7 +68,7 @@ class JointInputs(NamedTuple):
     rates: tuple[float, ...] = (0.0,) * 6
 
     @property
-    def summary(self) -> str:
+    def input_summary(self) -> str:
         """Inputs that are not zero, as text; without rates."""
         names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
         values = dict(zip(names, (self.preload, self.moment, *self.displacement), strict=True))
@@ -90,56 +90,64 @@ class BoltedJointSpring:
     modes   : of the members between their attachments; none if the members are rigid
     """
 
-    joint: Bolted
+    joint: AnyBoltedJoint
     curve: Curve
     points: PressureDistribution
     patches: FrictionPatches
-    modes: Modes
+    modes: MemberModes
 
     @classmethod
-    def of(cls, joint: Bolted) -> "BoltedJointSpring":
+    def for_joint(cls, joint: AnyBoltedJoint) -> "BoltedJointSpring":
         """Joint with the points and patches of its FMU.
 
         Raises ValueError if its [bodies] were computed for another contact.
         """
-        points, patches = contact_points(joint.pattern), friction_patches_of(joint.pattern)
-        if joint.elastic:
+        points, patches = contact_points(joint.pattern), find_friction_patches(joint.pattern)
+        if joint.has_elastic_members:
             assert isinstance(joint.bodies, ElasticBodies)
-            modes = Modes.of(joint.bodies, points.area_share.size, patches.position)
+            modes = MemberModes.for_bodies(joint.bodies, points.area_share.size, patches.position)
         else:
-            modes = _no_modes(joint, points, patches)
+            modes = _rigid_member_modes(joint, points, patches)
         return cls(joint, tabulate_approach(joint), points, patches, modes)
 
     @classmethod
-    def of_nodes(cls, joint: Bolted, nodes: PressureDistribution | None = None) -> "BoltedJointSpring":
+    def for_interface_nodes(
+        cls, joint: AnyBoltedJoint, nodes: PressureDistribution | None = None
+    ) -> "BoltedJointSpring":
         """Interface alone, with a point and a patch at each node; None: the nodes of its pattern."""
         points = pressure_distribution(joint.pattern) if nodes is None else nodes
-        joint, patches = interface_alone(joint), points.as_patches()
-        return cls(joint, tabulate_approach(joint), points, patches, _no_modes(joint, points, patches))
+        joint, patches = with_rigid_members(joint), points.as_patches()
+        return cls(
+            joint, tabulate_approach(joint), points, patches, _rigid_member_modes(joint, points, patches)
+        )
 
-    def on_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
+    def with_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
         """Copy of the interface alone, with a point and a patch at each of other nodes."""
-        joint, patches = interface_alone(self.joint), nodes.as_patches()
-        modes = _no_modes(joint, nodes, patches)
+        joint, patches = with_rigid_members(self.joint), nodes.as_patches()
+        modes = _rigid_member_modes(joint, nodes, patches)
         return replace(self, joint=joint, points=nodes, patches=patches, modes=modes)
 
     @cached_property
     def contact(self) -> Contact:
         """Contact of points and patches."""
-        return Contact(self.curve, self.points, self.patches, self.joint.elastic)
+        return Contact(self.curve, self.points, self.patches, self.joint.has_elastic_members)
 
     @cached_property
-    def friction(self) -> FrictionLaw:
+    def friction_law(self) -> FrictionLaw:
         """Friction law of the patches."""
         joint = self.joint
         return FrictionLaw(
-            self.curve, float(joint.shear_stiffness_ratio()), joint.mu, self.patches, joint.elastic
+            self.curve,
+            float(joint.shear_stiffness_ratio()),
+            joint.mu,
+            self.patches,
+            joint.has_elastic_members,
         )
 
     @cached_property
     def bolts(self) -> BoltSprings:
         """Bolts, which act in parallel with the contact."""
-        return BoltSprings.of(self.joint, self.curve.closing_end_load)
+        return BoltSprings.for_joint(self.joint, self.curve.closing_end_load)
 
     @cached_property
     def assembly(self) -> JointAssembly:
@@ -147,7 +155,7 @@ class BoltedJointSpring:
         return JointAssembly(self.contact, self.modes, self.bolts, self.joint.A_0)
 
     @cached_property
-    def _preload_state(self) -> Callable[[float, float], PreloadState]:
+    def _cached_preload_state(self) -> Callable[[float, float], PreloadState]:
         """Cached `Contact.preload_state`: function of preload [N] and moment [N.m]."""
         return lru_cache(maxsize=2)(partial(self.contact.preload_state, self.joint))
 
@@ -155,7 +163,7 @@ class BoltedJointSpring:
         """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m]."""
         return self.contact.preloaded_approach(self.joint, preload, moment)
 
-    def checked_approach(self, preload: float, moment: float) -> Array:
+    def checked_preloaded_approach(self, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the points, see `preloaded_approach`.
 
         Raises ValueError if all points are open, or if the pressure reaches the hardness.
@@ -165,26 +173,26 @@ class BoltedJointSpring:
         if not (np.isfinite(preload + moment) and low < np.max(approach) < high):
             raise ValueError(
                 f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
-                f"contact after embedding ({self.joint.embedding:g} N), and at most {self.curve.end[1]:g} Pa"
+                f"contact after embedding ({self.joint.embedding:g} N), and at most {self.curve.end_point[1]:g} Pa"
             )
         return approach
 
     def tangent_stiffness(self, preload: float, moment: float = 0.0) -> Array:
         """Tangent stiffness (6 + k, 6 + k) of the tightened joint, see `JointAssembly.tangent_stiffness`."""
-        state = self._preload_state(preload, moment)
+        state = self._cached_preload_state(preload, moment)
         stiffness = self.curve.derivatives(state.approach, 1)[1]
-        stick = self.friction.stick_tangent(state.patch_approach)
+        stick = self.friction_law.stick_tangent(state.patch_approach)
         return self.assembly.tangent_stiffness(stiffness, stick, self._bolt_tangent(preload, moment))
 
     def _bolt_tangent(self, preload: float, moment: float) -> Array:
         """Stiffness (b) [N/m] of the bolts at tightening."""
         force = self.bolts.preload_force(self.joint, preload, moment)
-        return self.bolts.tangent(force, np.zeros_like(force))
+        return self.bolts.tangent_stiffness(force, np.zeros_like(force))
 
     def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
         """Compliances of the tightened joint with elastic members."""
         H = self.tangent_stiffness(preload, moment)
-        return Compliances.of(self.assembly, H, self._bolt_tangent(preload, moment))
+        return Compliances.for_assembly(self.assembly, H, self._bolt_tangent(preload, moment))
 
     @property
     def history_layout(self) -> HistoryLayout:
@@ -215,17 +223,17 @@ class BoltedJointSpring:
         """
         joint, assembly, points, q = self.joint, self.assembly, self.points, inputs.displacement
         before = self.history_layout.split(history)
-        preload = self._preload_state(float(inputs.preload), float(inputs.moment))
+        preload = self._cached_preload_state(float(inputs.preload), float(inputs.moment))
         bolt_force = self.bolts.preload_force(joint, inputs.preload, inputs.moment)
         state, a = None, np.zeros(0)
-        if joint.elastic:
+        if joint.has_elastic_members:
             state = solve_equilibrium(self._load_step(inputs, preload, bolt_force, before))
-            a, normal, friction = state.modal_coordinates, state.normal, state.friction
+            a, normal, friction = state.modal_coordinates, state.normal_state, state.friction_update
         else:
             normal, friction = assembly.evaluate_normal(preload, q, a), None
             if joint.memory:
-                increment = tangential_displacement(self.patches, q - _displacement(before))
-                friction = self.friction.update_friction(before, normal.patch_approach, increment)
+                increment = tangential_displacement(self.patches, q - _relative_displacement(before))
+                friction = self.friction_law.update_friction(before, normal.patch_approach, increment)
 
         if friction is not None:
             loss = float(before["loss"]) + joint.A_0 * float(
@@ -239,7 +247,7 @@ class BoltedJointSpring:
 
         plastic, elastic = self.first_loading_work(normal.pressure)
         amplitude = np.sqrt(np.sum(assembly.tangential_displacement(q, a) ** 2, axis=1))
-        foundation = self.friction.foundation()
+        foundation = self.friction_law.foundation()
         sums: dict[str, Number] = {
             **first_moments(points, "tightened", preload.pressure),
             **normal_sums(points, normal.pressure, normal.stiffness, *added),
@@ -255,37 +263,40 @@ class BoltedJointSpring:
             sums |= bolt_gap_sums(self.bolts, joint.A_0, elongation, bolt_force, sums)
         s_rel, theta = q.reshape(2, 3).tolist()
         outputs = joint_outputs(joint, sums, s_rel, theta, inputs.rates, np.max(normal.pressure))
-        if joint.elastic:
-            forces = self.bolts.force(bolt_force, elongation)
+        if joint.has_elastic_members:
+            forces = self.bolts.bolt_force(bolt_force, elongation)
             outputs |= {bolt_force_name(j): force for j, force in enumerate(forces)}
         return outputs, history
 
     def _load_step(
-        self, inputs: JointInputs, preload: PreloadState, bolt_force: Array, before: History
+        self, inputs: JointInputs, preload_state: PreloadState, bolt_force: Array, start_history: History
     ) -> LoadStep:
         """Load step from the last equilibrium, by its history variables, to the inputs."""
         return LoadStep(
             self.assembly,
-            preload,
+            preload_state,
             bolt_force,
-            start=_displacement(before),
-            end=inputs.displacement,
-            modal_coordinates=before["modal_coordinates"][: len(self.modes.stiffness)],
+            start_displacement=_relative_displacement(start_history),
+            end_displacement=inputs.displacement,
+            modal_coordinates=start_history["modal_coordinates"][: len(self.modes.stiffness)],
             friction_tangent=(
-                self.friction.stick_tangent(preload.patch_approach)
-                if before["state"] == UNKNOWN
-                else before["tangent"]
+                self.friction_law.stick_tangent(preload_state.patch_approach)
+                if start_history["state"] == NO_HISTORY
+                else start_history["tangent"]
             ),
-            update_friction=partial(self.friction.update_friction, before),
-            input_summary=inputs.summary,
+            update_friction=partial(self.friction_law.update_friction, start_history),
+            input_summary=inputs.input_summary,
         )
 
     def _elastic_shear_sums(
-        self, preload: PreloadState, normal: NormalState, q: Array
+        self, preload_state: PreloadState, normal_state: NormalState, relative_displacement: Array
     ) -> tuple[dict[str, Number], tuple[Number, Number]]:
         """Sums of `elastic_shear`, and its terms (n) [Pa] in the pressure and (n) [Pa/m] in the stiffness."""
-        limit, derivatives = self.joint.mu * preload.pressure, self.curve.derivatives(normal.approach, 3)
-        u_x, u_y = point_displacement(self.points, q).T
+        limit, derivatives = (
+            self.joint.mu * preload_state.pressure,
+            self.curve.derivatives(normal_state.approach, 3),
+        )
+        u_x, u_y = point_displacement(self.points, relative_displacement).T
         t_x, t_y, xx, xy, yy, added_pressure, added_stiffness = elastic_shear(
             limit, self.joint.shear_stiffness_ratio(), derivatives, u_x, u_y
         )
@@ -294,45 +305,55 @@ class BoltedJointSpring:
         sums = friction_sums(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
         return sums, (added_pressure, added_stiffness)
 
-    def _join_history(self, q: Array, a: Array, friction: FrictionUpdate, loss: float) -> Array:
+    def _join_history(
+        self,
+        relative_displacement: Array,
+        modal_coordinates: Array,
+        friction_update: FrictionUpdate,
+        total_loss: float,
+    ) -> Array:
         """History variables at relative displacement q (6) and modal coordinates a (k) [m].
 
         total_loss : [J] energy dissipated so far
         """
-        elastic = self.joint.elastic
+        elastic = self.joint.has_elastic_members
         return self.history_layout.join(
             {
-                "state": friction.state,
-                "loss": loss,
-                "tangential": q[TANGENTIAL],
-                "onset_approach": friction.onset_approach,
-                "min_approach": friction.min_approach,
-                "approach": friction.approach,
-                "force": friction.slider_update.force,
-                "normal": q[NORMAL] if elastic else 0.0,
-                "modal_coordinates": np.pad(a, (0, MAX_MODES - a.size)),
-                "tangent": friction.slider_update.tangent if elastic else 0.0,
+                "state": friction_update.friction_state,
+                "loss": total_loss,
+                "tangential": relative_displacement[TANGENTIAL_COMPONENTS],
+                "onset_approach": friction_update.onset_approach,
+                "min_approach": friction_update.min_approach,
+                "approach": friction_update.approach,
+                "force": friction_update.slider_update.force,
+                "normal": relative_displacement[NORMAL_COMPONENTS] if elastic else 0.0,
+                "modal_coordinates": np.pad(modal_coordinates, (0, MAX_MODES - modal_coordinates.size)),
+                "tangent": friction_update.slider_update.tangent if elastic else 0.0,
             }
         )
 
-    def first_loading_work(self, p: Array) -> tuple[Array, Array]:
+    def first_loading_work(self, pressure: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) [Pa] (Zhao 2018, Eqs. 16, 18).
 
         Below the pressure at which the contact has closed the values at that pressure are used: the law has
         hardly an elastic spot there.
         """
         spots = self.joint.spots()
-        u = solve_largest_spot(self.joint, np.maximum(p, self.curve.closing_end_load))
-        return spots.total("plastic_work", u), spots.total("elastic_work", u)
+        u = solve_largest_spot(self.joint, np.maximum(pressure, self.curve.closing_end_load))
+        return spots.sum_over_spots("plastic_work", u), spots.sum_over_spots("elastic_work", u)
 
 
-def _no_modes(joint: Bolted, points: PressureDistribution, patches: FrictionPatches) -> Modes:
+def _rigid_member_modes(
+    joint: AnyBoltedJoint, points: PressureDistribution, patches: FrictionPatches
+) -> MemberModes:
     """Empty set of modes, for rigid members."""
-    return Modes.for_rigid_bodies(points.area_share.size, patches.area_share.size, len(bolt_positions(joint)))
+    return MemberModes.for_rigid_bodies(
+        points.area_share.size, patches.area_share.size, len(bolt_positions(joint))
+    )
 
 
-def _displacement(history: History) -> Array:
+def _relative_displacement(history: History) -> Array:
     """Relative displacement q (6) [m, rad] of history variables; normal part: of elastic members only."""
     q = np.empty(6)
-    q[TANGENTIAL], q[NORMAL] = history["tangential"], history["normal"]
+    q[TANGENTIAL_COMPONENTS], q[NORMAL_COMPONENTS] = history["tangential"], history["normal"]
     return q

@@ -9,13 +9,13 @@ import numpy as np
 from ...mechanics.footprint.distribution import FrictionPatches, PressureDistribution
 from ...quantity import Array
 
-NORMAL, TANGENTIAL = slice(2, 5), [0, 1, 5]
+NORMAL_COMPONENTS, TANGENTIAL_COMPONENTS = slice(2, 5), [0, 1, 5]
 """Components of q that open the contact: s_z, theta_x, theta_y; and those along it: s_x, s_y, theta_z."""
 
 
-def rigid_opening(position: Array, q: Array) -> Array:
+def rigid_opening(position: Array, relative_displacement: Array) -> Array:
     """Opening (n) [m] at positions (n, 2) [m]."""
-    (x, y), (s_z, theta_x, theta_y) = position.T, q[NORMAL]
+    (x, y), (s_z, theta_x, theta_y) = position.T, relative_displacement[NORMAL_COMPONENTS]
     return np.asarray(s_z + theta_x * y - theta_y * x)
 
 
@@ -26,15 +26,17 @@ def opening_jacobian(position: Array) -> Array:
     return J
 
 
-def point_displacement(points: PressureDistribution, q: Array) -> Array:
+def point_displacement(points: PressureDistribution, relative_displacement: Array) -> Array:
     """Tangential displacement (n, 2) [m] of points along x and along y."""
-    (x, y), (s_x, s_y, theta_z) = points.position.T, q[TANGENTIAL]
+    (x, y), (s_x, s_y, theta_z) = points.position.T, relative_displacement[TANGENTIAL_COMPONENTS]
     return np.stack([s_x - theta_z * y, s_y + theta_z * x], axis=-1)
 
 
-def tangential_displacement(patches: FrictionPatches, q: Array) -> Array:
+def tangential_displacement(patches: FrictionPatches, relative_displacement: Array) -> Array:
     """Tangential displacement (m, 3) [m] of patches along x, along y and around their centres."""
-    return np.column_stack([point_displacement(patches, q), q[5] * patches.radius])
+    return np.column_stack(
+        [point_displacement(patches, relative_displacement), relative_displacement[5] * patches.radius]
+    )
 
 
 def tangential_jacobian(patches: FrictionPatches) -> Array:

@@ -28,9 +28,9 @@ from ...quantity import (
 
 MAX_MODES = 16
 """Largest number of modes of the members [1]."""
-MODAL_SERIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
+MODAL_ENTRIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
 """Entries of [bodies] with the modal displacements."""
-ELASTIC_NEEDS = {
+ELASTIC_SIDE_REQUIREMENTS = {
     "memory": "elastic sides need friction with memory",
     "damping": "the dashpots act between rigid sides only",
 }
@@ -116,7 +116,7 @@ class ElasticBodies:
         if modes > MAX_MODES:
             raise ValueError(f"bodies.stiffness has {modes} numbers, expected at most {MAX_MODES}")
         counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
-        counts |= {name: patches * modes for name in MODAL_SERIES if name.startswith("patch_")}
+        counts |= {name: patches * modes for name in MODAL_ENTRIES if name.startswith("patch_")}
         counts["opening"] = modes * max(len(self.opening) // modes, 1)
         counts |= {name: n for name, n in (("thickness", 2), ("outline", 4)) if getattr(self, name)}
         for name, count in counts.items():
@@ -125,7 +125,7 @@ class ElasticBodies:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bolts:
+class BoltParameters:
     """Parameters of the bolts, of the pressure under them, and of the members."""
 
     n_bolts: float = quantity_field("1", "number of bolts", ge=1.0, is_integer=True)
@@ -160,22 +160,22 @@ class Bolts:
     def __post_init__(self) -> None:
         check_fields(self)
         check_limits(self, self.find_limits())
-        if self.elastic:
-            self._check_elastic()
+        if self.has_elastic_members:
+            self._check_elastic_sides()
 
     @property
-    def elastic(self) -> bool:
+    def has_elastic_members(self) -> bool:
         """Whether the joint has elastic members, not the interface alone."""
         return self.sides == "elastic"
 
-    def _check_elastic(self) -> None:
+    def _check_elastic_sides(self) -> None:
         if isinstance(self.bodies, RigidBodies):
             raise ValueError(
                 "sides = elastic needs the section [bodies]; `jointfmu new bolted-joint` writes it"
             )
         for name, wrong in (("memory", False), ("damping", True)):
             if getattr(self, name) is wrong:
-                why = ELASTIC_NEEDS[name]
+                why = ELASTIC_SIDE_REQUIREMENTS[name]
                 raise ValueError(
                     f"{name} = {wrong} with sides = elastic; expected {not wrong}, {why}".lower()
                 )
@@ -188,7 +188,7 @@ class Bolts:
         rows = ParameterLimit(
             "row_bolts", Interval.from_bounds(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why
         )
-        if not isinstance(self.bodies, ElasticBodies) or not self.elastic:
+        if not isinstance(self.bodies, ElasticBodies) or not self.has_elastic_members:
             return [rows]
         seats = float(len(self.bodies.bolt_x))
         return [
@@ -200,7 +200,7 @@ class Bolts:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BoltedJoint(Bolts, Zhao2018):
+class BoltedJoint(BoltParameters, Zhao2018):
     """Parameters of the bolted joint with the law of Zhao 2018."""
 
     plastic_damping: bool = choice_field(
@@ -209,7 +209,7 @@ class BoltedJoint(Bolts, Zhao2018):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughBoltedJoint(Bolts, RoughnessLaw):
+class RoughBoltedJoint(BoltParameters, RoughnessLaw):
     """Parameters of the bolted joint with the law `roughness`, which has no plastic work."""
 
     plastic_damping: ClassVar[bool] = False
@@ -219,16 +219,16 @@ class RoughBoltedJoint(Bolts, RoughnessLaw):
     )
 
 
-Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint
+AnyBoltedJoint: TypeAlias = BoltedJoint | RoughBoltedJoint
 """Parameter set of a bolted joint with either interface law."""
 
 
-def interface_alone(joint: Bolted) -> Bolted:
+def with_rigid_members(joint: AnyBoltedJoint) -> AnyBoltedJoint:
     """Copy of a joint with rigid members: only the interface and the bolts deform."""
-    return replace(joint, sides="rigid") if joint.elastic else joint
+    return replace(joint, sides="rigid") if joint.has_elastic_members else joint
 
 
-def bolt_pattern(joint: Bolted) -> BoltedFrame:
+def get_bolted_frame(joint: AnyBoltedJoint) -> BoltedFrame:
     """Bolted frame of a joint: section [pattern] of its parameter file.
 
     Raises ValueError if the joint has a plate or a nodal field instead.
@@ -248,12 +248,12 @@ ROW_DISTANCE_TOLERANCE = 1e-3
 """Largest relative difference [1] between row_distance and the distance of the bolt rows."""
 
 
-def contradictions(joint: Bolted) -> Iterator[str]:
+def find_contradictions(joint: AnyBoltedJoint) -> Iterator[str]:
     """Yield one line for each parameter that contradicts the bolts of a parameter file."""
     if isinstance(joint.pattern, NodalField):
         return
     section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
-    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.equivalent_bolt_rows
+    count, (row_bolts, row_distance) = len(pattern.bolts_from_middle), pattern.equivalent_bolt_rows
     if joint.n_bolts != count:
         yield f"n_bolts = {joint.n_bolts:g} contradicts [{section}], which has {count} bolts"
     if abs(joint.A_0 / pattern.area - 1.0) > AREA_TOLERANCE:
@@ -269,7 +269,10 @@ def contradictions(joint: Bolted) -> Iterator[str]:
 
 
 def preload_pressure(
-    joint: Bolted, shape: PressureDistribution | MergedDistribution, preload: ArrayLike, moment: ArrayLike
+    joint: AnyBoltedJoint,
+    distribution: PressureDistribution | MergedDistribution,
+    preload: ArrayLike,
+    moment: ArrayLike,
 ) -> Array:
     """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
 
@@ -278,27 +281,37 @@ def preload_pressure(
     `BoltedPlate.pressure_distribution`. Nodes with a negative sum are open.
     """
     force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
-    return np.asarray(node_pressure(joint, shape.preload_shape, shape.moment_shape, force, bending))
+    return np.asarray(
+        node_pressure(
+            joint, distribution.preload_pressure_ratio, distribution.moment_pressure_ratio, force, bending
+        )
+    )
 
 
 def node_pressure(
-    joint: Bolted, preload_shape: Number, moment_shape: Number, preload: Number, moment: Number
+    joint: AnyBoltedJoint,
+    preload_pressure_ratio: Number,
+    moment_pressure_ratio: Number,
+    preload: Number,
+    moment: Number,
 ) -> Number:
     """Pressure [Pa] of a node under a preload [N] of each bolt and a moment [N.m]."""
-    return shaped_pressure(preload_shape, moment_shape, *bolt_pressures(joint, preload, moment))
+    return superposed_pressure(
+        preload_pressure_ratio, moment_pressure_ratio, *bolt_pressures(joint, preload, moment)
+    )
 
 
-def working_preload(joint: Bolted, preload: Number) -> Number:
+def working_preload(joint: AnyBoltedJoint, preload: Number) -> Number:
     """Working force (...) [N] of a bolt: preload (...) [N] minus the loss by embedding, at least 0."""
     return select(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
 
 
-def slip_force(joint: Bolted, working_force: Number) -> Number:
+def slip_force(joint: AnyBoltedJoint, working_force: Number) -> Number:
     """Shear force (...) [N] of gross slip, mu n F, under working forces (...) [N] of each bolt."""
     return joint.mu * joint.n_bolts * working_force
 
 
-def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Number, Number]:
+def bolt_pressures(joint: AnyBoltedJoint, preload: Number, moment: Number) -> tuple[Number, Number]:
     """Mean pressure [Pa] by the preload, and mean pressure [Pa] of a bolt row by the moment.
 
     They are the pressures of a node with preload_pressure_ratio = 1 or moment_pressure_ratio = 1.
@@ -307,15 +320,20 @@ def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Numb
     return left * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
 
 
-def shaped_pressure(preload_shape: Number, moment_shape: Number, mean: Number, shift: Number) -> Number:
+def superposed_pressure(
+    preload_pressure_ratio: Number,
+    moment_pressure_ratio: Number,
+    mean_pressure: Number,
+    moment_pressure: Number,
+) -> Number:
     """Pressure [Pa] of a node: sum of the pressures by preload and by moment; 0 if the node is open.
 
     mean_pressure, moment_pressure : [Pa] result of `bolt_pressures`
     """
-    return np.maximum(mean * preload_shape + shift * moment_shape, 0.0)
+    return np.maximum(mean_pressure * preload_pressure_ratio + moment_pressure * moment_pressure_ratio, 0.0)
 
 
-def row_forces(joint: Bolted, preload: float, moment: float) -> tuple[float, float]:
+def row_forces(joint: AnyBoltedJoint, preload: float, moment: float) -> tuple[float, float]:
     """Force [N] of a bolt in the row y > 0 and in the row y < 0, under a preload [N] and a moment [N.m]."""
     shift, left = moment / (joint.row_distance * joint.row_bolts), float(working_preload(joint, preload))
     return left + shift, left - shift

@@ -12,9 +12,9 @@ from ...quantity import Array, Number, select
 from .bolts import BoltSprings
 from .equilibrium import JointAssembly, TrialState, condense_stiffness
 from .friction import directional_stiffness, unit_displacements
-from .law import Bolted
+from .law import AnyBoltedJoint
 
-SUMS = (
+SUM_NAMES = (
     "tightened", "tightened_x", "tightened_y",
     "normal", "normal_x", "normal_y",
     "normal_stiffness", "normal_about_x", "normal_about_y",
@@ -44,25 +44,28 @@ Rigid members: normal_stiffness and normal_about_* are without the stiffness of 
 Elastic members: they and tangent_* are for the complete joint, without the stiffness of all bolts between
 rigid members.
 """
-_TRACTIONS, _TANGENTS = ("traction_x", "traction_y", "torsion"), ("tangent_x", "tangent_y", "tangent_z")
-_STRETCHES = SUMS[-3:]
+_TRACTION_SUMS, _TANGENT_SUMS = (
+    ("traction_x", "traction_y", "torsion"),
+    ("tangent_x", "tangent_y", "tangent_z"),
+)
+_ELONGATION_SUMS = SUM_NAMES[-3:]
 
 
-def first_moments(points: PressureDistribution, name: str, value: Array) -> dict[str, Number]:
+def first_moments(points: PressureDistribution, sum_name: str, point_values: Array) -> dict[str, Number]:
     """Sums of values (n) times share, and times x and y."""
-    each = points.area_share * value
+    each = points.area_share * point_values
     return {
-        name: np.sum(each),
-        f"{name}_x": each @ points.position[:, 0],
-        f"{name}_y": each @ points.position[:, 1],
+        sum_name: np.sum(each),
+        f"{sum_name}_x": each @ points.position[:, 0],
+        f"{sum_name}_y": each @ points.position[:, 1],
     }
 
 
-def second_moments(points: PressureDistribution, prefix: str, value: Array) -> dict[str, Number]:
+def second_moments(points: PressureDistribution, sum_prefix: str, point_values: Array) -> dict[str, Number]:
     """Sums of values (n) times share, times y^2 and x^2."""
-    each = points.area_share * value
+    each = points.area_share * point_values
     x, y = points.position.T
-    return {f"{prefix}about_x": each @ y**2, f"{prefix}about_y": each @ x**2}
+    return {f"{sum_prefix}about_x": each @ y**2, f"{sum_prefix}about_y": each @ x**2}
 
 
 def normal_sums(
@@ -91,7 +94,7 @@ def friction_sums(
 ) -> dict[str, Number]:
     """Sums of the traction (m, 3) [Pa]; tangent (3) [Pa/m] and loss [J/m2] are sums already."""
     sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
-    named = [*zip(_TRACTIONS, sums, strict=True), *zip(_TANGENTS, tangent, strict=True)]
+    named = [*zip(_TRACTION_SUMS, sums, strict=True), *zip(_TANGENT_SUMS, tangent, strict=True)]
     return {**dict(named), "loss": loss}
 
 
@@ -100,50 +103,67 @@ def tangent_sums(patches: FrictionPatches, tangent: Array) -> list[Number]:
     return [patches.area_share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
 
 
-def cycle_sums(foundation: Foundation, share: Array, approach: Array, amplitude: Array) -> dict[str, Number]:
+def cycle_sums(
+    foundation: Foundation, area_share: Array, approach: Array, amplitude: Array
+) -> dict[str, Number]:
     """Sums of `Foundation.cycle_energies` of patches at approaches (m) [m], with amplitudes (m) [m]."""
     loss, stored = foundation.cycle_energies(approach, amplitude)
-    return {"loop_work": share @ loss, "loop_energy": share @ stored}
+    return {"loop_work": area_share @ loss, "loop_energy": area_share @ stored}
 
 
 def bolt_gap_sums(
-    bolts: BoltSprings, area: float, elongation: Array, bolt_force: Array, sums: Mapping[str, Number]
+    bolt_springs: BoltSprings,
+    nominal_area: float,
+    elongation: Array,
+    bolt_force: Array,
+    contact_sums: Mapping[str, Number],
 ) -> dict[str, Number]:
     """Changed sums of a joint with rigid members, if bolt heads have lifted off.
 
     elongation : (b) [m] since tightening
     bolt_force : (b) [N] at tightening
     """
-    gap = bolts.count * bolts.gap(bolt_force, elongation)
-    missing = bolts.count * (bolts.stiffness - bolts.tangent(bolt_force, elongation))
-    x, y = bolts.position.T
+    gap = bolt_springs.bolts_per_position * bolt_springs.head_gap(bolt_force, elongation)
+    missing = bolt_springs.bolts_per_position * (
+        bolt_springs.stiffness - bolt_springs.tangent_stiffness(bolt_force, elongation)
+    )
+    x, y = bolt_springs.position.T
     return {
-        **dict(zip(_STRETCHES, [np.sum(gap), gap @ x, gap @ y], strict=True)),
-        "normal_stiffness": sums["normal_stiffness"] - np.sum(missing) / area,
-        "normal_about_x": sums["normal_about_x"] - (missing @ y**2) / area,
-        "normal_about_y": sums["normal_about_y"] - (missing @ x**2) / area,
+        **dict(zip(_ELONGATION_SUMS, [np.sum(gap), gap @ x, gap @ y], strict=True)),
+        "normal_stiffness": contact_sums["normal_stiffness"] - np.sum(missing) / nominal_area,
+        "normal_about_x": contact_sums["normal_about_x"] - (missing @ y**2) / nominal_area,
+        "normal_about_y": contact_sums["normal_about_y"] - (missing @ x**2) / nominal_area,
     }
 
 
 def assembly_sums(
-    joint: Bolted, assembly: JointAssembly, state: TrialState, bolt_force: Array, loop_energy: Number
+    joint: AnyBoltedJoint,
+    assembly: JointAssembly,
+    trial_state: TrialState,
+    bolt_force: Array,
+    loop_energy: Number,
 ) -> dict[str, Number]:
     """Sums of a joint with elastic members: stiffness of the complete joint, modal elongation, energy.
 
     bolt_force  : (b) [N] at tightening
     loop_energy : [J/m2] of the friction patches
     """
-    area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, state.elongation
+    area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, trial_state.elongation
     bolt_stiffness = joint.n_bolts * joint.bolt_stiffness
     _, _, x2, y2, _ = joint.pattern.bolt_position_means
-    gap, bolt_tangent = bolts.gap(bolt_force, elongation), bolts.tangent(bolt_force, elongation)
-    H = assembly.tangent_stiffness(state.normal.stiffness, state.friction.slider_update.tangent, bolt_tangent)
+    gap, bolt_tangent = (
+        bolts.head_gap(bolt_force, elongation),
+        bolts.tangent_stiffness(bolt_force, elongation),
+    )
+    H = assembly.tangent_stiffness(
+        trial_state.normal_state.stiffness, trial_state.friction_update.slider_update.tangent, bolt_tangent
+    )
     K = np.maximum(np.diag(condense_stiffness(H)), 0.0)
-    stretch = modes.bolt_elongation @ state.modal_coordinates + gap
+    stretch = modes.bolt_elongation @ trial_state.modal_coordinates + gap
     elastic = joint.bolt_stiffness * (elongation @ elongation) - joint.bolt_stiffness * (gap @ gap)
-    energy = 0.5 * (modes.stiffness @ state.modal_coordinates**2 + elastic)
+    energy = 0.5 * (modes.stiffness @ trial_state.modal_coordinates**2 + elastic)
     return {
-        **dict(zip(_STRETCHES, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
+        **dict(zip(_ELONGATION_SUMS, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
         "tangent_x": K[0] / area,
         "tangent_y": K[1] / area,
         "normal_stiffness": (K[2] - bolt_stiffness) / area,
@@ -154,14 +174,14 @@ def assembly_sums(
     }
 
 
-def bolt_force_name(bolt: int) -> str:
+def bolt_force_name(bolt_index: int) -> str:
     """Name of the force of a bolt, counted from 0."""
-    return f"F_bolt[{bolt + 1}]"
+    return f"F_bolt[{bolt_index + 1}]"
 
 
 def joint_outputs(
-    joint: Bolted,
-    sums: Mapping[str, Number],
+    joint: AnyBoltedJoint,
+    contact_sums: Mapping[str, Number],
     displacement: Sequence[Number],
     rotation: Sequence[Number],
     rates: Sequence[Number],
@@ -180,18 +200,21 @@ def joint_outputs(
     area, rho = joint.A_0, joint.shear_stiffness_ratio()
     bolts = joint.n_bolts * joint.bolt_stiffness
     _, _, bolt_x2, bolt_y2, _ = joint.pattern.bolt_position_means
-    K_n = area * sums["stiffness"]
-    eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()
+    K_n = area * contact_sums["stiffness"]
+    eta_n, eta_t = contact_sums["plastic"] / contact_sums["elastic"], joint.loss_factor()
     first_loading = mindlin.equivalent_damping(eta_n, joint.mass, K_n)
     C_n = select(joint.plastic_damping, first_loading, 0.0 * K_n)
     C_t = mindlin.equivalent_damping(eta_t, joint.mass, rho * K_n)
-    viscous = [select(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
-    tension = _tension(bolts, joint.pattern.bolt_position_means, displacement[2], rotation)
-    stretch_force = [joint.bolt_stiffness * sums[name] for name in _STRETCHES]
-    f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
-    eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
-    K_zz = np.maximum(area * sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off
-    K = [area * sums["tangent_x"], area * sums["tangent_y"], K_zz]
+    viscous = [
+        select(joint.damping, part, 0.0 * part)
+        for part in _damping_forces(area, contact_sums, C_t, C_n, rates)
+    ]
+    tension = _bolt_forces_and_moments(bolts, joint.pattern.bolt_position_means, displacement[2], rotation)
+    stretch_force = [joint.bolt_stiffness * contact_sums[name] for name in _ELONGATION_SUMS]
+    f_x, f_y, m_z = (-area * contact_sums[name] for name in ("traction_x", "traction_y", "torsion"))
+    eta_loop = _ratio_or_zero(contact_sums["loop_work"], 2.0 * np.pi * contact_sums["loop_energy"])
+    K_zz = np.maximum(area * contact_sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off
+    K = [area * contact_sums["tangent_x"], area * contact_sums["tangent_y"], K_zz]
     damped = [select(joint.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
     steps = [largest_stable_steps(k, c, 1.0 / joint.mass) for k, c in zip(K, damped, strict=True)]
     shortest = {
@@ -201,9 +224,18 @@ def joint_outputs(
     return {
         "f_x": f_x + viscous[0],
         "f_y": f_y + viscous[1],
-        "f_z": area * (sums["normal"] - sums["tightened"]) + tension[0] + viscous[2] - stretch_force[0],
-        "m_x": area * (sums["normal_y"] - sums["tightened_y"]) + tension[1] + viscous[3] - stretch_force[2],
-        "m_y": -area * (sums["normal_x"] - sums["tightened_x"]) + tension[2] + viscous[4] + stretch_force[1],
+        "f_z": area * (contact_sums["normal"] - contact_sums["tightened"])
+        + tension[0]
+        + viscous[2]
+        - stretch_force[0],
+        "m_x": area * (contact_sums["normal_y"] - contact_sums["tightened_y"])
+        + tension[1]
+        + viscous[3]
+        - stretch_force[2],
+        "m_y": -area * (contact_sums["normal_x"] - contact_sums["tightened_x"])
+        + tension[2]
+        + viscous[4]
+        + stretch_force[1],
         "m_z": m_z + viscous[5],
         "K_xx": K[0],
         "K_yy": K[1],
@@ -213,28 +245,30 @@ def joint_outputs(
         "C_zz": C_n,
         "eta_t": eta_t,
         "eta_n": eta_n,
-        "K_rx": np.maximum(area * sums["normal_about_x"] + bolts * bolt_y2, 0.0),
-        "K_ry": np.maximum(area * sums["normal_about_y"] + bolts * bolt_x2, 0.0),
-        "K_rz": area * sums["tangent_z"],
-        "p_mean": sums["pressure"],
+        "K_rx": np.maximum(area * contact_sums["normal_about_x"] + bolts * bolt_y2, 0.0),
+        "K_ry": np.maximum(area * contact_sums["normal_about_y"] + bolts * bolt_x2, 0.0),
+        "K_rz": area * contact_sums["tangent_z"],
+        "p_mean": contact_sums["pressure"],
         "p_max": p_max,
-        "slip": _slip(sums, joint.mu),
-        "E_loss": area * sums["loss"],
+        "slip": _friction_utilization(contact_sums, joint.mu),
+        "E_loss": area * contact_sums["loss"],
         "eta_loop": eta_loop,
-        "C_loop": mindlin.equivalent_damping(eta_loop, joint.mass, K[0] if joint.elastic else rho * K_n),
+        "C_loop": mindlin.equivalent_damping(
+            eta_loop, joint.mass, K[0] if joint.has_elastic_members else rho * K_n
+        ),
         **shortest,
     }
 
 
-def _tension(
-    stiffness: Number, means: Sequence[Number], s_z: Number, rotation: Sequence[Number]
+def _bolt_forces_and_moments(
+    stiffness: Number, position_means: Sequence[Number], s_z: Number, rotation: Sequence[Number]
 ) -> tuple[Number, Number, Number]:
     """Forces f_z, m_x, m_y [N, N.m] of bolts without gaps, each elongated by s_z + theta_x y - theta_y x.
 
     stiffness      : [N/m] of all bolts
     position_means : means of their x, y [m], x^2, y^2, x y [m2]
     """
-    x, y, x2, y2, xy = means
+    x, y, x2, y2, xy = position_means
     return (
         -stiffness * (s_z + y * rotation[0] - x * rotation[1]),
         -stiffness * (y * s_z + y2 * rotation[0] - xy * rotation[1]),
@@ -242,27 +276,29 @@ def _tension(
     )
 
 
-def _ratio(numerator: Number, denominator: Number) -> Number:
+def _ratio_or_zero(numerator: Number, denominator: Number) -> Number:
     """Ratio of numerator and denominator; 0 if the denominator is not positive."""
     some = denominator > 0.0
     return select(some, numerator / select(some, denominator, 1.0), 0.0 * numerator)
 
 
-def _slip(sums: Mapping[str, Number], mu: Number) -> Number:
+def _friction_utilization(contact_sums: Mapping[str, Number], mu: Number) -> Number:
     """Shear force over the friction limit [1]."""
-    square = sums["traction_x"] ** 2 + sums["traction_y"] ** 2
+    square = contact_sums["traction_x"] ** 2 + contact_sums["traction_y"] ** 2
     shears = square > 0.0
-    return _ratio(select(shears, np.sqrt(select(shears, square, 1.0)), 0.0 * square), mu * sums["pressure"])
+    return _ratio_or_zero(
+        select(shears, np.sqrt(select(shears, square, 1.0)), 0.0 * square), mu * contact_sums["pressure"]
+    )
 
 
-def _viscous(
-    area: Number, sums: Mapping[str, Number], C_t: Number, C_n: Number, rates: Sequence[Number]
+def _damping_forces(
+    area: Number, contact_sums: Mapping[str, Number], C_t: Number, C_n: Number, rates: Sequence[Number]
 ) -> list[Number]:
     """Forces and moments (6) [N, N.m] of dashpots, distributed over the contact like its stiffness."""
     v_x, v_y, v_z, w_x, w_y, w_z = rates
-    K, K_x, K_y = (sums[name] for name in ("stiffness", "stiffness_x", "stiffness_y"))
-    K_yy, K_xx, K_xy = (sums[name] for name in ("about_x", "about_y", "about_xy"))
-    t, n = -_ratio(C_t, K), -_ratio(C_n, K)
+    K, K_x, K_y = (contact_sums[name] for name in ("stiffness", "stiffness_x", "stiffness_y"))
+    K_yy, K_xx, K_xy = (contact_sums[name] for name in ("about_x", "about_y", "about_xy"))
+    t, n = -_ratio_or_zero(C_t, K), -_ratio_or_zero(C_n, K)
     return [
         t * (K * v_x - K_y * w_z),
         t * (K * v_y + K_x * w_z),

@@ -11,62 +11,64 @@ from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .joint import BoltedJointSpring, JointInputs
-from .law import Bolted, BoltedJoint, working_preload
+from .law import AnyBoltedJoint, BoltedJoint, working_preload
 from .outputs import bolt_force_name
 
-LINEAR = 0.5**0.5
+LINEAR_FRICTION_SHARE = 0.5**0.5
 """Shear force over friction limit [1] at which, without history, a linear force would reach the limit."""
-_PRELOAD = 30e3
+_MIN_RAMP_END_PRELOAD = 30e3
 """Smallest preload at the end of the ramp [N], if none is stated: bolts are tightened close to yield."""
-_LOOP_PRELOAD = 9e3
+_MIN_LOOP_PRELOAD = 9e3
 """Smallest preload of the load cycle [N], if none is stated: preload of the published pressures."""
 _NORMAL_INPUTS = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
-_INTERFACE = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
+_INTERFACE_OUTPUTS = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
 
 
-def _three(v: VariableValues, name: str) -> tuple[float, float, float]:
-    return v[f"{name}_x"], v[f"{name}_y"], v[f"{name}_z"]
+def _read_vector(inputs: VariableValues, vector_name: str) -> tuple[float, float, float]:
+    return inputs[f"{vector_name}_x"], inputs[f"{vector_name}_y"], inputs[f"{vector_name}_z"]
 
 
-def _advance(spring: BoltedJointSpring, v: VariableValues, history: Any) -> tuple[Mapping[str, float], Any]:
-    q = np.array([*_three(v, "s_rel"), *_three(v, "theta")])
-    rates = (*_three(v, "v_rel"), *_three(v, "omega"))
-    return spring.advance(JointInputs(v["preload"], v["moment"], q, rates), history)
+def _advance_spring(
+    spring: BoltedJointSpring, inputs: VariableValues, history: Any
+) -> tuple[Mapping[str, float], Any]:
+    q = np.array([*_read_vector(inputs, "s_rel"), *_read_vector(inputs, "theta")])
+    rates = (*_read_vector(inputs, "v_rel"), *_read_vector(inputs, "omega"))
+    return spring.advance(JointInputs(inputs["preload"], inputs["moment"], q, rates), history)
 
 
-def _find_ramp(spring: BoltedJointSpring, v: VariableValues) -> tuple[float, float]:
+def _find_ramp_range(spring: BoltedJointSpring, start_values: VariableValues) -> tuple[float, float]:
     """Start and end of the ramp of the preload [N]; it ends at the stated preload.
 
     Raises ValueError if the stated preload is not larger than its loss by embedding.
     """
-    preload, embedding = v["preload"], spring.joint.embedding
+    preload, embedding = start_values["preload"], spring.joint.embedding
     if 0.0 < preload <= embedding:
         raise ValueError(
             f"preload = {preload:g} N is outside ({embedding:g}, inf) N: embedding takes all of it; "
             "increase preload or reduce embedding"
         )
-    return 0.0, preload or max(_PRELOAD, 2.0 * embedding)
+    return 0.0, preload or max(_MIN_RAMP_END_PRELOAD, 2.0 * embedding)
 
 
-def _row_moment(joint: Any, preload: Number) -> Number:
+def _max_row_moment(joint: Any, preload: Number) -> Number:
     """Largest moment [N.m] at which no bolt force of the two rows is negative."""
     return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
 
 
-def _variant(model: Model, joint: Bolted) -> Model:
+def _make_variant(model: Model, joint: AnyBoltedJoint) -> Model:
     """Model of a parameter set: load cycle with a preload above its loss by embedding, bolt force outputs."""
     assert model.load_cycle
-    loop = replace(model.load_cycle, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
-    return _with_bolt_forces(replace(model, load_cycle=loop), joint)
+    loop = replace(model.load_cycle, settings={"preload": max(_MIN_LOOP_PRELOAD, 2.0 * joint.embedding)})
+    return _add_bolt_force_outputs(replace(model, load_cycle=loop), joint)
 
 
-def _with_bolt_forces(model: Model, joint: Bolted) -> Model:
+def _add_bolt_force_outputs(model: Model, joint: AnyBoltedJoint) -> Model:
     """Model with the bolt forces as outputs, if the members are elastic.
 
     Then all outputs depend on all motions, except the viscous damping of the interface.
     """
-    if not joint.elastic:
+    if not joint.has_elastic_members:
         return model
     meaning = (
         "force of bolt {}: preload minus embedding, plus its shares of moment and load; "
@@ -81,7 +83,7 @@ def _with_bolt_forces(model: Model, joint: Bolted) -> Model:
     }
     dependencies = {**known, "eta_t": (), **{force.name: inputs for force in forces}}
     outputs = [
-        replace(o, doc=f"{o.doc}{'; of the interface alone' if o.name in _INTERFACE else ''}")
+        replace(o, doc=f"{o.doc}{'; of the interface alone' if o.name in _INTERFACE_OUTPUTS else ''}")
         for o in model.outputs
     ]
     return replace(model, outputs=(*outputs, *forces), dependencies=dependencies)
@@ -93,7 +95,7 @@ MODELS = (
         joint="bolted_joint",
         doc="Bolted joint under uneven pressure: motion in, force out",
         parameters=BoltedJoint,
-        tabulate=BoltedJointSpring.of,
+        tabulate=BoltedJointSpring.for_joint,
         inputs=(
             Variable("preload", "N", "preload of each bolt (bolt force at tightening)", 1e4, minimum=0.0),
             Variable("moment", "N.m", "bending moment on the joint", 1e3),
@@ -172,25 +174,25 @@ MODELS = (
                 for name, doc in STABLE_STEP_OUTPUTS
             ),
         ),
-        evaluate=lambda s, v: _advance(s, v, s.initial_history())[0],
+        evaluate=lambda s, v: _advance_spring(s, v, s.initial_history())[0],
         initial_history=BoltedJointSpring.initial_history,
-        advance=_advance,
+        advance=_advance_spring,
         validity_limits=(
             ValidityLimit(
                 "moment",
-                lambda j, end, v: (-_row_moment(j, v["preload"]), _row_moment(j, v["preload"])),
+                lambda j, end, v: (-_max_row_moment(j, v["preload"]), _max_row_moment(j, v["preload"])),
                 "a bolt force would be negative; the contact is open where its pressure would be negative",
             ),
             ValidityLimit("p_max", lambda j, end, v: (-math.inf, end[1]), EXTRAPOLATION_WARNING),
             ValidityLimit(
                 "slip",
-                lambda j, end, v: (-math.inf, select(j.memory, 2.0, LINEAR)),
+                lambda j, end, v: (-math.inf, select(j.memory, 2.0, LINEAR_FRICTION_SHARE)),
                 "the shear force exceeds the friction limit (zero if the joint is open); without memory "
                 "there is no slip",
             ),
         ),
-        ramp=LoadRamp("preload", _PRELOAD, 100.0, find_range=_find_ramp),
-        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
+        ramp=LoadRamp("preload", _MIN_RAMP_END_PRELOAD, 100.0, find_range=_find_ramp_range),
+        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _MIN_LOOP_PRELOAD}),
         dependencies={
             "f_x": (*_MOTION_INPUTS, "v_rel_x", "omega_z"),
             "f_y": (*_MOTION_INPUTS, "v_rel_y", "omega_z"),
@@ -203,6 +205,6 @@ MODELS = (
             **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _NORMAL_INPUTS),
         },
         fixed_parameters=("pattern", "plate", "field", "bodies"),
-        make_variant=_variant,
+        make_variant=_make_variant,
     ),
 )

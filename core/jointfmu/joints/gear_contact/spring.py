@@ -42,7 +42,7 @@ class GearContactSpring:
     @property
     def max_force(self) -> float:
         """Force at the end of the table [N]: the hardness on the whole nominal area."""
-        return self.joint.A_0 * self.curve.end[1]
+        return self.joint.A_0 * self.curve.end_point[1]
 
     def evaluate(self, normal_force: ArrayLike) -> dict[str, Array]:
         """Outputs at normal forces f (...) [N].

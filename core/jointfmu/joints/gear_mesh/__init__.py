@@ -14,7 +14,7 @@ def _find_ramp_range(spring: GearMeshSpring, inputs: VariableValues) -> tuple[fl
     """Angles phi1 [rad] at which the driving flanks touch, and at which the load ramp ends."""
     mesh = spring.joint
     touch = 0.5 * mesh.backlash - mesh.r_b2 * inputs["phi2"]
-    return touch / mesh.r_b1, (touch + _RAMP_DEFLECTION_RATIO * spring.curve.end[0]) / mesh.r_b1
+    return touch / mesh.r_b1, (touch + _RAMP_DEFLECTION_RATIO * spring.curve.end_point[0]) / mesh.r_b1
 
 
 MODELS = (

@@ -106,7 +106,7 @@ def combine_in_series(
     return approach + load / mesh.K_tooth, load, contact * share, mesh.A_0 * d2p * share**3
 
 
-def tabulate_pair(mesh: MeshParameters) -> tuple[Curve, float]:
+def tabulate_tooth_pair(mesh: MeshParameters) -> tuple[Curve, float]:
     """Table of load [N] over deflection [m] of a tooth pair, and the deflection [m] at the end of closing.
 
     Closing is the first part of the contact, see `curve.closing_pressure`. Deflections count from first
@@ -118,26 +118,28 @@ def tabulate_pair(mesh: MeshParameters) -> tuple[Curve, float]:
     flanks = tabulate_approach(mesh)
     length = -flanks.displacement[0]
     closing = combine_in_series(mesh, length, flanks.closing_end_load, 0.0, 0.0)[0]
-    return refine_curve(lambda parts: _tabulate_pair(mesh, flanks, parts), 1), float(closing)
+    return refine_curve(lambda parts: _tabulate_with_steps(mesh, flanks, parts), 1), float(closing)
 
 
-def _tabulate_pair(mesh: MeshParameters, flanks: Curve, divisions: int) -> Curve:
+def _tabulate_with_steps(mesh: MeshParameters, flank_curve: Curve, steps_per_segment: int) -> Curve:
     """Table of a tooth pair; each segment of the flanks' curve is divided into `steps_per_segment` steps."""
-    nodes = flanks.displacement
+    nodes = flank_curve.displacement
     closing_index = int(np.searchsorted(nodes, 0.0))
-    t = np.linspace(0.0, 1.0, CLOSING_STEPS * divisions + 1)
-    kinks = 1 + np.flatnonzero(flanks.stiffness_slope_end[:-1] != flanks.stiffness_slope_start[1:])
+    t = np.linspace(0.0, 1.0, CLOSING_STEPS * steps_per_segment + 1)
+    kinks = 1 + np.flatnonzero(flank_curve.stiffness_slope_end[:-1] != flank_curve.stiffness_slope_start[1:])
     ends = [closing_index, *(int(i) for i in kinks if i > closing_index), nodes.size - 1]
     abscissas = [(t**2 - 1.0) * -nodes[0]]
     for first, end in pairwise(ends):
-        steps = np.diff(nodes[first : end + 1])[:, None] * np.arange(divisions) / divisions
+        steps = np.diff(nodes[first : end + 1])[:, None] * np.arange(steps_per_segment) / steps_per_segment
         abscissas.append(np.append((nodes[first:end, None] + steps).ravel(), nodes[end]))
     pieces = []
     for x, end in zip(abscissas, ends, strict=True):
-        pressure, stiffness, bend = flanks.derivatives(x, 2)
-        bend[-1] = flanks.stiffness_slope_end[end - 1]  # from below: the derivative jumps where a regime ends
+        pressure, stiffness, bend = flank_curve.derivatives(x, 2)
+        bend[-1] = flank_curve.stiffness_slope_end[
+            end - 1
+        ]  # from below: the derivative jumps where a regime ends
         pieces.append(combine_in_series(mesh, x - nodes[0], pressure, stiffness, bend))
-    return assemble_curve(pieces, flanks.interpolation_error)
+    return assemble_curve(pieces, flank_curve.interpolation_error)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +164,7 @@ class GearMeshSpring:
     @classmethod
     def tabulate(cls, mesh: MeshParameters) -> "GearMeshSpring":
         """Tabulate a parameter set."""
-        return cls(mesh, *tabulate_pair(mesh))
+        return cls(mesh, *tabulate_tooth_pair(mesh))
 
     def evaluate(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
         """Outputs at wheel angles phi1, phi2 (...) [rad] and speeds w1, w2 (...) [rad/s]."""
@@ -226,16 +228,18 @@ def pairs_in_contact(
     """
     helical = overlap_ratio > _MIN_OVERLAP_RATIO
     length = np.where(helical, overlap_ratio, 1.0)
-    spur_pairs, slope, _ = _section_pairs(contact_ratio, engagement, phase)
-    pairs_after, _, integral_after = _section_pairs(contact_ratio, engagement, phase + 0.5 * length)
-    pairs_before, _, integral_before = _section_pairs(contact_ratio, engagement, phase - 0.5 * length)
+    spur_pairs, slope, _ = _pairs_in_section(contact_ratio, engagement, phase)
+    pairs_after, _, integral_after = _pairs_in_section(contact_ratio, engagement, phase + 0.5 * length)
+    pairs_before, _, integral_before = _pairs_in_section(contact_ratio, engagement, phase - 0.5 * length)
     mean = contact_ratio + (integral_after - integral_before) / length
     return np.where(helical, mean, spur_pairs), np.where(
         helical, (pairs_after - pairs_before) / length, slope
     )
 
 
-def _section_pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number, Number]:
+def _pairs_in_section(
+    contact_ratio: Number, engagement: Number, phase: Number
+) -> tuple[Number, Number, Number]:
     """Number N of tooth pairs in a transverse section [1], dN/d(phase), and integral of N - contact_ratio.
 
     floor(contact_ratio) pairs are always in contact. One more pair is in contact during the fractional part

@@ -28,7 +28,7 @@ import numpy as np
 
 from ...quantity import Interval, Number, ParameterLimit, check_fields, check_limits, quantity_field, select
 
-HARMONICS = (1, 2, 4)
+KINEMATIC_ERROR_HARMONICS = (1, 2, 4)
 """Periods of the kinematic error per turn of the wave generator."""
 PLAY_WIDTH_RATIO = 0.01
 """T_p over rated torque [1]: at 4 % of rated torque the play has reached 99.93 % of its final value."""
@@ -172,7 +172,7 @@ class Drive(ABC):
         return select(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 
     @property
-    def pair_scale(self) -> Number:
+    def pair_stiffness_scale(self) -> Number:
         """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper (K_TS_pair)."""
         return 1.0
 
@@ -188,13 +188,13 @@ class Drive(ABC):
 
 def error_amplitudes(drive: Drive) -> list[Number]:
     """Amplitudes [rad] of the kinematic error, one for each of KINEMATIC_ERROR_HARMONICS."""
-    return [getattr(drive, f"error_{n}") for n in HARMONICS]
+    return [getattr(drive, f"error_{n}") for n in KINEMATIC_ERROR_HARMONICS]
 
 
 def kinematic_error(drive: Drive, phi1: Number) -> tuple[Number, Number, Number]:
     """Kinematic error (...) [rad] at angles phi1 (...) [rad]; its first [1] and second derivative [1/rad]."""
     error = slope = bend = 0.0
-    for n, amplitude in zip(HARMONICS, error_amplitudes(drive), strict=True):
+    for n, amplitude in zip(KINEMATIC_ERROR_HARMONICS, error_amplitudes(drive), strict=True):
         angle = n * phi1 + getattr(drive, f"error_{n}_phase")
         wave, wave_slope = amplitude * np.sin(angle), n * amplitude * np.cos(angle)
         error, slope, bend = error + wave, slope + wave_slope, bend - n * n * wave

@@ -38,8 +38,8 @@ HISTORY_LAYOUT = HistoryLayout({"brake": (FRICTION_SLIDERS,), "angle": (), "limi
 """History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
 _REMAINING_FRICTION_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
 _SLIDER_STIFFNESS_AND_LIMIT_SHARES = slider_shares(1.0, _REMAINING_FRICTION_SHARES)
-STIFFNESS_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[0])
-LIMIT_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[1])
+SLIDER_STIFFNESS_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[0])
+SLIDER_LIMIT_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[1])
 """Shares [1] of each slider in the total spring stiffness M/presliding and in the total limit M."""
 REFERENCE_TEMPERATURE = 293.15
 """Temperature [K] at which the friction parameters hold: 20 degrees C, as in the catalogues."""
@@ -103,10 +103,10 @@ class FrictionSliders(Sliders):
     @classmethod
     def for_drive(cls, drive: Drive) -> "FrictionSliders":
         """Sliders for the parameters of a drive."""
-        return cls(float(sticking_stiffness(drive)) * STIFFNESS_SHARES)
+        return cls(float(sticking_stiffness(drive)) * SLIDER_STIFFNESS_SHARES)
 
     def advance(
-        self, history: Array, phi1: ArrayLike, w1: ArrayLike, end_limits: Sequence[ArrayLike]
+        self, history: Array, phi1: ArrayLike, w1: ArrayLike, end_friction_limits: Sequence[ArrayLike]
     ) -> SliderUpdate:
         """Advance the sliders on a straight path to phi1.
 
@@ -118,7 +118,10 @@ class FrictionSliders(Sliders):
         The sign of the elastic predictor of a slider selects the limit that holds for it. The first step
         initializes the sliders: they advance by PRIOR_ROTATION_TIME w1, whatever phi1 is, without loss.
         """
-        start, now = HISTORY_LAYOUT.split(history), np.stack(np.broadcast_arrays(*end_limits), axis=-1)
+        start, now = (
+            HISTORY_LAYOUT.split(history),
+            np.stack(np.broadcast_arrays(*end_friction_limits), axis=-1),
+        )
         if not self.is_active:
             none = np.zeros(now.shape[:-1])
             return SliderUpdate(np.zeros((*none.shape, self.stiffness.size)), none, none)
@@ -126,18 +129,20 @@ class FrictionSliders(Sliders):
         way = np.where(begun, np.asarray(phi1) - start["angle"], PRIOR_ROTATION_TIME * np.asarray(w1))
         negative = force + self.stiffness * way[..., None] < 0.0
         before, after = (
-            np.where(negative, ends[..., 1, None], ends[..., 0, None]) * LIMIT_SHARES
+            np.where(negative, ends[..., 1, None], ends[..., 0, None]) * SLIDER_LIMIT_SHARES
             for ends in (start["limit"], now)
         )
         moved = self.advance_1d(force, way, before, after)
         return replace(moved, dissipated_energy=np.where(begun, moved.dissipated_energy, 0.0))
 
-    def pack_history(self, update: SliderUpdate, phi1: ArrayLike, end_limits: Sequence[ArrayLike]) -> Array:
+    def pack_history(
+        self, slider_update: SliderUpdate, phi1: ArrayLike, end_friction_limits: Sequence[ArrayLike]
+    ) -> Array:
         """New history variables (..., n) after the path; all zero without dry friction."""
-        shape = update.dissipated_energy.shape
+        shape = slider_update.dissipated_energy.shape
         if not self.is_active:
             return np.zeros((*shape, HISTORY_LAYOUT.size))
-        limit = np.stack(np.broadcast_arrays(*end_limits), axis=-1)
+        limit = np.stack(np.broadcast_arrays(*end_friction_limits), axis=-1)
         return HISTORY_LAYOUT.join(
-            {"brake": update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
+            {"brake": slider_update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
         )

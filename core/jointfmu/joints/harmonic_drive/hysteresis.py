@@ -31,14 +31,14 @@ from .law import ContactPairDrive, pair_log_area
 
 HYSTERESIS_SLIDERS = 44
 """Number of sliders: virgin curve within 0.2 % of M_f, loop area within 1 % for amplitudes above 0.1 M_f."""
-_GRADING, _GRADING_POWER = 3.5, 2.5
+_SHARE_GRADING, _SHARE_GRADING_POWER = 3.5, 2.5
 """Grading of REMAINING_FRICTION_SHARES [1]: fine where the first sliders slip, coarse where the last do."""
 _MOBILISED_FRICTION_SHARES = np.expm1(
-    _GRADING * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS
-) / np.expm1(_GRADING)
+    _SHARE_GRADING * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS
+) / np.expm1(_SHARE_GRADING)
 HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDERS,), "wind_up": (), "loss": ()})
 """History variables of the hysteresis: slider torques [N.m], wind-up [rad], loss [J]."""
-REMAINING_FRICTION_SHARES = (*((1.0 - _MOBILISED_FRICTION_SHARES) ** _GRADING_POWER).tolist(), 0.0)
+REMAINING_FRICTION_SHARES = (*((1.0 - _MOBILISED_FRICTION_SHARES) ** _SHARE_GRADING_POWER).tolist(), 0.0)
 """Values of s [1], from 1 down to 0, that separate the sliders."""
 WIND_UP_TOLERANCE = 4e-16
 """Change of the wind-up [1], over the sum of wind-up and M_f/K_h, below which its iteration stops."""
@@ -59,8 +59,8 @@ def stiffness_exponent(drive: Drive) -> Number:
     if not isinstance(drive, ContactPairDrive):
         return 1.0
     spots, u = drive.pair_law.spots(), pair_log_area(drive, 0.0)
-    power = spots.log_total("load", 0.0)[1]
-    return spots.total_derivative("normal", u) / (spots.total("normal", u) * power)
+    power = spots.log_sum_over_spots("load", 0.0)[1]
+    return spots.sum_derivative("normal", u) / (spots.sum_over_spots("normal", u) * power)
 
 
 def slider_shares(
@@ -145,10 +145,10 @@ class HysteresisSliders(Sliders):
         increment = np.asarray(phi, dtype=np.float64) - variables["wind_up"]
         return self.advance_1d(variables["force"], increment, self.friction_limit, self.friction_limit)
 
-    def pack_history(self, update: SliderUpdate, phi: ArrayLike, total_loss: Array) -> Array:
+    def pack_history(self, slider_update: SliderUpdate, phi: ArrayLike, total_loss: Array) -> Array:
         """New history variables (..., n) after the path to phi (...) [rad]; loss (...) [J] is the total."""
         return HISTORY_LAYOUT.join(
-            {"force": update.force, "wind_up": phi, "loss": total_loss}, *total_loss.shape
+            {"force": slider_update.force, "wind_up": phi, "loss": total_loss}, *total_loss.shape
         )
 
     def solve_wind_up(self, curve: Curve, history: Array, torque: ArrayLike) -> Array:

@@ -174,7 +174,7 @@ class HarmonicDrive(ContactPairDrive):
         return self.drive_scale * 2.0 * self.radius * self.A_0 / self.node_area
 
     @property
-    def pair_scale(self) -> Number:
+    def pair_stiffness_scale(self) -> Number:
         """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper: drive_scale."""
         return self.drive_scale
 
@@ -260,7 +260,7 @@ def peak_pressure(drive: ContactPairDrive, torque: Number) -> tuple[Number, Numb
 def pair_log_area(drive: ContactPairDrive, torque: Number) -> Number:
     """Log-area u (...) [1] of the largest spot, at the mean pressure of the pair at torques (...) [N.m]."""
     law = drive.pair_law
-    start, power = law.spots().log_total("load", 0.0)
+    start, power = law.spots().log_sum_over_spots("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
 
 
@@ -272,9 +272,9 @@ def pair_stiffness(drive: ContactPairDrive, torque: Number) -> tuple[Number, Num
     """
     peak, pressure_slope = peak_pressure(drive, torque)
     spots, u = drive.pair_law.spots(), pair_log_area(drive, torque)
-    power = spots.log_total("load", 0.0)[1]
-    slope = spots.total_derivative("tangential", u) / (power * peak)
-    return drive.pair_stiffness_factor * spots.total(
+    power = spots.log_sum_over_spots("load", 0.0)[1]
+    slope = spots.sum_derivative("tangential", u) / (power * peak)
+    return drive.pair_stiffness_factor * spots.sum_over_spots(
         "tangential", u
     ), drive.pair_stiffness_factor * slope * pressure_slope
 

@@ -42,7 +42,7 @@ PLAY_NODE_COUNT = 60
 """Nodes for the play on the first line of a catalogue drive: the torque error is below 1e-8 rated_torque."""
 PLAY_END_TORQUE_RATIO = 8.0
 """Torque over T_p of the play [1] at which the play has ended: 2e-7 of lost_motion is missing."""
-_SAMPLE_POINTS = np.linspace(0.0, 1.0, 33)
+_SEGMENT_SAMPLE_POINTS = np.linspace(0.0, 1.0, 33)
 
 
 class SplineNode(NamedTuple):
@@ -322,7 +322,7 @@ def _sample_stiffness(
     node_stiffness               : (n + 1) stiffness at the nodes
     slope_after, slope_before    : (n) derivative of the stiffness at the start and at the end of each segment
     """
-    t = _SAMPLE_POINTS[:, None]
+    t = _SEGMENT_SAMPLE_POINTS[:, None]
     first, last = node_stiffness[:-1], node_stiffness[1:]
     a2 = torque_steps / segment_widths
     c0 = 0.5 * segment_widths * slope_after

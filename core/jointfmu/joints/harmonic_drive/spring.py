@@ -238,6 +238,6 @@ def stiffness_outputs(drive: Drive, midline_torque: Number, midline_stiffness: N
         "K_WTS": midline_stiffness,
         "K_TS": K_TS,
         "K_FTS": drive.K_FTS + 0.0 * midline_stiffness,
-        "K_TS_pair": K_TS / drive.pair_scale,
+        "K_TS_pair": K_TS / drive.pair_stiffness_scale,
         "p_max": drive.pressure(midline_torque),
     }

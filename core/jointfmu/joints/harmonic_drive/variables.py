@@ -3,7 +3,7 @@
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity.units import LUBRICANT_TEMPERATURES
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
-from .drive import HARMONICS
+from .drive import KINEMATIC_ERROR_HARMONICS
 from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
@@ -27,8 +27,10 @@ _FLANGE_MOTION_INPUTS = ("phi1", "w1", "phi2", "w2")
 _FIXED_PARAMETERS = ("max_torque", "shear_traction", "table")
 _LOAD_CYCLE_SETTINGS = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """Parameters of the load cycle: hysteresis of one arcmin; the default drive has no hysteresis."""
-_SPEED_FACTOR_KINDS = {"w2": "parameters"}
-_ERROR_PARAMETERS = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
+_LINEAR_SPEED_FACTORS = {"w2": "parameters"}
+_KINEMATIC_ERROR_PARAMETERS = tuple(
+    f"error_{n}{what}" for n in KINEMATIC_ERROR_HARMONICS for what in ("", "_phase")
+)
 _FRICTION_PARAMETERS = (
     "friction_coulomb",
     "friction_stribeck",
@@ -46,7 +48,7 @@ _SPRING_PARAMETERS = (
     *_FRICTION_PARAMETERS,
     "presliding",
     *_TEMPERATURE_PARAMETERS,
-    *_ERROR_PARAMETERS,
+    *_KINEMATIC_ERROR_PARAMETERS,
     "inertia1",
     "inertia2",
 )
@@ -132,8 +134,8 @@ MODELS = (
         },
         linear_factors={
             "phi_rel": {"phi2": "constant"},
-            "tau2": _SPEED_FACTOR_KINDS,
-            "tau": _SPEED_FACTOR_KINDS,
+            "tau2": _LINEAR_SPEED_FACTORS,
+            "tau": _LINEAR_SPEED_FACTORS,
         },
         fixed_parameters=_FIXED_PARAMETERS,
     ),

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...quantity import Array, check_fields, quantity_field
 from .distribution import NodalField, PositionMeans, PressureDistribution, position_means
-from .plate import EDGE_FACTOR, BoltedPlate
+from .plate import EDGE_TOLERANCE_FACTOR, BoltedPlate
 
 CELLS_ACROSS_FLANGE = 7
 """Number of cells across the flange [1]: 1000 nodes for the default frame; Zhao's mesh has 1019."""
@@ -38,7 +38,7 @@ class BoltedFrame:
             )
 
     @property
-    def bolts(self) -> Array:
+    def bolts_from_middle(self) -> Array:
         """Bolt positions (8, 2) [m]: rows y > 0, y = 0, y < 0."""
         x, y = 0.5 * self.column_spacing, 0.5 * self.row_spacing
         return np.array([[-x, y], [0, y], [x, y], [-x, 0], [x, 0], [-x, -y], [0, -y], [x, -y]])
@@ -47,7 +47,7 @@ class BoltedFrame:
     def area(self) -> float:
         """Area [m2] of the contact: the frame without its holes."""
         frame = 2.0 * self.flange_width * (self.column_spacing + self.row_spacing)
-        return frame - 0.25 * np.pi * len(self.bolts) * self.hole_diameter**2
+        return frame - 0.25 * np.pi * len(self.bolts_from_middle) * self.hole_diameter**2
 
     @property
     def equivalent_bolt_rows(self) -> tuple[float, float]:
@@ -62,7 +62,7 @@ class BoltedFrame:
     @property
     def bolt_positions(self) -> Array:
         """Positions (8, 2) [m] of the bolts, from the centroid of the contact."""
-        return self.bolts
+        return self.bolts_from_middle
 
     def pressure_decay(self, distance: Array) -> Array:
         """Pressure of one bolt over its value at the axis [1]: (1 + (r/decay_length)^2)^-decay_exponent.
@@ -79,22 +79,22 @@ class BoltedFrame:
         return PressureDistribution(
             area_share=areas / areas.sum(),
             position=points - centroid,
-            preload_shape=unit.mean(axis=0),
-            moment_shape=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
+            preload_pressure_ratio=unit.mean(axis=0),
+            moment_pressure_ratio=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
         )
 
 
-def frame_cells(bolted_frame: BoltedFrame) -> tuple[Array, Array]:
+def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
     """Areas (n) [m2] and centroids (n, 2) [m] of square cells of the frame, without the holes."""
-    size = bolted_frame.flange_width / CELLS_ACROSS_FLANGE
-    half = 0.5 * np.array([bolted_frame.column_spacing, bolted_frame.row_spacing])
-    outer, inner = half + 0.5 * bolted_frame.flange_width, half - 0.5 * bolted_frame.flange_width
+    size = frame_geometry.flange_width / CELLS_ACROSS_FLANGE
+    half = 0.5 * np.array([frame_geometry.column_spacing, frame_geometry.row_spacing])
+    outer, inner = half + 0.5 * frame_geometry.flange_width, half - 0.5 * frame_geometry.flange_width
     count = np.maximum(np.round(2.0 * outer / size).astype(int), 1)
     sub = [(np.arange(n * _CELL_SUBDIVISIONS) + 0.5) / (n * _CELL_SUBDIVISIONS) for n in count]
     x, y = np.meshgrid(*(o * (2.0 * s - 1.0) for o, s in zip(outer, sub, strict=True)), indexing="ij")
-    solid = (np.abs(x) > inner[0] * EDGE_FACTOR) | (np.abs(y) > inner[1] * EDGE_FACTOR)
-    for bx, by in bolted_frame.bolts:
-        solid &= np.hypot(x - bx, y - by) > 0.5 * bolted_frame.hole_diameter * EDGE_FACTOR
+    solid = (np.abs(x) > inner[0] * EDGE_TOLERANCE_FACTOR) | (np.abs(y) > inner[1] * EDGE_TOLERANCE_FACTOR)
+    for bx, by in frame_geometry.bolts_from_middle:
+        solid &= np.hypot(x - bx, y - by) > 0.5 * frame_geometry.hole_diameter * EDGE_TOLERANCE_FACTOR
     area = 4.0 * outer[0] * outer[1] / solid.size
 
     def sum_cell_values(values: Array) -> Array:
@@ -108,7 +108,7 @@ def frame_cells(bolted_frame: BoltedFrame) -> tuple[Array, Array]:
 
 
 def bolt_pressures(
-    bolted_frame: BoltedFrame, areas: Array, cell_points: Array, evaluation_points: Array
+    frame_geometry: BoltedFrame, areas: Array, cell_points: Array, evaluation_points: Array
 ) -> Array:
     """Pressure (8, k) [Pa] by 1 N in each of the eight bolts.
 
@@ -116,11 +116,13 @@ def bolt_pressures(
     evaluation_points  : (k, 2) [m] at which the pressure is computed
     """
 
-    def decay(positions: Array) -> Array:
-        offset = positions[None, :, :] - bolted_frame.bolts[:, None, :]
-        return bolted_frame.pressure_decay(np.hypot(offset[..., 0], offset[..., 1]))
+    def unscaled_pressure(positions: Array) -> Array:
+        offset = positions[None, :, :] - frame_geometry.bolts_from_middle[:, None, :]
+        return frame_geometry.pressure_decay(np.hypot(offset[..., 0], offset[..., 1]))
 
-    return np.asarray(decay(evaluation_points) / np.sum(areas * decay(cell_points), axis=1)[:, None])
+    return np.asarray(
+        unscaled_pressure(evaluation_points) / np.sum(areas * unscaled_pressure(cell_points), axis=1)[:, None]
+    )
 
 
 PressureSource: TypeAlias = BoltedFrame | BoltedPlate | NodalField

@@ -27,13 +27,16 @@ class PressureDistribution:
 
     area_share: Array
     position: Array
-    preload_shape: Array
-    moment_shape: Array
+    preload_pressure_ratio: Array
+    moment_pressure_ratio: Array
 
-    def select_nodes(self, nodes: "slice | NDArray[np.intp]") -> "PressureDistribution":
+    def select_nodes(self, node_indices: "slice | NDArray[np.intp]") -> "PressureDistribution":
         """Distribution at a subset of the nodes, with unchanged shares."""
         return PressureDistribution(
-            self.area_share[nodes], self.position[nodes], self.preload_shape[nodes], self.moment_shape[nodes]
+            self.area_share[node_indices],
+            self.position[node_indices],
+            self.preload_pressure_ratio[node_indices],
+            self.moment_pressure_ratio[node_indices],
         )
 
     def as_patches(self) -> "FrictionPatches":
@@ -41,8 +44,8 @@ class PressureDistribution:
         return FrictionPatches(
             self.area_share,
             self.position,
-            self.preload_shape,
-            self.moment_shape,
+            self.preload_pressure_ratio,
+            self.moment_pressure_ratio,
             np.zeros_like(self.area_share),
         )
 
@@ -51,12 +54,12 @@ class PressureDistribution:
 
         keeps_moment : False: merge nodes with the same pressure at every preload, without moment
         """
-        tilt = self.moment_shape if keeps_moment else 0.0 * self.moment_shape
-        keys = np.round(np.column_stack([self.preload_shape, tilt]), PRESSURE_DECIMALS)
+        tilt = self.moment_pressure_ratio if keeps_moment else 0.0 * self.moment_pressure_ratio
+        keys = np.round(np.column_stack([self.preload_pressure_ratio, tilt]), PRESSURE_DECIMALS)
         _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
         share = np.asarray(np.bincount(group.ravel(), self.area_share), dtype=np.float64)
         x2, y2 = (np.bincount(group.ravel(), self.area_share * x**2) / share for x in self.position.T)
-        return MergedDistribution(share, self.preload_shape[first], tilt[first], x2, y2)
+        return MergedDistribution(share, self.preload_pressure_ratio[first], tilt[first], x2, y2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +73,7 @@ class FrictionPatches(PressureDistribution):
     radius: Array
 
 
-def moment_pressure(area_share: Array, y: Array, preload_shape: Array) -> Array:
+def moment_pressure(area_share: Array, y: Array, preload_pressure_ratio: Array) -> Array:
     """Pressure (n) [1/m] by a moment of 1 N.m on an area of 1 m2, linear in the distance from the centre.
 
     It is p (y - y_p)/sum(area_share p (y - y_p)^2): p = preload_pressure_ratio, y_p centre of pressure.
@@ -78,14 +81,14 @@ def moment_pressure(area_share: Array, y: Array, preload_shape: Array) -> Array:
 
     Raises ValueError if all nodes in contact have the same y.
     """
-    force = area_share * preload_shape
+    force = area_share * preload_pressure_ratio
     distances = y - force @ y
     second_moment = float(force @ distances**2)
     if not second_moment > 0.0:
         raise ValueError(
             "all nodes in contact have the same y, expected a contact that extends across the bolt rows"
         )
-    return np.asarray(preload_shape * distances / second_moment)
+    return np.asarray(preload_pressure_ratio * distances / second_moment)
 
 
 BOLT_MEAN_NAMES = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
@@ -109,8 +112,8 @@ class MergedDistribution:
     """
 
     area_share: Array
-    preload_shape: Array
-    moment_shape: Array
+    preload_pressure_ratio: Array
+    moment_pressure_ratio: Array
     mean_square_x: Array
     mean_square_y: Array
 
@@ -131,8 +134,8 @@ def nodal_field_entries(distribution: PressureDistribution) -> dict[str, tuple[f
             (
                 distribution.area_share,
                 *distribution.position.T,
-                distribution.preload_shape,
-                distribution.moment_shape,
+                distribution.preload_pressure_ratio,
+                distribution.moment_pressure_ratio,
             ),
             strict=True,
         )
@@ -234,13 +237,23 @@ class NodalField:
         shape, owner = self._make_distribution(entry_prefix), "of the patches" if entry_prefix else ""
         reach = float(np.max(np.abs(shape.position)))
         x, y = shape.area_share @ shape.position
-        steep = max(float(np.max(np.abs(shape.moment_shape))), 1.0)
+        steep = max(float(np.max(np.abs(shape.moment_pressure_ratio))), 1.0)
         for text, value, expected, size in (
             (f"the sum of {entry_prefix}share", float(np.sum(shape.area_share)), 1.0, 1.0),
             ("x of the centroid", float(x), 0.0, reach),
             ("y of the centroid", float(y), 0.0, reach),
-            (f"the mean of {entry_prefix}equal", float(shape.area_share @ shape.preload_shape), 1.0, 1.0),
-            (f"the mean of {entry_prefix}tilt", float(shape.area_share @ shape.moment_shape), 0.0, steep),
+            (
+                f"the mean of {entry_prefix}equal",
+                float(shape.area_share @ shape.preload_pressure_ratio),
+                1.0,
+                1.0,
+            ),
+            (
+                f"the mean of {entry_prefix}tilt",
+                float(shape.area_share @ shape.moment_pressure_ratio),
+                0.0,
+                steep,
+            ),
         ):
             if not abs(value - expected) <= BALANCE_TOLERANCE * size:
                 text = f"{text} {owner}".rstrip() if "centroid" in text else text

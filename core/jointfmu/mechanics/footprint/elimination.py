@@ -77,22 +77,22 @@ def solve_linear(matrix: Array, right_side: Array) -> Array:
     return out
 
 
-def weight_changes(weights: Array, functions: Array, residual: Array) -> Array:
+def weight_changes(weights: Array, function_values: Array, sum_changes: Array) -> Array:
     """Changes (n) of weights (n) that give required changes (m) of the weighted sums of functions (m, n).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """
     root = np.sqrt(np.abs(weights))
-    rows = functions * root
+    rows = function_values * root
     places, base = select_independent(rows, len(rows), CORRECTION_TOLERANCE)
-    factors = weighted_sums(_invert_triangle(matrix_product(rows[places], base)), residual[places])
+    factors = weighted_sums(_invert_triangle(matrix_product(rows[places], base)), sum_changes[places])
     return np.asarray(root * linear_combination(factors, base))
 
 
-def _invert_triangle(triangle: Array) -> Array:
+def _invert_triangle(lower_triangle: Array) -> Array:
     """Inverse of a lower triangular matrix (r, r)."""
-    out = np.zeros_like(triangle)
-    for i, row in enumerate(triangle):
+    out = np.zeros_like(lower_triangle)
+    for i, row in enumerate(lower_triangle):
         out[i, :i] = -linear_combination(row[:i], out[:i, :i])
         out[i, i] = 1.0
         out[i] /= row[i]

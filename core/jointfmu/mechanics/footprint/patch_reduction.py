@@ -51,43 +51,43 @@ MIN_MOTION_LENGTH, MAX_MOTION_LENGTH = 0.05, 3.0
 all but UNMOBILISED_FRICTION_SHARE of its friction."""
 UNMOBILISED_FRICTION_SHARE = 2.0**-13
 """Share of the friction that is not yet mobilised [1], for the scale of motions."""
-MAX_ITERATIONS = 50
+FIT_ITERATIONS = 50
 """Iterations of the Levenberg-Marquardt method [1]."""
-INITIAL_DAMPING, MIN_DAMPING = 1e-2, 1e-6
+INITIAL_MARQUARDT_DAMPING, MIN_MARQUARDT_DAMPING = 1e-2, 1e-6
 """Initial and smallest damping, over the diagonal of the normal equations [1]."""
-DAMPING_DECREASE, DAMPING_INCREASE = 0.2, 5.0
+MARQUARDT_DAMPING_DECREASE, MARQUARDT_DAMPING_INCREASE = 0.2, 5.0
 """Factors on the damping after a successful and after a rejected step [1]."""
 MAX_RELATIVE_STEP = 0.5
 """Largest relative change of a share, position or pressure in one step [1]."""
-MIN_DIAGONAL_RATIO = 1e-9
+MIN_NORMAL_DIAGONAL_RATIO = 1e-9
 """Smallest diagonal of the normal equations used for damping, over the largest [1]."""
 EXACT_SUM_WEIGHT = 400.0
 """Weight of an exact sum over the weight of a case [1]."""
 RELATIVE_PERTURBATION = 1e-6
 """Relative perturbation of a position or pressure for finite differences [1]."""
-BATCH_SIZE = 2000
+NODES_PER_BATCH = 2000
 """Number of nodes whose friction is evaluated at once [1]."""
-MAX_POLE_OFFSET, GROSS_SLIP_MOTION_LENGTH = 0.06, 1e3
+MAX_ROTATION_POLE_OFFSET, GROSS_SLIP_MOTION_LENGTH = 0.06, 1e3
 """Largest distance of a pole of gross slip from a loaded node, over the radius of gyration [1]; length of the
 motion in gross slip [1]."""
-TILTED_POLE_PERIOD = 8
+TILTED_GROSS_SLIP_PERIOD = 8
 """One of this number of cases of gross slip [1] has a tilted contact; the others have no moment."""
-POLE_WEIGHT, TORQUE_WEIGHT, TRANSLATION_WEIGHT = 12.0, 5.0, 4.0
+GROSS_SLIP_FORCE_WEIGHT, GROSS_SLIP_TORQUE_WEIGHT, LOSS_AND_TRANSLATION_WEIGHT = 12.0, 5.0, 4.0
 """Weights [1]: forces in gross slip; torques in gross slip; losses in gross slip and all values of
 translations and of rotations about the centre. All other values have the weight 1."""
-CIRCLE_POINT_COUNT = 4
+SLIDER_CIRCLE_POINT_COUNT = 4
 """Number of points on the circle of a patch that represent its sliders in the fit [1]."""
-CIRCLE_RADIUS_RATIO = 0.9
+SLIDER_CIRCLE_RADIUS_RATIO = 0.9
 """Radius of the circle over the radius of gyration of the friction of a patch [1]: in a rotation about a pole
 inside it, a disc acts like a smaller ring."""
-ADDED_PRESSURE_RATIO, DIVISION_ITERATIONS = 0.1, 5
+DIVISION_PRESSURE_RATIO, LLOYD_ITERATIONS = 0.1, 5
 """Pressure over mean pressure [1] that is added to that of each node for the division among patches, and
 number of iterations of the division [1]."""
 SMALLEST_FLOAT = float(np.finfo(float).tiny)
 _SEQUENCE_STEPS = successive_powers(1.0 / 1.0969815577985598, 7)
 """Increments of a low-discrepancy sequence in seven dimensions [1]: powers of 1/x with x^8 = x + 1."""
-CIRCLE_POINTS = round_to_digits(
-    np.exp(2j * np.pi * (np.arange(CIRCLE_POINT_COUNT) + 0.25) / CIRCLE_POINT_COUNT).view(float)
+SLIDER_CIRCLE_POINTS = round_to_digits(
+    np.exp(2j * np.pi * (np.arange(SLIDER_CIRCLE_POINT_COUNT) + 0.25) / SLIDER_CIRCLE_POINT_COUNT).view(float)
 ).reshape(-1, 2)
 """Points (SLIDER_CIRCLE_POINT_COUNT, 2) [1] on the unit circle that represent the sliders of a patch."""
 
@@ -108,13 +108,21 @@ def reduce_patches(
         return distribution.as_patches()
     rough = round_distribution(distribution)
     gyration = float(np.sqrt(np.add.reduce(rough.area_share * np.add.reduce(rough.position**2, axis=1))))
-    highest = float(np.max(rough.preload_shape))
-    steep = max(float(np.max(np.abs(rough.moment_shape))), SMALLEST_FLOAT)
+    highest = float(np.max(rough.preload_pressure_ratio))
+    steep = max(float(np.max(np.abs(rough.moment_pressure_ratio))), SMALLEST_FLOAT)
     unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
     few = reduce_points(rough if start_points is None else round_distribution(start_points), max_patch_count)
     first = _divide_nodes(rough, few.position)
     nodes, there, points = (
-        np.stack([each.area_share, *each.position.T, each.preload_shape, each.moment_shape, each.radius])
+        np.stack(
+            [
+                each.area_share,
+                *each.position.T,
+                each.preload_pressure_ratio,
+                each.moment_pressure_ratio,
+                each.radius,
+            ]
+        )
         / unit
         for each in (rough.as_patches(), distribution.as_patches(), first)
     )
@@ -129,12 +137,12 @@ def reduce_patches(
     return replace(few.as_patches(), radius=radius * _radius_signs(share * equal * radius))
 
 
-def _radius_signs(force: Array) -> Array:
+def _radius_signs(patch_forces: Array) -> Array:
     """Signs (m) [1] of the circle radii: negative for every second patch in descending order of forces (m).
 
     Their circles are turned by 180 degrees, so that errors of stepwise slip cancel between patches.
     """
-    return np.where(rank_descending(force) % 2 == 0, 1.0, -1.0)
+    return np.where(rank_descending(patch_forces) % 2 == 0, 1.0, -1.0)
 
 
 def _divide_nodes(distribution: PressureDistribution, centres: Array) -> FrictionPatches:
@@ -146,12 +154,12 @@ def _divide_nodes(distribution: PressureDistribution, centres: Array) -> Frictio
     centres : (m, 2) initial positions of the patches
     """
     share, (x, y) = distribution.area_share, distribution.position.T
-    weight, count = share * (distribution.preload_shape + ADDED_PRESSURE_RATIO), len(centres)
+    weight, count = share * (distribution.preload_pressure_ratio + DIVISION_PRESSURE_RATIO), len(centres)
 
     def sum_over_nodes(values: Array) -> Array:
         return np.asarray(np.bincount(nearest, values, count))
 
-    for _ in range(DIVISION_ITERATIONS):
+    for _ in range(LLOYD_ITERATIONS):
         square = (x - centres[:, :1]) ** 2 + (y - centres[:, 1:]) ** 2
         nearest = np.argmin(square, axis=0)
         whole = np.maximum(sum_over_nodes(weight), SMALLEST_FLOAT)
@@ -160,12 +168,14 @@ def _divide_nodes(distribution: PressureDistribution, centres: Array) -> Frictio
     area = np.maximum(sum_over_nodes(share), SMALLEST_FLOAT)
     xx, xy, yy = (float(np.add.reduce(share * each)) for each in (x * x, x * y, y * y))
     thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 for nodes on a line
-    radius = np.minimum(CIRCLE_RADIUS_RATIO * np.sqrt(sum_over_nodes(weight * away) / whole), np.sqrt(thin))
+    radius = np.minimum(
+        SLIDER_CIRCLE_RADIUS_RATIO * np.sqrt(sum_over_nodes(weight * away) / whole), np.sqrt(thin)
+    )
     return FrictionPatches(
         area,
         centres,
-        sum_over_nodes(share * distribution.preload_shape) / area,
-        sum_over_nodes(share * distribution.moment_shape) / area,
+        sum_over_nodes(share * distribution.preload_pressure_ratio) / area,
+        sum_over_nodes(share * distribution.moment_pressure_ratio) / area,
         radius,
     )
 
@@ -193,7 +203,7 @@ class _SlipCases:
     motion_length: Array
 
     @classmethod
-    def sample(cls, nodes: Array, largest_moment: float, max_coordinates: Array) -> "_SlipCases":
+    def sample_cases(cls, nodes: Array, largest_moment: float, max_coordinates: Array) -> "_SlipCases":
         """Sample the cases evenly (low-discrepancy sequence) for a contact with nodes (6, n).
 
         Of the SLIP_CASE_COUNT a quarter are translations, a quarter rotations about the centre, and
@@ -208,7 +218,7 @@ class _SlipCases:
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
         gross = number > SLIP_CASE_COUNT
         moves = np.where(
-            gross, number % TILTED_POLE_PERIOD == 0, number > UNTILTED_CASE_SHARE * SLIP_CASE_COUNT
+            gross, number % TILTED_GROSS_SLIP_PERIOD == 0, number > UNTILTED_CASE_SHARE * SLIP_CASE_COUNT
         )
         moment = np.where(gross & ~moves, 0.0, moment)
         kind = np.where(gross, 2, np.minimum(number % 4, 2))
@@ -216,7 +226,10 @@ class _SlipCases:
         across = np.sign(angle) * (1.0 - np.abs(along))
         force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones_like(along)
         _, x, y, *_ = nodes[:, np.searchsorted(force, 0.5 * (1.0 + place) * force[-1])]
-        x, y = x + gross * MAX_POLE_OFFSET * angle, y + gross * MAX_POLE_OFFSET * (2.0 * unit[:, 6] - 1.0)
+        x, y = (
+            x + gross * MAX_ROTATION_POLE_OFFSET * angle,
+            y + gross * MAX_ROTATION_POLE_OFFSET * (2.0 * unit[:, 6] - 1.0),
+        )
         shift_or_turn = ((along, nothing, y), (across, nothing, -x), (nothing, one, one))
         motion = np.stack([np.choose(kind, each) for each in shift_or_turn])
         motion /= np.sqrt(np.add.reduce(motion * motion, axis=0))
@@ -253,7 +266,7 @@ class _SlipCases:
         most = binary_power(now, self.law_exponent)
         whole = np.zeros((4, *now.shape))
         turned = np.zeros(now.shape)
-        places, stored = CIRCLE_POINTS if np.any(radius) else CIRCLE_POINTS[:1], now * most
+        places, stored = SLIDER_CIRCLE_POINTS if np.any(radius) else SLIDER_CIRCLE_POINTS[:1], now * most
         for along, across in places:
             there_x, there_y = x + along * radius, y + across * radius
             u = self.motion_direction[0] - self.motion_direction[2] * there_y
@@ -283,7 +296,7 @@ class _TargetSums:
     target_sums       : (m + 12) [1] all sums, weighted
     """
 
-    cases: _SlipCases
+    slip_cases: _SlipCases
     max_coordinates: Array
     friction_weights: Array
     exact_sum_weights: Array
@@ -294,11 +307,11 @@ class _TargetSums:
     def for_nodes(cls, nodes: Array, largest_moment: float) -> "_TargetSums":
         """Compute the target sums of nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), SMALLEST_FLOAT)
-        motions, share = _SlipCases.sample(nodes, largest_moment, reach), nodes[0]
+        motions, share = _SlipCases.sample_cases(nodes, largest_moment, reach), nodes[0]
         friction = np.zeros(4 * (SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT))
         gross = np.zeros(SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT)
-        for first in range(0, share.size, BATCH_SIZE):
-            some = nodes[:, first : first + BATCH_SIZE]
+        for first in range(0, share.size, NODES_PER_BATCH):
+            some = nodes[:, first : first + NODES_PER_BATCH]
             each, most = motions.evaluate_friction(some)
             friction, gross = friction + weighted_sums(each, some[0]), gross + weighted_sums(most, some[0])
         scale = 1.0 / np.maximum(
@@ -306,10 +319,15 @@ class _TargetSums:
         )
         shift_x, shift_y, turn = motions.motion_direction[:, :, 0]
         centred = (turn == 0.0) | ((shift_x == 0.0) & (shift_y == 0.0))
-        weight = np.tile(np.where(centred, TRANSLATION_WEIGHT, 1.0), (4, 1))
-        weight[:, SLIP_CASE_COUNT:] = np.array([POLE_WEIGHT, POLE_WEIGHT, TORQUE_WEIGHT, TRANSLATION_WEIGHT])[
-            :, None
-        ]
+        weight = np.tile(np.where(centred, LOSS_AND_TRANSLATION_WEIGHT, 1.0), (4, 1))
+        weight[:, SLIP_CASE_COUNT:] = np.array(
+            [
+                GROSS_SLIP_FORCE_WEIGHT,
+                GROSS_SLIP_FORCE_WEIGHT,
+                GROSS_SLIP_TORQUE_WEIGHT,
+                LOSS_AND_TRANSLATION_WEIGHT,
+            ]
+        )[:, None]
         scale *= weight.ravel()
         exact = _scaled_exact_functions(nodes, reach)
         held, size = weighted_sums(exact, share), weighted_sums(np.abs(exact), share)
@@ -319,9 +337,9 @@ class _TargetSums:
         sums = np.concatenate([scale * friction, hold * held])
         return cls(motions, reach, scale, hold, held, sums)
 
-    def evaluate_functions(self, points: Array) -> Array:
+    def evaluate_sum_functions(self, points: Array) -> Array:
         """Functions (m + 12, n) [1] of points (6, n); sums weighted by share should be `target_sums`."""
-        friction = self.cases.evaluate_friction(points)[0] * self.friction_weights[:, None]
+        friction = self.slip_cases.evaluate_friction(points)[0] * self.friction_weights[:, None]
         return np.concatenate(
             [
                 friction,
@@ -331,7 +349,7 @@ class _TargetSums:
 
     def find_residual(self, points: Array) -> tuple[Array, Array]:
         """Weighted functions (m + 12, n) of points (6, n), and the residual (m + 12) of their sums."""
-        values = self.evaluate_functions(points)
+        values = self.evaluate_sum_functions(points)
         return values, weighted_sums(values, points[0]) - self.target_sums
 
 
@@ -357,7 +375,7 @@ def _scaled_exact_functions(points: Array, max_coordinates: Array) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class _LinearProblem:
+class _LinearisedFit:
     """Linearised least-squares problem: residual of the sums as a function of relative changes of the points.
 
     sum_residual : (m) residual of the sums [1]
@@ -366,53 +384,56 @@ class _LinearProblem:
     gradient : (5 n) gradient [1] of half the sum of squared residuals
     """
 
-    residual: Array
+    sum_residual: Array
     change_scale: Array
     normal_matrix: Array
     gradient: Array
 
     @classmethod
     def linearise(
-        cls, points: Array, target: _TargetSums, function_values: Array, residual: Array
-    ) -> "_LinearProblem":
+        cls, points: Array, fit_target: _TargetSums, function_values: Array, residual: Array
+    ) -> "_LinearisedFit":
         """Linearise at points (6, n) with constant radii.
 
         function_values, residual : result of `_TargetSums.find_residual` at these points
         """
         share, *_, equal, _, _ = points
         one = np.ones_like(share)
-        size = np.stack([share, *np.outer(target.max_coordinates, one), equal, equal])
+        size = np.stack([share, *np.outer(fit_target.max_coordinates, one), equal, equal])
         slopes = [function_values * share]
         for place in range(1, 5):
             moved = points.copy()
             moved[place] += RELATIVE_PERTURBATION * size[place]
             slopes.append(
-                (target.evaluate_functions(moved) - function_values) / RELATIVE_PERTURBATION * share
+                (fit_target.evaluate_sum_functions(moved) - function_values) / RELATIVE_PERTURBATION * share
             )
         slope = np.concatenate(slopes, axis=1).T.copy()
         return cls(residual, size, gram_matrix(slope), weighted_sums(slope, residual))
 
-    def solve_step(self, damping: float) -> Array:
+    def solve_marquardt_step(self, damping: float) -> Array:
         """Levenberg-Marquardt step: change (6, n) of the points for a damping [1]."""
         own = np.diag(self.normal_matrix)
-        diagonal = damping * (own + MIN_DIAGONAL_RATIO * np.max(own))
+        diagonal = damping * (own + MIN_NORMAL_DIAGONAL_RATIO * np.max(own))
         parts = solve_linear(self.normal_matrix + np.diag(diagonal), -self.gradient)
         parts = np.clip(parts, -MAX_RELATIVE_STEP, MAX_RELATIVE_STEP).reshape(self.change_scale.shape)
         return np.concatenate([self.change_scale * parts, np.zeros_like(self.change_scale[:1])])
 
 
-def _fit_points(points: Array, target: _TargetSums) -> Array:
+def _fit_points(points: Array, fit_target: _TargetSums) -> Array:
     """Fit points (6, n) by the Levenberg-Marquardt method with FIT_ITERATIONS iterations."""
-    here, damping = _LinearProblem.linearise(points, target, *target.find_residual(points)), INITIAL_DAMPING
-    for _ in range(MAX_ITERATIONS):
+    here, damping = (
+        _LinearisedFit.linearise(points, fit_target, *fit_target.find_residual(points)),
+        INITIAL_MARQUARDT_DAMPING,
+    )
+    for _ in range(FIT_ITERATIONS):
         trial = _correct_exact_sums(
-            points + here.solve_step(damping), target.max_coordinates, target.exact_sums
+            points + here.solve_marquardt_step(damping), fit_target.max_coordinates, fit_target.exact_sums
         )
-        values, miss = target.find_residual(trial)
+        values, miss = fit_target.find_residual(trial)
         allowed = np.all(trial[0] > 0.0) and np.all(trial[3] >= 0.0)
-        if allowed and euclidean_norm(miss) < euclidean_norm(here.residual):
-            points, here = trial, _LinearProblem.linearise(trial, target, values, miss)
-            damping = max(DAMPING_DECREASE * damping, MIN_DAMPING)
+        if allowed and euclidean_norm(miss) < euclidean_norm(here.sum_residual):
+            points, here = trial, _LinearisedFit.linearise(trial, fit_target, values, miss)
+            damping = max(MARQUARDT_DAMPING_DECREASE * damping, MIN_MARQUARDT_DAMPING)
         else:
-            damping *= DAMPING_INCREASE
+            damping *= MARQUARDT_DAMPING_INCREASE
     return points

@@ -15,7 +15,7 @@ _HOLE_SUBDIVISIONS = 8
 """Subdivisions of the side of a cell [1] for the area that a hole removes."""
 _ONE_ROW_TOLERANCE = 1e-6
 """Extent of the bolt positions along y over the width of the plate [1], below which they are one row."""
-EDGE_FACTOR = 1.0 + 1e-9
+EDGE_TOLERANCE_FACTOR = 1.0 + 1e-9
 """Relative tolerance of comparisons with an edge: points on an edge then do not depend on round-off [1]."""
 _MAX_ITERATIONS, _MOMENT_ARM_TOLERANCE = 50, 1e-13
 """Largest number of Newton iterations [1], and tolerance of the moment of a bolt's pressure over R [1]."""
@@ -61,7 +61,7 @@ class BoltedPlate:
         check_holes(self)
 
     @property
-    def bolts(self) -> Array:
+    def bolts_from_middle(self) -> Array:
         """Bolt positions (n, 2) [m] from the middle of the plate."""
         return np.column_stack([self.x, self.y])
 
@@ -87,7 +87,9 @@ class BoltedPlate:
     @property
     def centroid(self) -> Array:
         """Centroid (2) [m] of the contact, from the middle of the plate."""
-        return np.asarray(-0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolts.sum(axis=0))
+        return np.asarray(
+            -0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolts_from_middle.sum(axis=0)
+        )
 
     @property
     def bolt_position_means(self) -> PositionMeans:
@@ -97,7 +99,7 @@ class BoltedPlate:
     @property
     def bolt_positions(self) -> Array:
         """Positions (n, 2) [m] of the bolts, from the centroid of the contact."""
-        return np.asarray(self.bolts - self.centroid)
+        return np.asarray(self.bolts_from_middle - self.centroid)
 
     @property
     def equivalent_bolt_rows(self) -> tuple[float, float]:
@@ -106,9 +108,9 @@ class BoltedPlate:
         See `equivalent_bolt_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
         moment at which the contact starts to open at its edge.
         """
-        if is_one_row(self):
+        if has_one_bolt_row(self):
             return 1.0, _one_row_equivalent_distance(self, *bolt_pressures(self))
-        return equivalent_bolt_rows(self.bolts[:, 1])
+        return equivalent_bolt_rows(self.bolts_from_middle[:, 1])
 
     @property
     def coarse_cell_counts(self) -> Array:
@@ -124,8 +126,8 @@ class BoltedPlate:
         moment by their forces: the pressure then changes linearly with the distance from their line.
         """
         share, position, unit = bolt_pressures(self)
-        equal, y = unit.mean(axis=0), self.bolts[:, 1]
-        if is_one_row(self):
+        equal, y = unit.mean(axis=0), self.bolts_from_middle[:, 1]
+        if has_one_bolt_row(self):
             distance = _one_row_equivalent_distance(self, share, position, unit)
             return PressureDistribution(
                 share, position, equal, distance * moment_pressure(share, position[:, 1], equal)
@@ -138,7 +140,7 @@ class BoltedPlate:
 
 def check_holes(plate: BoltedPlate) -> None:
     """Raise ValueError if a hole is not inside the plate or overlaps another hole."""
-    radius, bolts = 0.5 * plate.hole_diameter, plate.bolts
+    radius, bolts = 0.5 * plate.hole_diameter, plate.bolts_from_middle
     half = 0.5 * np.array([plate.length, plate.width])
     for i, bolt in enumerate(bolts):
         if np.any(np.abs(bolt) + radius >= half):
@@ -156,9 +158,9 @@ def check_holes(plate: BoltedPlate) -> None:
             )
 
 
-def is_one_row(plate: BoltedPlate) -> bool:
+def has_one_bolt_row(plate: BoltedPlate) -> bool:
     """Whether all bolts lie on one line along x, so that a moment about x cannot change their forces."""
-    return bool(np.ptp(plate.bolts[:, 1]) <= _ONE_ROW_TOLERANCE * plate.width)
+    return bool(np.ptp(plate.bolts_from_middle[:, 1]) <= _ONE_ROW_TOLERANCE * plate.width)
 
 
 def equivalent_bolt_rows(bolt_y: Array) -> tuple[float, float]:
@@ -189,8 +191,8 @@ def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
     middle = (index + 0.5) * side - 0.5 * plan
     done_middle, done_side = [], []
     while middle.size:
-        is_loaded = _bolt_distance(plate, middle, side) * EDGE_FACTOR < reach
-        split = is_loaded & (np.max(side) > reach / MIN_CELLS_PER_RADIUS * EDGE_FACTOR)
+        is_loaded = _bolt_distance(plate, middle, side) * EDGE_TOLERANCE_FACTOR < reach
+        split = is_loaded & (np.max(side) > reach / MIN_CELLS_PER_RADIUS * EDGE_TOLERANCE_FACTOR)
         done_middle.append(middle[~split])
         done_side.append(np.broadcast_to(side, middle[~split].shape))
         side = 0.5 * side
@@ -201,7 +203,7 @@ def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
 
 def _bolt_distance(plate: BoltedPlate, centres: Array, cell_sides: Array) -> Array:
     """Distance (n) [m] from cells, with centres (n, 2) and sides (2) [m], to the nearest bolt axis."""
-    gap = np.maximum(np.abs(centres[:, None, :] - plate.bolts) - 0.5 * cell_sides, 0.0)
+    gap = np.maximum(np.abs(centres[:, None, :] - plate.bolts_from_middle) - 0.5 * cell_sides, 0.0)
     return np.asarray(np.min(np.hypot(gap[..., 0], gap[..., 1]), axis=1))
 
 
@@ -211,10 +213,12 @@ def _remove_holes(plate: BoltedPlate, centres: Array, cell_sides: Array) -> tupl
     grid = np.stack(np.meshgrid(positions, positions, indexing="ij"), -1).reshape(-1, 2)
     areas, centroids = np.prod(cell_sides, axis=1), centres.copy()
     reach = 0.5 * np.hypot(*cell_sides.T) + 0.5 * plate.hole_diameter
-    for bolt in plate.bolts:
+    for bolt in plate.bolts_from_middle:
         affected = np.flatnonzero(np.hypot(*(centres - bolt).T) < reach)
         points = centres[affected, None, :] + grid * cell_sides[affected, None, :]
-        solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE_FACTOR
+        solid = (
+            np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE_TOLERANCE_FACTOR
+        )
         solid_share = solid.mean(axis=1)
         areas[affected] *= solid_share
         total = np.sum(points * solid[..., None], axis=1)
@@ -238,7 +242,7 @@ def bolt_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
     Positions are relative to the centroid of the contact, pressures to their mean over the whole contact.
     """
     areas, points = plate_cells(plate)
-    unit = np.array([_balanced_pressure(plate, areas, points - bolt) for bolt in plate.bolts])
+    unit = np.array([_moment_free_pressure(plate, areas, points - bolt) for bolt in plate.bolts_from_middle])
     share = areas / areas.sum()
     return share, points - share @ points, unit * areas.sum()
 
@@ -253,7 +257,7 @@ def _one_row_equivalent_distance(
     return float(len(plate.x) * (area_shares @ (equal * distances**2)) / reach)
 
 
-def _balanced_pressure(plate: BoltedPlate, areas: Array, axis_offsets: Array) -> Array:
+def _moment_free_pressure(plate: BoltedPlate, areas: Array, axis_offsets: Array) -> Array:
     """Pressure (n) [Pa] of a bolt with 1 N at offsets (n, 2) [m] from its axis, without a moment about it.
 
     Newton's method for the two coefficients of the exponential correction; the logarithm of the total force

@@ -28,11 +28,11 @@ from .reproducible import (
 LAW_EXPONENTS = (4.0, 8.0, 16.0, 64.0)
 """Exponents N of the laws p ~ delta^N [1], with k ~ p^(1 - 1/N). Hertz has 1.5, rough surfaces about 10; the
 last one is nearly an exponential."""
-STATE_COUNT = 80
+SAMPLED_STATE_COUNT = 80
 """Number of sampled states of the joint [1]."""
 UNTILTED_STATE_SHARE = 0.4
 """Share of the states without normal displacement and tilt [1]."""
-MOVED_STATE_WEIGHT = 0.02
+DISPLACED_STATE_WEIGHT = 0.02
 """Weight of the states with displacement and tilt, over that of the others [1]."""
 MAX_OPENING_RATIO, MAX_TILT_OPENING_RATIO = 0.1, 0.1
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
@@ -40,7 +40,7 @@ MAX_LOST_FORCE_SHARE = 1e-4
 """Share of the force [1] that is lost by opening at the largest moment."""
 MIN_PEAK_SHARE_FACTOR = 0.1
 """Smallest factor [1] on the share of a node with the largest pressure."""
-MIN_COUNT_FOR_PEAK_NODES = 96
+MIN_POINTS_FOR_PEAK_NODES = 96
 """Smallest number of points [1] for which the nodes with the largest pressure are kept."""
 MIN_SYMMETRY_GROUPS = 10
 """Smallest number of groups of mirrored points [1]; with fewer groups the symmetry is given up."""
@@ -95,7 +95,7 @@ def _select_groups(
     functions = np.concatenate([exact, select_independent(rest, max_node_count)[1]]).T / factor[:, None]
     min_shares = (
         _minimum_shares(distribution, node_groups, share)
-        if max_node_count >= MIN_COUNT_FOR_PEAK_NODES
+        if max_node_count >= MIN_POINTS_FOR_PEAK_NODES
         else np.zeros_like(share)
     )
     weights, number = share, functions.shape[1]
@@ -133,8 +133,8 @@ def _scale_shares(
     return PressureDistribution(
         selected.area_share * group_factors[node_groups[nodes]],
         selected.position,
-        selected.preload_shape,
-        selected.moment_shape,
+        selected.preload_pressure_ratio,
+        selected.moment_pressure_ratio,
     )
 
 
@@ -145,8 +145,8 @@ def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
     """
     share = distribution.area_share
     x, y = distribution.position.T
-    equal = distribution.preload_shape
-    tilt = distribution.moment_shape
+    equal = distribution.preload_pressure_ratio
+    tilt = distribution.moment_pressure_ratio
 
     def mirrored_node_keys(x_sign: float, y_sign: float) -> Array:
         return np.column_stack([x_sign * x, y_sign * y, share, equal, y_sign * tilt]) + 0.0  # no -0.0
@@ -163,9 +163,11 @@ def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
     return np.unique(group, return_inverse=True)[1]
 
 
-def _group_means(functions: Array, distribution: PressureDistribution, node_groups: NodeIndices) -> Array:
+def _group_means(
+    function_values: Array, distribution: PressureDistribution, node_groups: NodeIndices
+) -> Array:
     """Means (m, groups) of functions (m, n) over the nodes of each group, weighted by share."""
-    sums = [_group_sums(node_groups, distribution.area_share * row) for row in functions]
+    sums = [_group_sums(node_groups, distribution.area_share * row) for row in function_values]
     return np.array(sums) / _group_sums(node_groups, distribution.area_share)
 
 
@@ -183,7 +185,9 @@ def _scale_positions(distribution: PressureDistribution) -> tuple[Array, Array]:
     return x, y
 
 
-def exact_sum_functions(x: Array, y: Array, preload_shape: Array, moment_shape: Array) -> Array:
+def exact_sum_functions(
+    x: Array, y: Array, preload_pressure_ratio: Array, moment_pressure_ratio: Array
+) -> Array:
     """Functions (12, n) of points (n) whose sums, weighted by share, are kept to round-off."""
     ones = np.ones_like(x)
     return np.stack(
@@ -194,31 +198,36 @@ def exact_sum_functions(x: Array, y: Array, preload_shape: Array, moment_shape: 
             x * x,
             x * y,
             y * y,
-            preload_shape,
-            preload_shape * x,
-            preload_shape * y,
-            moment_shape,
-            moment_shape * x,
-            moment_shape * y,
+            preload_pressure_ratio,
+            preload_pressure_ratio * x,
+            preload_pressure_ratio * y,
+            moment_pressure_ratio,
+            moment_pressure_ratio * x,
+            moment_pressure_ratio * y,
         ]
     )
 
 
 def _scaled_exact_functions(distribution: PressureDistribution) -> Array:
     """Functions (12, n) of the nodes whose sums are kept, see `exact_sum_functions`; of the order of 1."""
-    steep = max(float(np.max(np.abs(distribution.moment_shape))), 1.0)
+    steep = max(float(np.max(np.abs(distribution.moment_pressure_ratio))), 1.0)
     return exact_sum_functions(
-        *_scale_positions(distribution), distribution.preload_shape, distribution.moment_shape / steep
+        *_scale_positions(distribution),
+        distribution.preload_pressure_ratio,
+        distribution.moment_pressure_ratio / steep,
     )
 
 
 def largest_moment_factor(distribution: PressureDistribution) -> float:
     """Factor [1] on the pressure by moment at which opening removes MAX_LOST_FORCE_SHARE of the force."""
-    low, high = 0.0, 2.0 / float(np.max(np.abs(distribution.area_share * distribution.moment_shape)))
+    low, high = 0.0, 2.0 / float(np.max(np.abs(distribution.area_share * distribution.moment_pressure_ratio)))
     for _ in range(50):
         middle = 0.5 * (low + high)
         open_to = np.stack(
-            [side * middle * distribution.moment_shape - distribution.preload_shape for side in (-1.0, 1.0)]
+            [
+                side * middle * distribution.moment_pressure_ratio - distribution.preload_pressure_ratio
+                for side in (-1.0, 1.0)
+            ]
         )
         lost_share = np.max(weighted_sums(np.maximum(open_to, 0.0), distribution.area_share))
         low, high = (middle, high) if lost_share < MAX_LOST_FORCE_SHARE else (low, middle)
@@ -236,24 +245,27 @@ def _sample_functions(distribution: PressureDistribution) -> Array:
     distance = np.sqrt(np.add.reduce(distribution.position**2, axis=1))
     of_pressure = np.stack([np.ones_like(x), x, y, distance / np.max(distance)])
     of_stiffness = np.stack([*of_pressure[:3], x * x, x * y, y * y])
-    number = np.arange(STATE_COUNT)[:, None]
+    number = np.arange(SAMPLED_STATE_COUNT)[:, None]
     moment, opening, about_x, about_y = (
         2.0 * ((0.5 + (number + 1.0) * _SEQUENCE_STEPS) % 1.0).T[..., None] - 1.0
     )
     power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
-    is_moved = number >= UNTILTED_STATE_SHARE * STATE_COUNT
+    is_moved = number >= UNTILTED_STATE_SHARE * SAMPLED_STATE_COUNT
     normal_displacement = is_moved * (
         MAX_OPENING_RATIO * opening + MAX_TILT_OPENING_RATIO * (about_x * y - about_y * x)
     )
     approach = binary_root(
-        np.maximum(distribution.preload_shape + limit * moment * distribution.moment_shape, 0.0), power
+        np.maximum(
+            distribution.preload_pressure_ratio + limit * moment * distribution.moment_pressure_ratio, 0.0
+        ),
+        power,
     )
     approach = np.maximum(approach - np.max(approach, axis=1, keepdims=True) * normal_displacement, 0.0)
     pressure = binary_power(approach, power)
     stiffness = np.divide(pressure, approach, out=np.zeros_like(pressure), where=approach > 0.0)
     rows = np.concatenate([pressure[:, None] * of_pressure, stiffness[:, None] * of_stiffness], axis=1)
     sizes = np.add.reduce(np.abs(rows) * distribution.area_share, axis=2, keepdims=True)
-    rows *= np.where(is_moved, MOVED_STATE_WEIGHT, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
+    rows *= np.where(is_moved, DISPLACED_STATE_WEIGHT, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
     return np.asarray(rows.reshape(-1, x.size))
 
 
@@ -262,5 +274,8 @@ def find_peak_nodes(distribution: PressureDistribution) -> NodeIndices:
     steep = 0.01 * successive_powers(1.25, 36)
     moments = np.concatenate([-steep, [0.0], steep])
     return np.unique(
-        [int(np.argmax(distribution.preload_shape + m * distribution.moment_shape)) for m in moments]
+        [
+            int(np.argmax(distribution.preload_pressure_ratio + m * distribution.moment_pressure_ratio))
+            for m in moments
+        ]
     )

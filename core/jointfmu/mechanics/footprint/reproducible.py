@@ -38,7 +38,11 @@ def round_distribution(
     share = np.ldexp(_round_to_steps(mantissa, binary_digits), exponent)
     rounded_values = (
         round_to_digits(values, binary_digits)
-        for values in (distribution.position, distribution.preload_shape, distribution.moment_shape)
+        for values in (
+            distribution.position,
+            distribution.preload_pressure_ratio,
+            distribution.moment_pressure_ratio,
+        )
     )
     return PressureDistribution(share, *rounded_values)
 
@@ -70,8 +74,8 @@ def clear_round_off(distribution: PressureDistribution) -> PressureDistribution:
     return PressureDistribution(
         distribution.area_share,
         position,
-        clear_small_values(distribution.preload_shape),
-        clear_small_values(distribution.moment_shape),
+        clear_small_values(distribution.preload_pressure_ratio),
+        clear_small_values(distribution.moment_pressure_ratio),
     )
 
 
@@ -85,10 +89,10 @@ def linear_combination(weights: Array, rows: Array) -> Array:
     return np.asarray(np.add.reduce(weights[:, None] * rows, axis=0))
 
 
-def matrix_product(a: Array, b: Array) -> Array:
+def matrix_product(left_rows: Array, right_rows: Array) -> Array:
     """Matrix product a b^T (m, k) of a (m, n) and b (k, n)."""
-    out = np.zeros((len(a), len(b)))
-    for left, right in zip(a.T.copy(), b.T.copy(), strict=True):
+    out = np.zeros((len(left_rows), len(right_rows)))
+    for left, right in zip(left_rows.T.copy(), right_rows.T.copy(), strict=True):
         out += left[:, None] * right
     return out
 

@@ -15,4 +15,6 @@ def _line(spring, state, error):
 
 
 COLUMNS = (KIND.variables["s_rel"], Variable("pull", "N", "force that holds it"), KIND.variables["K"])
-EXPORTS = Exports(curve=LoadCurve(meaning="force over s", columns=COLUMNS, name="force", compute_table=_line))
+EXPORTS = Exports(
+    curve=LoadCurve(meaning="force over s", columns=COLUMNS, table_name="force", compute_table=_line)
+)

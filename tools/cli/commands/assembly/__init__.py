@@ -38,9 +38,9 @@ def load_joint_file(path: Path | None) -> ParameterFile:
     return file
 
 
-def check_bolt_stiffness(option: str, file: ParameterFile) -> None:
+def check_bolt_stiffness(option: str, parameter_file: ParameterFile) -> None:
     """Raise ValueError if an option for the complete joint is set and the file has no bolt stiffness."""
-    if not file.values_by_name.get("bolt_stiffness", 0.0) > 0.0:
+    if not parameter_file.values_by_name.get("bolt_stiffness", 0.0) > 0.0:
         raise ValueError(
             f"{option} needs the stiffness of a bolt; state bolt_stiffness above 0 N/m in the file of "
             "--params"
@@ -48,7 +48,11 @@ def check_bolt_stiffness(option: str, file: ParameterFile) -> None:
 
 
 def judge_assembly(
-    file: ParameterFile, assembly: "Assembly", preload: float, mean_pressure: float, peak_pressure: float
+    parameter_file: ParameterFile,
+    assembly: "Assembly",
+    preload: float,
+    mean_pressure: float,
+    peak_pressure: float,
 ) -> Plausibility:
     """Judge the stiffness of an assembly's contact, and the preload against the proof load of the bolts.
 
@@ -57,14 +61,19 @@ def judge_assembly(
     peak_pressure : greatest contact pressure [Pa]
     """
     judgement = assess_law(
-        KINDS[file.joint].extract_law(file.values), [mean_pressure], find_rms_height(file), peak_pressure
+        KINDS[parameter_file.joint].extract_law(parameter_file.values),
+        [mean_pressure],
+        find_rms_height(parameter_file),
+        peak_pressure,
     )
     return judgement.with_warnings(
         warn_overload("preload", preload, proof_load(assembly.bolts.hole_diameter))
     )
 
 
-def with_assembly(file: ParameterFile, assembly: "Assembly", include_bolts: bool) -> ParameterFile:
+def replace_assembly_parameters(
+    parameter_file: ParameterFile, assembly: "Assembly", include_bolts: bool
+) -> ParameterFile:
     """Replace contact area and materials in the parameters of a joint by those of an assembly.
 
     include_bolts : also set number and rows of the bolts
@@ -83,6 +92,6 @@ def with_assembly(file: ParameterFile, assembly: "Assembly", include_bolts: bool
             changes |= {"row_bolts": 1.0, "row_distance": assembly.bolts.head_diameter}
         else:
             changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
-    old = file.values_by_name
+    old = parameter_file.values_by_name
     new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
-    return file.with_values(new, "derived", f"from the assembly {assembly.name}")
+    return parameter_file.with_values(new, "derived", f"from the assembly {assembly.name}")

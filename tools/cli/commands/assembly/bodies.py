@@ -49,7 +49,7 @@ def declare_body_arguments(parser: argparse.ArgumentParser) -> None:
     declare_argument(parser, "--head", str, text + "largest bolt that passes the hole)", "D")
 
 
-def check_body_arguments(args: argparse.Namespace, file: ParameterFile) -> None:
+def check_body_arguments(args: argparse.Namespace, parameter_file: ParameterFile) -> None:
     """Raise ValueError before the work starts if the options do not describe a complete joint."""
     if args.attached and not args.thickness:
         raise ValueError(f"--attached {args.attached} needs --thickness, the thickness of both plates")
@@ -59,10 +59,12 @@ def check_body_arguments(args: argparse.Namespace, file: ParameterFile) -> None:
     if args.thickness and not args.out:
         raise ValueError("--thickness needs --out, the file for the complete joint")
     if args.thickness:
-        check_bolt_stiffness("--thickness", file)
+        check_bolt_stiffness("--thickness", parameter_file)
 
 
-def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: ContactField) -> Array | None:
+def find_bolt_positions(
+    args: argparse.Namespace, parameter_file: ParameterFile, contact_field: ContactField
+) -> Array | None:
     """Positions (b, 2) [m] of the bolts in the plane of the field; None if they are not known.
 
     Without `--bolts` the positions are those of the parameter file, relative to the centroid of the field. If
@@ -70,20 +72,22 @@ def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: Co
 
     Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """
-    low = np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE
-    high = np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE
+    low = np.min(contact_field.position, axis=0) - MAX_OUTSIDE_DISTANCE
+    high = np.max(contact_field.position, axis=0) + MAX_OUTSIDE_DISTANCE
     if not args.bolts:
-        positions = PlaneLayout.from_joint(file.values).bolt_positions + field.centroid
+        positions = PlaneLayout.from_joint(parameter_file.values).bolt_positions + contact_field.centroid
         inside = np.all((positions > low) & (positions < high))
-        return positions if len(positions) == file.values.n_bolts and inside else None
+        return positions if len(positions) == parameter_file.values.n_bolts and inside else None
     stated = np.array(
         [
             parse_numbers("bolts", text, "mm", "m", separator=",", count=2, lower_bound=None)
             for text in args.bolts
         ]
     )
-    if len(stated) != file.values.n_bolts:
-        raise ValueError(f"--bolts has {len(stated)} positions, expected {file.values.n_bolts:g}: n_bolts")
+    if len(stated) != parameter_file.values.n_bolts:
+        raise ValueError(
+            f"--bolts has {len(stated)} positions, expected {parameter_file.values.n_bolts:g}: n_bolts"
+        )
     for i, place in enumerate(stated):
         if not np.all((place > low) & (place < high)):
             x, y = 1e3 * place
@@ -96,7 +100,10 @@ def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: Co
 
 
 def build_assembly(
-    args: argparse.Namespace, file: ParameterFile, field: ContactField, bolt_positions: Array | None
+    args: argparse.Namespace,
+    parameter_file: ParameterFile,
+    contact_field: ContactField,
+    bolt_positions: Array | None,
 ) -> tuple["Assembly", list[str]]:
     """Build the plates of a field with bolts; returns the assembly and notes about its shape.
 
@@ -109,22 +116,22 @@ def build_assembly(
 
     if bolt_positions is None:
         raise ValueError("--thickness needs the positions of the bolts; state --bolts X,Y for each")
-    hole, head = _hole_and_head_diameters(args, file)
+    hole, head = _hole_and_head_diameters(args, parameter_file)
     thick = [parse_number("thickness", text, "mm", "m") for text in args.thickness]
-    low, high = np.min(field.position, axis=0), np.max(field.position, axis=0)
-    (length, width), area = high - low, float(np.sum(field.area))
+    low, high = np.min(contact_field.position, axis=0), np.max(contact_field.position, axis=0)
+    (length, width), area = high - low, float(np.sum(contact_field.area))
     # a node in the middle of its area lies half an area's width inside the edge: enlarge to the true area
     missing_area = area + len(bolt_positions) * 0.25 * np.pi * hole**2 - length * width
     half = 0.5 * (length + width)
     extension = np.sqrt(max(half**2 + missing_area, 0.0)) - half
-    extension = float(np.clip(extension, 0.0, np.sqrt(field.area.max())))
+    extension = float(np.clip(extension, 0.0, np.sqrt(contact_field.area.max())))
     sides = [
         Plate(
             length=float(length + extension),
             width=float(width + extension),
             thickness=thick[i],
-            E=file.values_by_name[f"side{i + 1}.E"],
-            nu=file.values_by_name[f"side{i + 1}.nu"],
+            E=parameter_file.values_by_name[f"side{i + 1}.E"],
+            nu=parameter_file.values_by_name[f"side{i + 1}.nu"],
             density=1.0,  # not used: the analysis is static
         )
         for i in range(2)
@@ -133,14 +140,14 @@ def build_assembly(
     bolts = BoltList(
         x=tuple(places[:, 0].tolist()), y=tuple(places[:, 1].tolist()), hole_diameter=hole, head_diameter=head
     )
-    plates = Assembly(file.name, sides[0], sides[1], bolts)
+    plates = Assembly(parameter_file.name, sides[0], sides[1], bolts)
     check_thickness(plates)
     notes = [
         f"the plates are the rectangle around the contact, {1e3 * sides[0].length:.4g} x "
         f"{1e3 * sides[0].width:.4g} mm, heads {1e3 * head:.4g} mm over holes of {1e3 * hole:.4g} mm"
     ]
     centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / plates.contact_area
-    offset = np.hypot(*(field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
+    offset = np.hypot(*(contact_field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
     if (share := area / plates.contact_area) < MIN_AREA_RATIO or offset > MAX_CENTROID_OFFSET_RATIO:
         notes.append(
             f"the contact covers {share:.0%} of that rectangle, its centroid is off by {offset:.1%} of the "
@@ -149,15 +156,15 @@ def build_assembly(
     return plates, notes
 
 
-def _hole_and_head_diameters(args: argparse.Namespace, file: ParameterFile) -> tuple[float, float]:
+def _hole_and_head_diameters(args: argparse.Namespace, parameter_file: ParameterFile) -> tuple[float, float]:
     """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
-    layout = PlaneLayout.from_joint(file.values)
+    layout = PlaneLayout.from_joint(parameter_file.values)
     hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole_diameter
     if not hole > 0.0:
         raise ValueError("--thickness needs the holes of the bolts; state --hole")
     if args.head:
         return hole, parse_number("head", args.head, "mm", "m")
-    fitting = [thread for thread in read_threads().values() if thread.d < hole]
+    fitting = [thread for thread in read_threads().values() if thread.nominal_diameter < hole]
     if layout.head_diameter <= 0.0 and not fitting:
         raise ValueError(f"no bolt of the tables fits a hole of {1e3 * hole:g} mm; state --head")
-    return hole, layout.head_diameter or max(fitting, key=lambda thread: thread.d).hexagon
+    return hole, layout.head_diameter or max(fitting, key=lambda thread: thread.nominal_diameter).hexagon

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.outputs import PARAMETER_FILE, PICTURE, write_parameter_text
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter_text
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
@@ -14,7 +14,13 @@ from ....fem import require_fem_packages
 from ....joints.bolted_joint.field import insert_elastic_bodies, joint_facts
 from ...command import CommandResult, SubParsers, declare_argument, declare_command
 from ...outputs import declare_output
-from . import check_bolt_stiffness, declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
+from . import (
+    check_bolt_stiffness,
+    declare_assembly_arguments,
+    judge_assembly,
+    load_joint_file,
+    replace_assembly_parameters,
+)
 
 if TYPE_CHECKING:
     from ....fem.bolted_contact import JointSolution
@@ -27,10 +33,10 @@ MIN_REFINEMENT = 0.3
 """Smallest refinement [1] at which the mesh still resolves a hole."""
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu footprint compute` with its options."""
     text = "compute the contact pressure of a bolted joint by finite elements"
-    sub = declare_command(commands, "compute", run, text)
+    sub = declare_command(command_parsers, "compute", run, text)
     declare_assembly_arguments(sub)
     declare_argument(sub, "--moment", float, "bending moment about x [N.m] (default: 0)", "M")
     declare_output(
@@ -43,7 +49,7 @@ def add(commands: SubParsers) -> None:
         "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
     )
     declare_output(sub, "--field", FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
-    declare_output(sub, "--plot", PICTURE, "draw the pressure (.png, .svg)")
+    declare_output(sub, "--plot", PICTURE_FILE, "draw the pressure (.png, .svg)")
     declare_argument(
         sub, "--refine", int, f"number of meshes of a convergence study, 1 to {MAX_MESHES}", default=1
     )
@@ -66,18 +72,18 @@ def run(args: argparse.Namespace) -> CommandResult:
         check_thickness(assembly)
     if args.field:
         results.check_field_path(args.field)
-    file = with_assembly(file, assembly, include_bolts=args.out is not None)
+    file = replace_assembly_parameters(file, assembly, include_bolts=args.out is not None)
     levels = convergence.refinement_series(args.refine, args.refinement)
     with require_fem_packages("the finite-element analysis"):
         curve = tabulate_approach(file.values)
         rows, solution = convergence.run_mesh_study(assembly, curve, args.preload, moment, levels)
-    result = _with_field(args, file, solution) if args.out else file
+    result = _add_computed_field(args, file, solution) if args.out else file
     whole = joint_facts(result, tightening_force(args, result)) if args.attached else {}
     written = _write_outputs(args, result, solution)
     facts = _collect_results(solution, moment, args.preload)
     judgement = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak_pressure)
     judgement = judgement.with_warnings(
-        check_bolt_symmetry(solution.field, assembly.bolts.positions, moment != 0.0)
+        check_bolt_symmetry(solution.contact_field, assembly.bolts.positions, moment != 0.0)
     )
     document = facts | {"meshes": [_mesh_document(row) for row in rows], "written": written}
     document |= {"whole": fact_document(whole)} if whole else {}
@@ -95,12 +101,14 @@ def _check_arguments(args: argparse.Namespace) -> None:
         raise ValueError(f"--attached {args.attached} needs --out, the file for the complete joint")
 
 
-def _write_outputs(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
+def _write_outputs(
+    args: argparse.Namespace, parameter_file: ParameterFile, solution: "JointSolution"
+) -> list[str]:
     """Write the files of `--out`, `--field` and `--plot`; returns their paths."""
     from ....fem import results
 
     if args.out:
-        write_parameter_text(args.out, format_parameter_file(file))
+        write_parameter_text(args.out, format_parameter_file(parameter_file))
     if args.field:
         results.write_field(solution, args.field)
     if args.plot:
@@ -108,7 +116,9 @@ def _write_outputs(args: argparse.Namespace, file: ParameterFile, solution: "Joi
     return [str(path) for path in (args.out, args.field, args.plot) if path]
 
 
-def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
+def _add_computed_field(
+    args: argparse.Namespace, parameter_file: ParameterFile, solution: "JointSolution"
+) -> ParameterFile:
     """Return the joint with the computed pressure field, and with elastic bodies if `--attached` is set.
 
     The field holds for the preload that remains after embedding. It contains the change of pressure under a
@@ -116,23 +126,23 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
     """
     from ....fem.bolted_contact import insert_contact_field
 
-    interface, shape = insert_contact_field(file, solution, args.preload, args.moment or 0.0)
+    interface, shape = insert_contact_field(parameter_file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
         return interface
     preload = tightening_force(args, interface)
-    return insert_elastic_bodies(interface, solution.joint.assembly, preload, args.attached, shape)
+    return insert_elastic_bodies(interface, solution.bolted_contact.assembly, preload, args.attached, shape)
 
 
-def tightening_force(args: argparse.Namespace, file: ParameterFile) -> float:
+def tightening_force(args: argparse.Namespace, parameter_file: ParameterFile) -> float:
     """Tightening force [N] of each bolt: the preload before embedding."""
-    return float(args.preload + file.values.embedding)
+    return float(args.preload + parameter_file.values.embedding)
 
 
 def _collect_results(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:
-    field = solution.field
+    field = solution.contact_field
     places, between = solution.pressure_between_bolts
     return {
-        "assembly": solution.joint.assembly.name,
+        "assembly": solution.bolted_contact.assembly.name,
         "preload": preload,
         "moment": moment,
         "area": float(field.area.sum()),

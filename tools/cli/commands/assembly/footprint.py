@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.outputs import PARAMETER_FILE, PICTURE, write_parameter_text
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from ....inputs.fields.reduction import Reduction
 
 
-def add_footprint(commands: SubParsers) -> None:
+def add_footprint(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu footprint` with its sub-commands."""
     text = "import or compute the contact pressure of a bolted joint"
-    top = commands.add_parser("footprint", help=text, description=format_sentence(text))
+    top = command_parsers.add_parser("footprint", help=text, description=format_sentence(text))
     steps = top.add_subparsers(dest="step", required=True, metavar="STEP", parser_class=Parser)
     _declare_import(steps)
-    compute.add(steps)
+    compute.add_command(steps)
 
 
 OPTION_NAMES = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}
@@ -48,7 +48,7 @@ def _declare_import(subcommands: SubParsers) -> None:
     declare_output(
         step, "--out", PARAMETER_FILE, "write the parameter file of the joint with the field (TOML)"
     )
-    declare_output(step, "--plot", PICTURE, "draw the field (.png, .svg)")
+    declare_output(step, "--plot", PICTURE_FILE, "draw the field (.png, .svg)")
     text = "format of the file: csv, mesh, ansys, abaqus or frd (default: by the file name)"
     declare_argument(step, "--format", str, text, "FORMAT")
     text = "length unit of the file: m, mm, um; not needed for CSV, which states it"
@@ -111,7 +111,9 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
     whole = {}
     if plates:
         preload = compute.tightening_force(args, file)
-        file = insert_elastic_bodies(file, plates, preload, args.attached or "faces", reduction.full_shape)
+        file = insert_elastic_bodies(
+            file, plates, preload, args.attached or "faces", reduction.full_distribution
+        )
         whole = joint_facts(file, preload)
     if args.plot:
         joint_parameters.draw_field(field, reduction, args.plot)
@@ -137,7 +139,7 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
 
 def _create_reader(args: argparse.Namespace) -> Any:
     """Build the reader of the contact result. Raises ValueError for a choice that does not exist."""
-    from ....inputs.fields.contact_surface import AXES, BODY_SIDES, OPEN_NODE_OPTIONS, ContactPlane
+    from ....inputs.fields.contact_surface import AXIS_NAMES, BODY_SIDES, OPEN_NODE_OPTIONS, ContactPlane
     from ....inputs.fields.nodal_result import LENGTH_UNITS, PRESSURE_UNITS
     from ....inputs.fields.reading import FIELD_FORMATS, FieldReader
 
@@ -145,15 +147,15 @@ def _create_reader(args: argparse.Namespace) -> Any:
         ("--format", args.format, FIELD_FORMATS),
         ("--length-unit", args.length_unit, tuple(LENGTH_UNITS)),
         ("--pressure-unit", args.pressure_unit, tuple(PRESSURE_UNITS)),
-        ("--normal", args.normal, tuple(AXES)),
-        ("--rows", args.rows, tuple(AXES)),
+        ("--normal", args.normal, tuple(AXIS_NAMES)),
+        ("--rows", args.rows, tuple(AXIS_NAMES)),
         ("--side", args.side, BODY_SIDES),
         ("--open", args.open, OPEN_NODE_OPTIONS),
     ):
         if value is not None and value not in allowed:
             raise ValueError(f"{name} = {value!r} is not one of {', '.join(allowed)}")
     return FieldReader(
-        format=args.format,
+        file_format=args.format,
         length_unit=args.length_unit,
         pressure_unit=args.pressure_unit,
         point_data_name=args.data,
@@ -164,9 +166,9 @@ def _create_reader(args: argparse.Namespace) -> Any:
 
 
 def _collect_results(
-    args: argparse.Namespace, file: ParameterFile, field: "ContactField", reduction: "Reduction"
+    args: argparse.Namespace, parameter_file: ParameterFile, field: "ContactField", reduction: "Reduction"
 ) -> dict[str, Any]:
-    joint = file.values
+    joint = parameter_file.values
     return {
         "file": str(args.file),
         "nodes": reduction.node_count,

@@ -4,14 +4,14 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from jointfmu.files.outputs import MESH
+from jointfmu.files.outputs import MESH_FILE
 from jointfmu.files.writing import write_bytes
 from jointfmu.mechanics.curve import tabulate_approach
 
 from ....fem import require_fem_packages
 from ...command import CommandResult, SubParsers, declare_argument, declare_command
 from ...outputs import declare_output
-from . import declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
+from . import declare_assembly_arguments, judge_assembly, load_joint_file, replace_assembly_parameters
 
 if TYPE_CHECKING:
     from ....fem.modes import NaturalModes
@@ -20,15 +20,15 @@ MAX_MODES = 40
 """Largest number of modes."""
 
 
-def add_modes(commands: SubParsers) -> None:
+def add_modes(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu modes` with its options."""
     text = "compute natural frequencies of a free bolted assembly with contact stiffness"
-    sub = declare_command(commands, "modes", run, text)
+    sub = declare_command(command_parsers, "modes", run, text)
     declare_assembly_arguments(sub)
     declare_argument(sub, "--moment", float, "bending moment about x [N.m]", "M", default=0.0)
     declare_argument(sub, "--count", int, f"number of modes, 1 to {MAX_MODES}", default=6)
     declare_argument(sub, "--refinement", float, "factor that divides all element sizes", "R", default=1.0)
-    declare_output(sub, "--vtu", MESH, "write the mode shapes (.vtu)")
+    declare_output(sub, "--vtu", MESH_FILE, "write the mode shapes (.vtu)")
 
 
 def run(args: argparse.Namespace) -> CommandResult:
@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> CommandResult:
     assembly = read_assembly(args.assembly)
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check_arguments(args)
-    file = with_assembly(load_joint_file(args.params), assembly, include_bolts=False)
+    file = replace_assembly_parameters(load_joint_file(args.params), assembly, include_bolts=False)
     law = tabulate_approach(file.values)
     shear = float(file.values.shear_stiffness_ratio())
     with require_fem_packages("the finite-element analysis"):
@@ -69,16 +69,16 @@ def _check_arguments(args: argparse.Namespace) -> None:
         raise ValueError(
             f"--refinement = {args.refinement:g} is outside [0.1, 4]: factor that divides the element sizes"
         )
-    if args.vtu and args.vtu.suffix.lower() not in MESH.endings:
+    if args.vtu and args.vtu.suffix.lower() not in MESH_FILE.endings:
         raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is not a mesh, allowed is .vtu")
 
 
 def _build_document(
-    args: argparse.Namespace, name: str, modes: "NaturalModes", uniform_modes: "NaturalModes"
+    args: argparse.Namespace, assembly_name: str, modes: "NaturalModes", uniform_modes: "NaturalModes"
 ) -> dict[str, object]:
     rows = zip(modes.frequency.tolist(), uniform_modes.frequency.tolist(), strict=True)
     return {
-        "assembly": name,
+        "assembly": assembly_name,
         "preload": args.preload,
         "moment": args.moment,
         "mass": modes.assembly_mass,

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.files.outputs import PARAMETER_FILE, PICTURE, write_parameter_text
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity.refusal import InputRefusal
@@ -35,10 +35,10 @@ SUBCOMMANDS = DEFAULT_SUBCOMMANDS["surface"]
 """Sub-commands of `surface`; the first one runs if the user names none."""
 
 
-def add(commands: SubParsers) -> None:
+def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu surface` with its sub-commands."""
     text = "identify fractal dimension D and roughness G of a measured surface or of a pair"
-    top = commands.add_parser(
+    top = command_parsers.add_parser(
         "surface", help=text, description=f"{format_sentence(text)} Synthesize a surface."
     )
     steps = top.add_subparsers(dest="step", metavar="STEP", parser_class=Parser)
@@ -86,8 +86,8 @@ def add(commands: SubParsers) -> None:
     )
     find.add_argument("--force", action="store_true", help=text)
     declare_output(find, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
-    declare_output(find, "--plot", PICTURE, "draw data, law and scaling range (.png, .svg)")
-    synthesize.add(steps, SUBCOMMANDS[1])
+    declare_output(find, "--plot", PICTURE_FILE, "draw data, law and scaling range (.png, .svg)")
+    synthesize.add_command(steps, SUBCOMMANDS[1])
 
 
 def _run_identify(args: argparse.Namespace) -> CommandResult:
@@ -111,10 +111,10 @@ def _run_identify(args: argparse.Namespace) -> CommandResult:
     return results.build_result(identified, heights, file, args)
 
 
-def _check_rms_heights(identification: "Identification", force: bool) -> None:
+def _check_rms_heights(identification: "Identification", is_forced: bool) -> None:
     """Raise an error for rms heights above those of any machined surface: most often the unit is wrong."""
     for name, scan in zip(identification.file_names, identification.scans, strict=True):
-        if scan.rms > MAX_RMS_HEIGHT and not force:
+        if scan.rms > MAX_RMS_HEIGHT and not is_forced:
             raise InputRefusal(
                 f"{name}: the rms height is {1e6 * scan.rms:.4g} um, surfaces in contact have up to "
                 f"{1e6 * MAX_RMS_HEIGHT:g} um; state the right unit of z, or confirm the height",

@@ -11,7 +11,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
 from ....common.judgement import Plausibility
-from ....common.pressure import judge_file
+from ....common.pressure import judge_joint_stiffness
 from ....common.shown import align_columns
 from ....inputs.fractal import zhao_roughness
 from ....inputs.surfaces.form import ScanRoughness
@@ -28,15 +28,15 @@ STIFFNESS_PRESSURE = 1e6
 def build_document(
     identification: Identification,
     heights: Sequence[Heights],
-    file: ParameterFile | None,
+    parameter_file: ParameterFile | None,
     args: argparse.Namespace,
 ) -> dict[str, object]:
     """JSON object of all results, in SI units.
 
     parameter_file : parameter file with the identified surface, if one is made
     """
-    joints = reported_joints(args, file)
-    judged = (judge_file(file) if file else Plausibility(None, ())).to_json()
+    joints = reported_joints(args, parameter_file)
+    judged = (judge_joint_stiffness(parameter_file) if parameter_file else Plausibility(None, ())).to_json()
     return {
         "files": list(identification.file_names),
         "kind": "areal" if isinstance(heights[0], ArealMap) else "profile",
@@ -44,7 +44,7 @@ def build_document(
         "side": identification.side,
         "textured": identification.is_textured,
         "form": args.form,
-        "roughness": _roughness_document(identification, file),
+        "roughness": _roughness_document(identification, parameter_file),
         "repairs": [
             {
                 "file": n,
@@ -61,25 +61,27 @@ def build_document(
             joint: why for joint in joints if (why := undetermined_reason(identification, joint))
         },
         "joints": {joint: _joint_document(identification, joint, args) for joint in joints},
-        "law": file.law if file else None,
+        "law": parameter_file.law if parameter_file else None,
         "level": judged["level"],
         "written": str(args.out) if args.out else None,
-        "warnings": [*collect_warnings(identification, file, args), *judged["warnings"]],
+        "warnings": [*collect_warnings(identification, parameter_file, args), *judged["warnings"]],
     }
 
 
 def _joint_document(
-    identification: Identification, joint: str, args: argparse.Namespace
+    identification: Identification, joint_name: str, args: argparse.Namespace
 ) -> Mapping[str, float | None]:
     """Surface parameters of a joint: {name: value}; None if the scan does not determine them."""
-    determined = args.force or undetermined_reason(identification, joint) is None
-    values = fractal_parameters(identification, joint, args.method)
+    determined = args.force or undetermined_reason(identification, joint_name) is None
+    values = fractal_parameters(identification, joint_name, args.method)
     return {name: _finite_or_none(value) if determined else None for name, (value, _) in values.items()}
 
 
-def _roughness_document(identification: Identification, file: ParameterFile | None) -> dict[str, object]:
+def _roughness_document(
+    identification: Identification, parameter_file: ParameterFile | None
+) -> dict[str, object]:
     """JSON object of the roughness: heights of each scan and of both sides together, stiffness per area."""
-    h = height_of_both_sides(identification, file)
+    h = height_of_both_sides(identification, parameter_file)
     return {
         "scans": [
             {
@@ -99,20 +101,26 @@ def _roughness_document(identification: Identification, file: ParameterFile | No
     }
 
 
-def _result_document(result: FractalResult, gamma: float) -> dict[str, object]:
-    fit = result.fit
+def _result_document(fractal_result: FractalResult, gamma: float) -> dict[str, object]:
+    fit = fractal_result.fit
     return {
-        "method": result.method,
-        "direction": result.direction,
+        "method": fractal_result.method,
+        "direction": fractal_result.direction,
         "range": [fit.min_scale, fit.max_scale],
         "decades": fit.decades,
         "self_affine": fit.is_self_affine,
         "at_bound": fit.is_at_bound,
-        "drift_of_D": fit.drift,
+        "drift_of_D": fit.dimension_drift,
         "deviation": fit.deviation,
-        "profile": {"D": _interval_document(result.profile.D), "G": _interval_document(result.profile.G)},
-        "surface": {"D_s": _interval_document(result.areal.D_s), "G_s": _interval_document(result.areal.G_s)},
-        "G_eq30": _finite_or_none(zhao_roughness(result.profile.G.value, fit.H, gamma)),
+        "profile": {
+            "D": _interval_document(fractal_result.profile.D),
+            "G": _interval_document(fractal_result.profile.G),
+        },
+        "surface": {
+            "D_s": _interval_document(fractal_result.areal.D_s),
+            "G_s": _interval_document(fractal_result.areal.G_s),
+        },
+        "G_eq30": _finite_or_none(zhao_roughness(fractal_result.profile.G.value, fit.H, gamma)),
     }
 
 
@@ -129,35 +137,39 @@ def _finite_or_none(value: Number) -> float | None:
     return float(value) if math.isfinite(float(value)) else None
 
 
-def height_of_both_sides(identification: Identification, file: ParameterFile | None) -> float:
+def height_of_both_sides(identification: Identification, parameter_file: ParameterFile | None) -> float:
     """Rms height h [m] of both sides together: from the parameter file if it has one, else from the scans."""
-    return combined_height(file.roughness if file else {}) or identification.h
+    return combined_height(parameter_file.roughness if parameter_file else {}) or identification.h
 
 
-def reported_joints(args: argparse.Namespace, file: ParameterFile | None) -> list[str]:
+def reported_joints(args: argparse.Namespace, parameter_file: ParameterFile | None) -> list[str]:
     """Joints to report: that of the parameter file, else all joints with a rough surface."""
-    return [file.joint] if file else [name for name, kind in KINDS.items() if kind.surfaces]
+    return (
+        [parameter_file.joint] if parameter_file else [name for name, kind in KINDS.items() if kind.surfaces]
+    )
 
 
 def collect_warnings(
-    identification: Identification, file: ParameterFile | None, args: argparse.Namespace
+    identification: Identification, parameter_file: ParameterFile | None, args: argparse.Namespace
 ) -> list[str]:
     """Collect warnings about the identified surface and the written parameter file."""
     lines = list(identification.warnings)
-    if not file or not args.out:
+    if not parameter_file or not args.out:
         return lines
-    why = undetermined_reason(identification, file.joint)
+    why = undetermined_reason(identification, parameter_file.joint)
     names = (
-        "hurst" if file.law == ROUGHNESS_LAW else ", ".join(fractal_parameters(identification, file.joint))
+        "hurst"
+        if parameter_file.law == ROUGHNESS_LAW
+        else ", ".join(fractal_parameters(identification, parameter_file.joint))
     )
-    alone = ["slope"] if file.law == ROUGHNESS_LAW else []
+    alone = ["slope"] if parameter_file.law == ROUGHNESS_LAW else []
     if why and not args.force:
         lines.append(
             f"{names} keep their values, because they are not determined ({why}); --force writes them"
         )
     else:
         alone.append(names)
-    if alone and len(identification.roughness_by_side) < len({name[-1] for name in file.roughness}):
+    if alone and len(identification.roughness_by_side) < len({name[-1] for name in parameter_file.roughness}):
         side = f"values of side {identification.side} alone"
         lines.append(f"{', '.join(alone)} are {side}; give both scans for the values of the pair")
     return lines
@@ -166,7 +178,7 @@ def collect_warnings(
 def build_result(
     identification: Identification,
     heights: Sequence[Heights],
-    file: ParameterFile | None,
+    parameter_file: ParameterFile | None,
     args: argparse.Namespace,
 ) -> CommandResult:
     """Build the result of the command: lines, table and warnings.
@@ -177,25 +189,29 @@ def build_result(
         f"{surface.name}: {synthesize.format_size(surface)}; {_format_scan(scan)}"
         for surface, scan in zip(heights, identification.scans, strict=True)
     ]
-    lines.append(_format_stiffness(identification, file))
+    lines.append(_format_stiffness(identification, parameter_file))
     if len(heights) == 2:
         lines.append("equivalent surface of the pair: structure functions and spectra added")
     lines += [f"repaired in {name}: {repair}" for name, repair in identification.repairs]
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
     lines += align_columns([heads, *(_format_fractal_row(result) for result in identification.results)])
     lines.append("brackets: 95 % confidence intervals")
-    for joint in reported_joints(args, file):
+    for joint in reported_joints(args, parameter_file):
         lines.append(
             f"{joint} ({dimension_meaning(joint)}, {_format_fractal_parameters(identification, joint, args)}"
         )
-    judgement = judge_file(file) if file and file.law != ROUGHNESS_LAW else Plausibility(None, ())
-    prefix = f"law {file.law}: " if file else ""
+    judgement = (
+        judge_joint_stiffness(parameter_file)
+        if parameter_file and parameter_file.law != ROUGHNESS_LAW
+        else Plausibility(None, ())
+    )
+    prefix = f"law {parameter_file.law}: " if parameter_file else ""
     texts = [
         *(f"{prefix}{text}" for text in judgement.warnings),
-        *collect_warnings(identification, file, args),
+        *collect_warnings(identification, parameter_file, args),
     ]
     return CommandResult(
-        document=build_document(identification, heights, file, args),
+        document=build_document(identification, heights, parameter_file, args),
         lines=[*lines, *(f"{prefix}{line}" for line in judgement.format_lines())],
         notes=[f"warning: {text}" for text in texts],
         written_files=(args.out, args.plot),
@@ -210,11 +226,11 @@ def _format_scan(scan: ScanRoughness) -> str:
     )
 
 
-def _format_stiffness(identification: Identification, file: ParameterFile | None) -> str:
-    h = height_of_both_sides(identification, file)
-    known = {name[2] for name in file.roughness} if file else set()
+def _format_stiffness(identification: Identification, parameter_file: ParameterFile | None) -> str:
+    h = height_of_both_sides(identification, parameter_file)
+    known = {name[2] for name in parameter_file.roughness} if parameter_file else set()
     if (
-        "h" in (file.roughness if file else ())
+        "h" in (parameter_file.roughness if parameter_file else ())
         or len(known | {str(n) for n in identification.roughness_by_side}) == 2
     ):
         what = "both sides" if identification.side != "both" else "two sides like it"
@@ -227,10 +243,12 @@ def _format_stiffness(identification: Identification, file: ParameterFile | None
     )
 
 
-def _format_fractal_parameters(identification: Identification, joint: str, args: argparse.Namespace) -> str:
-    values = fractal_parameters(identification, joint, args.method)
+def _format_fractal_parameters(
+    identification: Identification, joint_name: str, args: argparse.Namespace
+) -> str:
+    values = fractal_parameters(identification, joint_name, args.method)
     method = next(iter(values.values()))[1].method
-    why = undetermined_reason(identification, joint)
+    why = undetermined_reason(identification, joint_name)
     if why and not args.force:
         return f"{method}): {', '.join(values)} not determined: {why}"
     return f"{method}): " + ", ".join(
@@ -239,17 +257,17 @@ def _format_fractal_parameters(identification: Identification, joint: str, args:
     )
 
 
-def _format_fractal_row(result: FractalResult) -> tuple[str, ...]:
-    profile, areal = result.profile, result.areal
+def _format_fractal_row(fractal_result: FractalResult) -> tuple[str, ...]:
+    profile, areal = fractal_result.profile, fractal_result.areal
     return (
-        result.method,
-        result.direction,
-        f"{result.fit.min_scale:.2e} to {result.fit.max_scale:.2e}",
+        fractal_result.method,
+        fractal_result.direction,
+        f"{fractal_result.fit.min_scale:.2e} to {fractal_result.fit.max_scale:.2e}",
         _format_interval(profile.D, ".3f"),
         _format_interval(profile.G, ".2e"),
         *(
             (_format_interval(areal.D_s, ".3f"), _format_interval(areal.G_s, ".2e"))
-            if result.direction in ("areal", "profile")
+            if fractal_result.direction in ("areal", "profile")
             else ("", "")
         ),
     )

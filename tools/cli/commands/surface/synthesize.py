@@ -18,7 +18,7 @@ MAX_RIDGES = 1000
 SURFACE_TYPES = ("isotropic", "textured", "profile")
 
 
-def add(subcommands: SubParsers, subcommand_name: str) -> None:
+def add_command(subcommands: SubParsers, subcommand_name: str) -> None:
     """Declare the command `jointfmu surface synthesize` with its options."""
     make = declare_command(
         subcommands, subcommand_name, _run_synthesize, "make a random Weierstrass-Mandelbrot surface"

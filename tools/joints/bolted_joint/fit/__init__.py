@@ -3,14 +3,14 @@
 from ....common.options import Option
 from ....inputs.fitting.procedure import DAMPING_RATIO_OPTION, Procedure, lazy_fit
 
-SERIES_OPTION = Option(
+SERIES_STIFFNESS_OPTION = Option(
     "series_stiffness",
     "stiffness of the structure in series with the joint [N/m]; to fit it: --free series_stiffness",
     is_number=True,
 )
 
 
-FITS = (
+FIT_PROCEDURES = (
     Procedure(
         name="preload",
         description="the bolted joint to stiffness or frequency over preload",
@@ -20,9 +20,9 @@ FITS = (
                 "direction", "direction of the motion", default="normal", choices=("normal", "tangential")
             ),
             Option("modal_mass", "mass that vibrates on the joint [kg]", is_number=True),
-            SERIES_OPTION,
+            SERIES_STIFFNESS_OPTION,
         ),
-        run=lazy_fit(f"{__name__}.preload"),
+        run_fit=lazy_fit(f"{__name__}.preload"),
     ),
     Procedure(
         name="loop",
@@ -39,8 +39,8 @@ FITS = (
                 "modal_mass", "mass that vibrates on the joint [kg], for decays and responses", is_number=True
             ),
             DAMPING_RATIO_OPTION,
-            SERIES_OPTION,
+            SERIES_STIFFNESS_OPTION,
         ),
-        run=lazy_fit(f"{__name__}.loop"),
+        run_fit=lazy_fit(f"{__name__}.loop"),
     ),
 )

@@ -21,10 +21,10 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
+from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 from jointfmu.parameters import ParameterFile, load_default
-from jointfmu.progress import set_step
+from jointfmu.progress import set_status_text
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import unit_sizes
@@ -35,7 +35,7 @@ from ....inputs.fitting.hysteresis import HysteresisLaw
 from ....inputs.fitting.least_squares import Unknown, UnknownExchange
 from ....inputs.fitting.measurement import ColumnNames, Measurement, read_measurement
 from ....inputs.fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
-from .preload import COMPLETE_JOINT, SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
+from .preload import COMPLETE_JOINT, SERIES_STIFFNESS, joint_stiffness, merged_normalised_pressure
 from .preload import FITTED_PARAMETERS as INTERFACE
 
 COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
@@ -47,9 +47,9 @@ START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface
 value of the level follows from the data."""
 NON_JOINT_UNKNOWNS = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS)
 """Unknowns that are not parameters of the joint."""
-SERIES_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
+SERIES_STIFFNESS_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
-DISPLACEMENT_RATIO = 1.05
+TABLE_DISPLACEMENT_RATIO = 1.05
 """Largest displacement of the tabulated law over the amplitude of the loops [1]."""
 _TABLE_STEPS = 48
 """Steps of the table of first loading, finer near rest."""
@@ -58,7 +58,10 @@ _ELASTIC_TABLE_STEPS, _GROSS_SLIP_RATIO = 24, 4.0
 
 
 def first_loading(
-    joint: Bolted, preload: float, series_stiffness: float | None = None, max_displacement: float = np.inf
+    joint: AnyBoltedJoint,
+    preload: float,
+    series_stiffness: float | None = None,
+    max_displacement: float = np.inf,
 ) -> tuple[HysteresisLaw, Facts]:
     """Law of the loops in shear at a preload [N] of each bolt, and facts about the joint.
 
@@ -80,7 +83,7 @@ def first_loading(
     )
     motion, force, tangent_stiffness = separation * mu / kappa, mu * (load[0] - load), kappa * stiffness
     limit = float(mu * load[0])
-    if joint.elastic:
+    if joint.has_elastic_members:
         gross_slip = _GROSS_SLIP_RATIO * limit / rest_stiffness(joint, preload)
         motion, force, tangent_stiffness = _first_loading_of_elastic_sides(
             joint, preload, gross_slip, float(motion[-1]), max_displacement
@@ -113,7 +116,11 @@ def first_loading(
 
 @lru_cache(maxsize=8)
 def _first_loading_of_elastic_sides(
-    joint: Bolted, preload: float, uniform_length: float, graded_length: float, max_displacement: float
+    joint: AnyBoltedJoint,
+    preload: float,
+    uniform_length: float,
+    graded_length: float,
+    max_displacement: float,
 ) -> tuple[Array, Array, Array]:
     """First loading along x with elastic sides: displacement (n) [m], force (n) [N], tangent stiffness [N/m].
 
@@ -129,7 +136,7 @@ def _first_loading_of_elastic_sides(
     return motion, force, curve(motion, 1)
 
 
-def _follow_path(joint: Bolted, preload: float, displacement: Array) -> tuple[Array, Array]:
+def _follow_path(joint: AnyBoltedJoint, preload: float, displacement: Array) -> tuple[Array, Array]:
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], from the virgin state."""
     columns = (
         COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload, "s_rel_x": displacement}).columns
@@ -137,7 +144,7 @@ def _follow_path(joint: Bolted, preload: float, displacement: Array) -> tuple[Ar
     return -columns["f_x"], columns["K_xx"]
 
 
-def _masing_deviation(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
+def _masing_deviation(joint: AnyBoltedJoint, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
     """Deviation (n) [N] from Masing's rule of the forces of a joint with elastic sides, along measured loops.
 
     Bending of the bodies changes the slip direction of the patches, so that unloading does not mirror
@@ -161,35 +168,35 @@ def _masing_deviation(joint: Bolted, preload: float, loops: Loops, law: Hysteres
     return deviation
 
 
-def rest_stiffness(joint: Bolted, preload: float) -> float:
+def rest_stiffness(joint: AnyBoltedJoint, preload: float) -> float:
     """Shear stiffness K_xx [N/m] at rest, at a preload [N] of each bolt.
 
     Raises ValueError as `first_loading`.
     """
     curve, approach, weight = _preloaded_interface(joint, preload)
-    if joint.elastic:
+    if joint.has_elastic_members:
         return float(joint_stiffness(joint, np.array([preload]), "tangential")[0])
     return float(joint.shear_stiffness_ratio() * (curve.derivatives(approach, 1)[1] @ weight))
 
 
-def _preloaded_interface(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
+def _preloaded_interface(joint: AnyBoltedJoint, preload: float) -> tuple[Curve, Array, Array]:
     """Preloaded interface: curve of the law, approaches (n) [m] and areas (n) [m2] of the nodes.
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
-    shape, curve = merged_pressure_shape(joint.pattern), tabulate_approach(joint)
+    shape, curve = merged_normalised_pressure(joint.pattern), tabulate_approach(joint)
     pressure = preload_pressure(joint, shape, preload, 0.0)
-    if not 0.0 < (max_pressure := float(np.max(pressure))) < curve.end[1]:
+    if not 0.0 < (max_pressure := float(np.max(pressure))) < curve.end_point[1]:
         raise ValueError(
             f"preload = {preload:g} N per bolt presses with {max_pressure:.3g} Pa, allowed is up to "
-            f"{curve.end[1]:.3g} Pa"
+            f"{curve.end_point[1]:.3g} Pa"
         )
     return curve, curve.inverse(pressure), joint.A_0 * shape.area_share
 
 
 def fit(
     path: str | Path,
-    start: ParameterFile | None = None,
+    start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     *,
     preload: float | None = None,
@@ -213,7 +220,7 @@ def fit(
     name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
     data = read_measurement(path, COLUMN_NAMES)
-    file = start or load_default("bolted_joint")
+    file = start_parameters or load_default("bolted_joint")
     force = file.start_value("preload") if preload is None else preload
     if not 0.0 < force < np.inf:
         raise InputRefusal(
@@ -225,26 +232,33 @@ def fit(
             f"series stiffness = {series_stiffness:g} N/m is outside (0, inf)", SERIES_STIFFNESS
         )
 
-    def make_joint(values: Mapping[str, float]) -> Bolted:
-        parameters: Bolted = file.with_values(_joint_parameters(values), "calibration", "fit").values
+    def make_joint(parameter_values: Mapping[str, float]) -> AnyBoltedJoint:
+        parameters: AnyBoltedJoint = file.with_values(
+            _joint_parameters(parameter_values), "calibration", "fit"
+        ).values
         return parameters
 
-    def get_series_stiffness(values: Mapping[str, float]) -> float | None:
-        return values.get(SERIES_STIFFNESS, series_stiffness)
+    def get_series_stiffness(parameter_values: Mapping[str, float]) -> float | None:
+        return parameter_values.get(SERIES_STIFFNESS, series_stiffness)
 
-    reach = DISPLACEMENT_RATIO * data.amplitude if data.kind == "loops" else np.inf
+    reach = TABLE_DISPLACEMENT_RATIO * data.amplitude if data.kind == "loops" else np.inf
 
-    def make_law(values: Mapping[str, float]) -> HysteresisLaw:
-        set_step("tries " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))
-        return first_loading(make_joint(values), force, get_series_stiffness(values), reach)[0]
+    def make_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
+        set_status_text(
+            "tries " + ", ".join(f"{name} = {value:.4g}" for name, value in parameter_values.items())
+        )
+        return first_loading(
+            make_joint(parameter_values), force, get_series_stiffness(parameter_values), reach
+        )[0]
 
     model = hysteresis_fit.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
     measured_rest = data.rest_stiffness(modal_mass)
 
-    def total_rest_stiffness(values: Mapping[str, float]) -> float:
-        series = get_series_stiffness(values)
+    def total_rest_stiffness(parameter_values: Mapping[str, float]) -> float:
+        series = get_series_stiffness(parameter_values)
         return 1.0 / (
-            1.0 / rest_stiffness(make_joint(values), force) + (0.0 if series is None else 1.0 / series)
+            1.0 / rest_stiffness(make_joint(parameter_values), force)
+            + (0.0 if series is None else 1.0 / series)
         )
 
     if data.kind == "loops":
@@ -260,17 +274,20 @@ def fit(
     unknown_list = make_unknowns(file, [name for name in names if name not in NON_JOINT_UNKNOWNS], {})
     unknown_list += [hysteresis_fit.DAMPING_UNKNOWN] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
-        Unknown(SERIES_STIFFNESS, "N/m", SERIES_START_RATIOS[0] * measured_rest, 0.0, np.inf)
+        Unknown(SERIES_STIFFNESS, "N/m", SERIES_STIFFNESS_START_RATIOS[0] * measured_rest, 0.0, np.inf)
     ] * (SERIES_STIFFNESS in names)
     level = _level_exchange(file, names, total_rest_stiffness)
     is_vibration_with_level = data.kind != "loops" and set(FITTED_PARAMETERS[file.law][1:]) <= set(names)
-    starts = {**START_VALUES, SERIES_STIFFNESS: [times * measured_rest for times in SERIES_START_RATIOS[1:]]}
+    starts = {
+        **START_VALUES,
+        SERIES_STIFFNESS: [times * measured_rest for times in SERIES_STIFFNESS_START_RATIOS[1:]],
+    }
     is_joint_alone = series_stiffness is None and SERIES_STIFFNESS not in names
     is_corrected = data.kind == "loops" and file.values.elastic and is_joint_alone
 
-    def correct_measurement(values: Mapping[str, float]) -> Measurement:
+    def correct_measurement(parameter_values: Mapping[str, float]) -> Measurement:
         assert isinstance(data.data, Loops)
-        off = _masing_deviation(make_joint(values), force, data.data, make_law(values))
+        off = _masing_deviation(make_joint(parameter_values), force, data.data, make_law(parameter_values))
         return replace(data, data=replace(data.data, force=data.data.force - off))
 
     solution, scale, data = hysteresis_fit.fit_measurement(
@@ -305,7 +322,9 @@ def fit(
 
 
 def _level_exchange(
-    file: ParameterFile, names: Sequence[str], compute_rest_stiffness: Callable[[Mapping[str, float]], float]
+    parameter_file: ParameterFile,
+    fitted_names: Sequence[str],
+    compute_rest_stiffness: Callable[[Mapping[str, float]], float],
 ) -> UnknownExchange | None:
     """Exchange of unknowns: the stiffness at rest [N/m] replaces the parameter that sets the stiffness level.
 
@@ -313,12 +332,12 @@ def _level_exchange(
 
     None if the level is not fitted.
     """
-    _, level, *_ = FITTED_PARAMETERS[file.law]
-    if level not in names:
+    _, level, *_ = FITTED_PARAMETERS[parameter_file.law]
+    if level not in fitted_names:
         return None
     return UnknownExchange(level, compute_rest_stiffness, "N/m", "stiffness at rest")
 
 
-def _joint_parameters(values: Mapping[str, float]) -> dict[str, float]:
+def _joint_parameters(parameter_values: Mapping[str, float]) -> dict[str, float]:
     """Select the parameters of the joint: all values except the other unknowns."""
-    return {name: value for name, value in values.items() if name not in NON_JOINT_UNKNOWNS}
+    return {name: value for name, value in parameter_values.items() if name not in NON_JOINT_UNKNOWNS}

@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
-from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
+from jointfmu.joints.bolted_joint.bolts import LIFT_OFF_STIFFNESS_FACTOR
+from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure, working_preload
 from jointfmu.joints.bolted_joint.variables import MODELS
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
@@ -69,17 +69,17 @@ COMPLETE_JOINT = TrialJoint(MODELS[0])
 """The joint with elastic sides at the parameters of a trial."""
 
 
-def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") -> Array:
+def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "normal") -> Array:
     """Stiffness (n) [N/m] of the tightened joint at preloads (n) [N], equal to the one of the FMU.
 
     direction : "normal" (K_zz) or "tangential" (K_xx)
     """
-    if joint.elastic:
+    if joint.has_elastic_members:
         columns = (
             COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload}, each_from_rest=True).columns
         )
         return columns["K_zz" if direction == "normal" else "K_xx"]
-    shape = merged_pressure_shape(joint.pattern)
+    shape = merged_normalised_pressure(joint.pattern)
     p = preload_pressure(joint, shape, preload, 0.0)
     curve = tabulate_approach(joint)
     k, _ = stiffness_curve(joint, np.maximum(p, curve.closing_end_load))
@@ -87,20 +87,20 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
     normal = joint.A_0 * np.sum(shape.area_share * k, axis=-1)
     if direction == "normal":
-        pulling = np.where(working_preload(joint, preload) > 0.0, 1.0, AT_LIFT_OFF)
+        pulling = np.where(working_preload(joint, preload) > 0.0, 1.0, LIFT_OFF_STIFFNESS_FACTOR)
         return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness * pulling)
     return np.asarray(joint.shear_stiffness_ratio() * normal)
 
 
 @cache
-def merged_pressure_shape(pattern: PressureSource) -> MergedDistribution:
+def merged_normalised_pressure(pattern: PressureSource) -> MergedDistribution:
     """Normalised pressure distribution without a moment, with nodes of equal pressure merged."""
     return pressure_distribution(pattern).merge_nodes(keeps_moment=False)
 
 
 def fit(
     path: str | Path,
-    start: ParameterFile | None = None,
+    start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     *,
     direction: str = "normal",
@@ -122,20 +122,22 @@ def fit(
     Raises RuntimeError if the fit does not converge.
     """
     curve = _read_curve(Path(path))
-    file = _set_modal_mass(start or load_default("bolted_joint"), curve, modal_mass, series_stiffness)
+    file = _set_modal_mass(
+        start_parameters or load_default("bolted_joint"), curve, modal_mass, series_stiffness
+    )
     is_mass_fitted = curve.quantity_name == "frequency" and modal_mass is None
     level, *exponent = FITTED_PARAMETERS[file.law]
     names = list(
         fitted_names if fitted_names is not None else (*exponent, "mass" if is_mass_fitted else level)
     )
 
-    def predict(values: Mapping[str, float]) -> Array:
-        own = {name: value for name, value in values.items() if name != SERIES_STIFFNESS}
+    def predict(parameter_values: Mapping[str, float]) -> Array:
+        own = {name: value for name, value in parameter_values.items() if name != SERIES_STIFFNESS}
         joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
-        return curve.predict(joint, values.get(SERIES_STIFFNESS, series_stiffness), direction)
+        return curve.predict(joint, parameter_values.get(SERIES_STIFFNESS, series_stiffness), direction)
 
-    def logarithmic_error(values: Mapping[str, float]) -> Array:
-        return np.log(predict(values) / curve.measured_values)
+    def logarithmic_error(parameter_values: Mapping[str, float]) -> Array:
+        return np.log(predict(parameter_values) / curve.measured_values)
 
     solution = solve(_find_start(file, names, curve, logarithmic_error), logarithmic_error)
     own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS}
@@ -161,7 +163,7 @@ def fit(
             f"frequencies without a stated mass give K/mass only: the level is in mass, {level} is kept; "
             f"state the modal mass to fit {level}"
         )
-    return FitResult(result, solution, _facts(curve, solution), [picture], notes=notes)
+    return FitResult(result, solution, _fit_facts(curve, solution), [picture], notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +179,7 @@ class PreloadCurve:
     preload: Array
     measured_values: Array
 
-    def predict(self, joint: Bolted, series_stiffness: float | None, direction: str) -> Array:
+    def predict(self, joint: AnyBoltedJoint, series_stiffness: float | None, direction: str) -> Array:
         """Predict the quantity (n) for a joint, with an optional stiffness [N/m] in series."""
         K = joint_stiffness(joint, self.preload, direction)
         K = K if series_stiffness is None else 1.0 / (1.0 / K + 1.0 / series_stiffness)
@@ -209,7 +211,10 @@ def _read_curve(path: Path) -> PreloadCurve:
 
 
 def _set_modal_mass(
-    start: ParameterFile, curve: PreloadCurve, modal_mass: float | None, series_stiffness: float | None
+    start_parameters: ParameterFile,
+    preload_curve: PreloadCurve,
+    modal_mass: float | None,
+    series_stiffness: float | None,
 ) -> ParameterFile:
     """Start parameters with the modal mass [kg] of the test.
 
@@ -222,47 +227,51 @@ def _set_modal_mass(
         if value is not None and not 0.0 < value < np.inf:
             raise ValueError(f"{name} = {value:g} {unit} is outside (0, inf)")
     if modal_mass is None:
-        return start
-    if curve.quantity_name == "stiffness":
+        return start_parameters
+    if preload_curve.quantity_name == "stiffness":
         raise ValueError(
             f"modal mass = {modal_mass:g} kg is stated, but the file has stiffnesses, no frequencies"
         )
-    return start.with_values({"mass": modal_mass}, "user", "modal mass stated with the frequencies")
+    return start_parameters.with_values(
+        {"mass": modal_mass}, "user", "modal mass stated with the frequencies"
+    )
 
 
 def _find_start(
-    file: ParameterFile,
-    names: Sequence[str],
-    curve: PreloadCurve,
+    parameter_file: ParameterFile,
+    fitted_names: Sequence[str],
+    preload_curve: PreloadCurve,
     logarithmic_error: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
     """Unknowns with the best of several start values."""
-    parameters = make_unknowns(file, [name for name in names if name != SERIES_STIFFNESS], {})
+    parameters = make_unknowns(
+        parameter_file, [name for name in fitted_names if name != SERIES_STIFFNESS], {}
+    )
     level = (
-        curve.measured_values[-1]
-        if curve.quantity_name == "stiffness"
-        else (2.0 * np.pi * curve.measured_values[-1]) ** 2 * file.values.mass
+        preload_curve.measured_values[-1]
+        if preload_curve.quantity_name == "stiffness"
+        else (2.0 * np.pi * preload_curve.measured_values[-1]) ** 2 * parameter_file.values.mass
     )
     parameters += [Unknown(SERIES_STIFFNESS, "N/m", 3.0 * float(level), 0.0, np.inf)] * (
-        SERIES_STIFFNESS in names
+        SERIES_STIFFNESS in fitted_names
     )
 
-    def evaluate_start(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+    def evaluate_start(parameter_values: dict[str, float]) -> tuple[Mapping[str, float], float]:
         """Scale the mass, if it is fitted, to the mean frequency. Returns values and squared error."""
-        errors = logarithmic_error(values)
-        if "mass" in values:
-            values["mass"] *= float(np.exp(2.0 * np.mean(errors)))
+        errors = logarithmic_error(parameter_values)
+        if "mass" in parameter_values:
+            parameter_values["mass"] *= float(np.exp(2.0 * np.mean(errors)))
             errors = errors - np.mean(errors)
-        return values, float(errors @ errors)
+        return parameter_values, float(errors @ errors)
 
     return select_start(parameters, START_VALUES, evaluate_start)
 
 
-def _facts(curve: PreloadCurve, solution: Solution) -> Facts:
-    power = float(np.polyfit(np.log(curve.preload), np.log(curve.measured_values), 1)[0])
+def _fit_facts(preload_curve: PreloadCurve, solution: Solution) -> Facts:
+    power = float(np.polyfit(np.log(preload_curve.preload), np.log(preload_curve.measured_values), 1)[0])
     return {
-        "points": (float(curve.preload.size), "1", "points used"),
-        "power": (power, "1", f"of the preload with which the {curve.quantity_name} grows"),
+        "points": (float(preload_curve.preload.size), "1", "points used"),
+        "power": (power, "1", f"of the preload with which the {preload_curve.quantity_name} grows"),
         "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
         "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
     }

@@ -33,7 +33,7 @@ MAX_FORCE_RATIO = 10.0
 PRELOADED_PAIR_COUNT, FIRST_SLIP_RATIO = 12, 2e-3
 """Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
 slip [1]. The slip displacements of the pairs form a geometric sequence."""
-COMPRESSION_RATIOS = (2.0, 5.0)
+FULL_CONTACT_FORCE_RATIOS = (2.0, 5.0)
 """Normal forces over that at tightening [1] at which further slider pairs come into full contact, in
 compression."""
 _FORCE_POINTS, _DAMPING_POINTS = 800, 200
@@ -71,7 +71,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     Side 2 is rigid and does not rotate. So all patches have the same tangential displacement and their curves
     add: friction follows, as for one patch, from the total force g(c) at the approach c = -s_z.
     """
-    start = spring.checked_approach(preload, moment)
+    start = spring.checked_preloaded_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
     area, share = spring.joint.A_0, spring.points.area_share
 
@@ -110,7 +110,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     table = decimate_curve(curve, reference_node=zero, fixed_nodes=(zero,), segment_fits=is_linear)
     damping = np.column_stack([table.rows[:, 0], np.interp(table.rows[:, 0], c, eta)])
     table.rows[:, 1] -= load[zero]
-    levels = [np.interp(factor * preload_force, load, c) for factor in COMPRESSION_RATIOS]
+    levels = [np.interp(factor * preload_force, load, c) for factor in FULL_CONTACT_FORCE_RATIOS]
     heights = np.concatenate(
         [[first], first * np.geomspace(1.0, FIRST_SLIP_RATIO, PRELOADED_PAIR_COUNT)[1:], [0.0], levels]
     )
@@ -121,7 +121,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     sliders = np.column_stack(
         [np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.friction_limit)]
     )
-    bolts = spring.bolts.count * spring.bolts.preload_force(spring.joint, preload, moment)
+    bolts = spring.bolts.bolts_per_position * spring.bolts.preload_force(spring.joint, preload, moment)
     return CombinedSpring(table, damping, ratio, preload_force, rows, sliders, bolts)
 
 
@@ -135,12 +135,16 @@ WORKING_POINTS = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
 """Working points of the default records: preload [N] per bolt and moment [N.m], from Zhao 2018, Table 3."""
 
 
-def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
-    spring = BoltedJointSpring.of_nodes(file.values)
-    return [_make_record(file.name, spring, *point) for point in points]
+def _make_records(
+    parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
+) -> list[ModelicaRecord]:
+    spring = BoltedJointSpring.for_interface_nodes(parameter_file.values)
+    return [_make_record(parameter_file.name, spring, *point) for point in working_points]
 
 
-def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> ModelicaRecord:
+def _make_record(
+    record_name: str, spring: BoltedJointSpring, preload: float, moment: float
+) -> ModelicaRecord:
     tight = combine_nodes(spring, preload, moment)
     rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     values = format_parameter_values(
@@ -159,8 +163,8 @@ def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: f
     )
     force = f"{preload / 1e3:g} kN"
     return ModelicaRecord(
-        name=make_identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
-        title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
+        name=make_identifier(f"{record_name} {force}" + (f" {moment:g} Nm" if moment else "")),
+        title=f"{record_name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
         table=tight.force_table,
         values=values
         | {
@@ -175,7 +179,7 @@ def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: f
     )
 
 
-COMPONENT = ModelicaComponent(
+MODELICA_COMPONENT = ModelicaComponent(
     name="BoltedJoint",
     base_record="BoltedJoint",
     working_points=WORKING_POINTS,
@@ -185,6 +189,6 @@ COMPONENT = ModelicaComponent(
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
         "strongest": f"{MAX_FORCE_RATIO:g}",
         "spread": f"{UNIFORM_DEVIATION:.15g}",
-        "sliders": f"{2 * (PRELOADED_PAIR_COUNT + len(COMPRESSION_RATIOS))}",
+        "sliders": f"{2 * (PRELOADED_PAIR_COUNT + len(FULL_CONTACT_FORCE_RATIOS))}",
     },
 )

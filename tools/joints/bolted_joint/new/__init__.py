@@ -18,7 +18,7 @@ ATTACHMENTS = {
 }
 """{name: surfaces of both plates that move rigidly with the connected bodies}."""
 
-NEW = NewJointCommand(
+NEW_JOINT_COMMAND = NewJointCommand(
     description="a bolted joint of two plates",
     example="--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --finish ground "
     "--preload 30e3",

@@ -69,16 +69,18 @@ def _parse_positions(position_texts: Sequence[str], bolt_count: int) -> Array:
     return np.array(places)
 
 
-def _grid_positions(spans: Sequence[float], bolt_count: int, grid: str | None) -> Array:
+def _grid_positions(grid_lengths: Sequence[float], bolt_count: int, grid_text: str | None) -> Array:
     """Positions (count, 2) [m] of bolts on a rectangular grid: on the full grid, or on its rim only."""
-    if min(spans) < 0.0:
-        raise ValueError(f"--at = {min(spans):g} m is outside [0, inf): distance of the outermost bolts")
-    if bolt_count == 1 and max(spans) > 0.0:
+    if min(grid_lengths) < 0.0:
+        raise ValueError(
+            f"--at = {min(grid_lengths):g} m is outside [0, inf): distance of the outermost bolts"
+        )
+    if bolt_count == 1 and max(grid_lengths) > 0.0:
         raise ValueError("--at LxW beside one bolt: expected the number of --bolts, as in 4xM12")
-    columns, rows = _grid_size(spans, bolt_count, grid)
+    columns, rows = _grid_size(grid_lengths, bolt_count, grid_text)
     x, y = (
         0.5 * span * (np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1))
-        for span, n in zip(spans, (columns, rows), strict=True)
+        for span, n in zip(grid_lengths, (columns, rows), strict=True)
     )
     i, j = (index.ravel() for index in np.meshgrid(np.arange(columns), np.arange(rows)))
     if bolt_count != columns * rows:
@@ -87,20 +89,22 @@ def _grid_positions(spans: Sequence[float], bolt_count: int, grid: str | None) -
     return np.column_stack([x[i], y[j]])
 
 
-def _grid_size(spans: Sequence[float], bolt_count: int, grid: str | None) -> tuple[int, int]:
+def _grid_size(grid_lengths: Sequence[float], bolt_count: int, grid_text: str | None) -> tuple[int, int]:
     """Number of bolts along x and along y."""
-    if grid:
-        match = _GRID_PATTERN.fullmatch(grid)
+    if grid_text:
+        match = _GRID_PATTERN.fullmatch(grid_text)
         if not match or 0 in (sizes := (int(match[1]), int(match[2]))):
-            raise ValueError(f"--grid = {grid!r} is not a grid; expected the bolts along x and y, as in 3x2")
+            raise ValueError(
+                f"--grid = {grid_text!r} is not a grid; expected the bolts along x and y, as in 3x2"
+            )
         columns, rows = sizes
         rim = 2 * (columns + rows) - 4 if min(sizes) > 2 else columns * rows
         if bolt_count not in (columns * rows, rim):
             allowed = f"{columns * rows}" + (f" or, on its rim, {rim}" if rim != columns * rows else "")
-            raise ValueError(f"--grid = {grid} has {allowed} bolts, but --bolts states {bolt_count}")
-    elif spans[1] == 0.0:
+            raise ValueError(f"--grid = {grid_text} has {allowed} bolts, but --bolts states {bolt_count}")
+    elif grid_lengths[1] == 0.0:
         columns, rows = bolt_count, 1
-    elif spans[0] == 0.0:
+    elif grid_lengths[0] == 0.0:
         columns, rows = 1, bolt_count
     elif bolt_count == 4:
         columns, rows = 2, 2
@@ -108,7 +112,7 @@ def _grid_size(spans: Sequence[float], bolt_count: int, grid: str | None) -> tup
         raise ValueError(
             f"{bolt_count} bolts on a rectangle: expected --grid, the bolts along x and y, as in 3x2"
         )
-    for n, span, axis in ((columns, spans[0], "x"), (rows, spans[1], "y")):
+    for n, span, axis in ((columns, grid_lengths[0], "x"), (rows, grid_lengths[1], "y")):
         if n > 1 and span == 0.0:
             raise ValueError(f"--at: {n} bolts along {axis} need a distance above 0 there")
     return columns, rows

@@ -103,7 +103,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     layers, depth = bolt.clamped_parts, 0.0
     if options["tapped"] and options["thickness"] is not None:
         layers = (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1]))
-        depth = THREAD_DEPTH_RATIO * thread.d
+        depth = THREAD_DEPTH_RATIO * thread.nominal_diameter
     plates = BoltedPlates(plate, layers, bolt.bearing_diameter, density, preload, preload - loss, depth)
     shape = None
     if options["field"] == "computed":
@@ -131,9 +131,9 @@ def clamp_bolt(
     options: DrawingOptions,
     thread: Thread,
     plate_size: tuple[float, float],
-    positions: Array,
+    bolt_positions: Array,
     hole_diameter: float,
-    moduli: tuple[float, float],
+    young_moduli: tuple[float, float],
 ) -> ClampedBolt:
     """Compute one bolt with its clamped parts by VDI 2230.
 
@@ -148,7 +148,10 @@ def clamp_bolt(
     bearing = getattr(thread, head)
     if options["bearing"] is not None:
         bearing = parse_number("bearing", options["bearing"], "mm", "m")
-    for name, value, low in (("hole", hole_diameter, thread.d), ("bearing", bearing, hole_diameter)):
+    for name, value, low in (
+        ("hole", hole_diameter, thread.nominal_diameter),
+        ("bearing", bearing, hole_diameter),
+    ):
         if not value > low:
             raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
     thicknesses = _clamped_thicknesses(options)
@@ -156,23 +159,23 @@ def clamp_bolt(
         expected = "that of side 1" if tapped else "both plates together, or each"
         raise ValueError(f"--grip has {len(thicknesses)} values, expected {expected}")
     if tapped:
-        layers: tuple[vdi2230.ClampedPart, ...] = (vdi2230.ClampedPart(thicknesses[0], moduli[0]),)
+        layers: tuple[vdi2230.ClampedPart, ...] = (vdi2230.ClampedPart(thicknesses[0], young_moduli[0]),)
     else:
         pair = thicknesses if len(thicknesses) == 2 else [0.5 * thicknesses[0]] * 2
-        layers = tuple(vdi2230.ClampedPart(t, E) for t, E in zip(pair, moduli, strict=True))
+        layers = tuple(vdi2230.ClampedPart(t, E) for t, E in zip(pair, young_moduli, strict=True))
     grip = float(sum(layer.thickness for layer in layers))
-    if grip > MAX_GRIP_RATIO * thread.d:
-        longest_grip = MAX_GRIP_RATIO * thread.d * 1e3
+    if grip > MAX_GRIP_RATIO * thread.nominal_diameter:
+        longest_grip = MAX_GRIP_RATIO * thread.nominal_diameter * 1e3
         raise ValueError(
             f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {MAX_GRIP_RATIO} "
             f"times {thread.name}"
         )
-    outer = outer_diameter(plate_size, positions)
+    outer = outer_diameter(plate_size, bolt_positions)
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
     if not slope > 0.0:
         raise ValueError(f"--grip = {grip * 1e3:g} mm is too short for a deformation cone of VDI 2230")
     shank = vdi2230.shank_length(thread, grip, head, tapped)
-    delta_S = vdi2230.bolt_compliance(thread, grip, shank, head, moduli[1] if tapped else None)
+    delta_S = vdi2230.bolt_compliance(thread, grip, shank, head, young_moduli[1] if tapped else None)
     delta_P = vdi2230.members_compliance(layers, bearing, hole_diameter, outer, slope, tapped)
     cone = vdi2230.cone_diameter(min(layer.thickness for layer in layers), bearing, slope)
     return ClampedBolt(grip, layers, hole_diameter, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
@@ -206,7 +209,7 @@ def _plate_thicknesses(options: DrawingOptions) -> list[float]:
     return thicknesses
 
 
-def outer_diameter(plate_size: tuple[float, float], positions: Array) -> float:
+def outer_diameter(plate_size: tuple[float, float], bolt_positions: Array) -> float:
     """Outer diameter D_A [m] of the clamped parts, mean over the bolts.
 
     For each bolt: twice the distance to the nearest edge, or the distance to the next bolt if this is
@@ -214,43 +217,50 @@ def outer_diameter(plate_size: tuple[float, float], positions: Array) -> float:
 
     Raises ValueError for a bolt outside the plate.
     """
-    edge = np.min(np.array(plate_size) - 2.0 * np.abs(positions), axis=1)
+    edge = np.min(np.array(plate_size) - 2.0 * np.abs(bolt_positions), axis=1)
     if np.min(edge) <= 0.0:
         i = int(np.argmin(edge))
-        x, y = positions[i] * 1e3
+        x, y = bolt_positions[i] * 1e3
         raise ValueError(f"bolt {i + 1} at ({x:g}, {y:g}) mm is not inside the plate")
-    distance = np.hypot(*np.moveaxis(positions[:, None, :] - positions, -1, 0)) + np.diag(
-        np.full(len(positions), np.inf)
+    distance = np.hypot(*np.moveaxis(bolt_positions[:, None, :] - bolt_positions, -1, 0)) + np.diag(
+        np.full(len(bolt_positions), np.inf)
     )
     return float(np.mean(np.minimum(edge, np.min(distance, axis=1))))
 
 
 def _add_plate(
-    sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, hole_source: tuple[str, str]
+    parameter_sheet: ParameterSheet,
+    bolted_plate: BoltedPlate,
+    clamped_bolt: ClampedBolt,
+    hole_source: tuple[str, str],
 ) -> None:
     for name in ("length", "width", "x", "y"):
-        sheet.add_drawing_value(f"plate.{name}", getattr(plate, name))
-    sheet.add("plate.hole_diameter", plate.hole_diameter, *hole_source)
+        parameter_sheet.add_drawing_value(f"plate.{name}", getattr(bolted_plate, name))
+    parameter_sheet.add("plate.hole_diameter", bolted_plate.hole_diameter, *hole_source)
     cone = (
         f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
         f"{min(layer.thickness for layer in clamped_bolt.clamped_parts) * 1e3:g} mm with tan(phi) = "
         f"{clamped_bolt.cone_slope:.4g}"
     )
-    sheet.add("plate.cone_diameter", plate.cone_diameter, "derived", cone)
-    sheet.add("A_0", plate.area, "derived", "area of the plate without the holes")
+    parameter_sheet.add("plate.cone_diameter", bolted_plate.cone_diameter, "derived", cone)
+    parameter_sheet.add("A_0", bolted_plate.area, "derived", "area of the plate without the holes")
 
 
-def _add_bolts(sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, thread: Thread) -> None:
-    row_bolts, row_distance = plate.equivalent_bolt_rows
+def _add_bolts(
+    parameter_sheet: ParameterSheet, bolted_plate: BoltedPlate, clamped_bolt: ClampedBolt, thread: Thread
+) -> None:
+    row_bolts, row_distance = bolted_plate.equivalent_bolt_rows
     rows = "from the bolt positions: two equivalent rows that carry the same moment about x"
-    sheet.add("n_bolts", float(len(plate.x)), "user", "stated on the drawing")
-    sheet.add("row_bolts", row_bolts, "derived", rows)
-    sheet.add("row_distance", row_distance, "derived", rows)
+    parameter_sheet.add("n_bolts", float(len(bolted_plate.x)), "user", "stated on the drawing")
+    parameter_sheet.add("row_bolts", row_bolts, "derived", rows)
+    parameter_sheet.add("row_distance", row_distance, "derived", rows)
     text = f"VDI 2230, 1/delta_S of {thread.name} over {clamped_bolt.grip * 1e3:g} mm of grip"
-    sheet.add("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
+    parameter_sheet.add("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
 
 
-def _add_preload(sheet: ParameterSheet, options: DrawingOptions, thread: Thread) -> tuple[float, list[str]]:
+def _add_preload(
+    parameter_sheet: ParameterSheet, options: DrawingOptions, thread: Thread
+) -> tuple[float, list[str]]:
     """Add the preload [N] to the sheet.
 
     Returns the preload, and a warning if it exceeds the proof load of the bolt.
@@ -259,10 +269,10 @@ def _add_preload(sheet: ParameterSheet, options: DrawingOptions, thread: Thread)
     if options["preload"] is None:
         preload = vdi2230.assembly_preload(thread, property_class_strength(name, "yield", thread))
         text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
-        sheet.add("inputs.preload", preload, "estimate", text)
+        parameter_sheet.add("inputs.preload", preload, "estimate", text)
     else:
         preload = parse_number("preload", options["preload"], "N", "N")
-        sheet.add_drawing_value("inputs.preload", preload)
+        parameter_sheet.add_drawing_value("inputs.preload", preload)
     if options["property_class"] is None:
         return preload, []
     proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
@@ -272,27 +282,30 @@ def _add_preload(sheet: ParameterSheet, options: DrawingOptions, thread: Thread)
 
 
 def _add_embedding_loss(
-    sheet: ParameterSheet, options: DrawingOptions, clamped_bolt: ClampedBolt, heights: faces.HeightRange
+    parameter_sheet: ParameterSheet,
+    options: DrawingOptions,
+    clamped_bolt: ClampedBolt,
+    height_range: faces.HeightRange,
 ) -> float:
     """Add the preload loss [N] by embedding to the sheet, and return it."""
     if options["embedding"] is not None:
         loss = parse_number("embedding", options["embedding"], "N", "N", None)
-        sheet.add_drawing_value("embedding", loss)
+        parameter_sheet.add_drawing_value("embedding", loss)
         return loss
-    depth = vdi2230.embedding_depth(heights.Rz, 1, bool(options["tapped"]))
+    depth = vdi2230.embedding_depth(height_range.Rz, 1, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
     text = (
         f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, "
         f"{'head' if options['tapped'] else 'head and nut'}, "
-        f"one interface, Rz {heights.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
+        f"one interface, Rz {height_range.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
     )
-    sheet.add("embedding", loss, "estimate", text)
+    parameter_sheet.add("embedding", loss, "estimate", text)
     return loss
 
 
-def _friction_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
+def _friction_facts(parameter_file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
     """Facts about friction: gross-slip force and loss factor, at mu and at both ends of its range."""
-    shear, rows = friction_results(file, preload)
+    shear, rows = friction_results(parameter_file, preload)
     slip = "shear force at which the whole interface slips"
     loss = f"loss factor of the interface between rigid sides at {shear:.3g} N of shear"
     facts = {}
@@ -316,11 +329,11 @@ def _interface_only_text(interface_stiffness: float, clamped_bolt: ClampedBolt) 
 
 
 def _design_facts(
-    file: ParameterFile, clamped_bolt: ClampedBolt, heights: faces.HeightRange, preload: float
+    parameter_file: ParameterFile, clamped_bolt: ClampedBolt, height_range: faces.HeightRange, preload: float
 ) -> dict[str, tuple[float, str, str]]:
     """Facts for the designer: preload, pressures, stiffnesses, load factor, friction."""
-    values = file.values
-    state = BoltedJointSpring.of(values).evaluate(preload, 0.0, ZERO_MOTION, ZERO_MOTION)
+    values = parameter_file.values
+    state = BoltedJointSpring.for_joint(values).evaluate(preload, 0.0, ZERO_MOTION, ZERO_MOTION)
     bolts = values.n_bolts * clamped_bolt.bolt_stiffness
     K = float(state["K_zz"]) - bolts
     facts = {
@@ -333,7 +346,11 @@ def _design_facts(
         ),
         "p_mean": (float(state["p_mean"]), "Pa", "mean contact pressure"),
         "p_max": (float(state["p_max"]), "Pa", "largest contact pressure, near a bolt"),
-        "h": (float(file.values_by_name.get("h", np.nan)), "m", "combined rms height of both faces"),
+        "h": (
+            float(parameter_file.values_by_name.get("h", np.nan)),
+            "m",
+            "combined rms height of both faces",
+        ),
         "interface_K_zz": (
             K,
             "N/m",
@@ -356,9 +373,9 @@ def _design_facts(
             "Phi_K = delta_P/(delta_S + delta_P): share of an external force that the bolts carry",
         ),
     }
-    facts |= _friction_facts(file, preload)
-    if heights.h_max > heights.h_min and file.law == "roughness":
-        h = float(file.values_by_name["h"])
-        facts["interface_K_zz_low"] = (K * h / heights.h_max, "N/m", "with the roughest usual finish")
-        facts["interface_K_zz_high"] = (K * h / heights.h_min, "N/m", "with the finest usual finish")
+    facts |= _friction_facts(parameter_file, preload)
+    if height_range.h_max > height_range.h_min and parameter_file.law == "roughness":
+        h = float(parameter_file.values_by_name["h"])
+        facts["interface_K_zz_low"] = (K * h / height_range.h_max, "N/m", "with the roughest usual finish")
+        facts["interface_K_zz_high"] = (K * h / height_range.h_min, "N/m", "with the finest usual finish")
     return {name: fact for name, fact in facts.items() if np.isfinite(fact[0])}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.compliances import COMPONENTS, Compliances
+from jointfmu.joints.bolted_joint.compliances import COMPLIANCE_COMPONENTS, Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.curve import tabulate_approach
@@ -14,7 +14,7 @@ from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
-from jointfmu.progress import set_step
+from jointfmu.progress import set_status_text
 from jointfmu.quantity import Array, flatten_parameters
 
 from ....fem import require_fem_packages
@@ -48,7 +48,7 @@ class BoltedPlates:
     remaining_preload: float
     thread_depth: float = 0.0
 
-    def make_assembly(self, file: ParameterFile) -> "Assembly":
+    def make_assembly(self, parameter_file: ParameterFile) -> "Assembly":
         """Build the bodies of the finite-element model.
 
         Raises ValueError for bolt heads that overlap or extend beyond the plate.
@@ -61,7 +61,7 @@ class BoltedPlates:
                 width=self.plate.width,
                 thickness=layer.thickness,
                 E=layer.E,
-                nu=file.values_by_name[f"side{i + 1}.nu"],
+                nu=parameter_file.values_by_name[f"side{i + 1}.nu"],
                 density=self.density[i],
             )
             for i, layer in enumerate(self.clamped_parts)
@@ -72,11 +72,11 @@ class BoltedPlates:
         bolts = BoltList(
             x=plate.x, y=plate.y, hole_diameter=plate.hole_diameter, head_diameter=self.bearing_diameter
         )
-        return Assembly(file.name, sides[0], sides[1], bolts)
+        return Assembly(parameter_file.name, sides[0], sides[1], bolts)
 
 
 def compute_pressure_field(
-    file: ParameterFile, plates: BoltedPlates
+    parameter_file: ParameterFile, bolted_plates: BoltedPlates
 ) -> tuple[ParameterFile, PressureDistribution]:
     """Replace the pressure cones of the bolts by the computed contact pressure of the elastic plates.
 
@@ -88,11 +88,11 @@ def compute_pressure_field(
     with require_fem_packages("--field computed"):
         from ....fem.bolted_contact import BoltedContact, insert_contact_field
 
-        set_step("contact of the plates by finite elements")
-        solution = BoltedContact.from_assembly(plates.make_assembly(file)).solve(
-            tabulate_approach(file.values), plates.remaining_preload
+        set_status_text("contact of the plates by finite elements")
+        solution = BoltedContact.from_assembly(bolted_plates.make_assembly(parameter_file)).solve(
+            tabulate_approach(parameter_file.values), bolted_plates.remaining_preload
         )
-    return insert_contact_field(file, solution, plates.remaining_preload)
+    return insert_contact_field(parameter_file, solution, bolted_plates.remaining_preload)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,27 +100,31 @@ class ComputedJoint:
     """Complete joint between its attachments: compliances, and parameter file with elastic sides."""
 
     compliances: Compliances
-    file: ParameterFile
+    parameter_file: ParameterFile
 
 
 def compute_joint(
-    file: ParameterFile,
-    plates: BoltedPlates,
+    parameter_file: ParameterFile,
+    bolted_plates: BoltedPlates,
     attachment: str,
-    pressure_shape: PressureDistribution | None = None,
+    normalised_pressure: PressureDistribution | None = None,
 ) -> ComputedJoint:
     """Compute the complete joint of a drawing at its preload, see `compute_joint_of_assembly`."""
     return compute_joint_of_assembly(
-        file, lambda: plates.make_assembly(file), plates.preload, attachment, pressure_shape
+        parameter_file,
+        lambda: bolted_plates.make_assembly(parameter_file),
+        bolted_plates.preload,
+        attachment,
+        normalised_pressure,
     )
 
 
 def compute_joint_of_assembly(
-    file: ParameterFile,
+    parameter_file: ParameterFile,
     make_assembly: "Callable[[], Assembly]",
     preload: float,
     attachment: str,
-    pressure_shape: PressureDistribution | None = None,
+    normalised_pressure: PressureDistribution | None = None,
 ) -> ComputedJoint:
     """Compute the complete joint by finite elements and reduce its bodies to modes.
 
@@ -137,22 +141,22 @@ def compute_joint_of_assembly(
         from ....fem.reduction.elastic_bodies import reduce_bodies
         from ....fem.whole_joint import JointFiniteElements
 
-        set_step("members by finite elements")
+        set_status_text("members by finite elements")
         clamped = make_assembly()
         check_thickness(clamped)
         joint = JointFiniteElements.from_assembly(clamped, attachment)
-        springs = _interface_stiffness(file, preload, joint, pressure_shape)
-        linear = joint.linearize(springs, file.values.bolt_stiffness)
+        springs = _interface_stiffness(parameter_file, preload, joint, normalised_pressure)
+        linear = joint.linearize(springs, parameter_file.values.bolt_stiffness)
         bodies = replace(
-            reduce_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
+            reduce_bodies(linear, BoltedJointSpring.for_joint(parameter_file.values), springs[:, 2], preload),
             thickness=(clamped.side1.clamped_thickness, clamped.side2.clamped_thickness),
-            outline=_contact_outline(clamped, joint.interface.centroid),
+            outline=_contact_outline(clamped, joint.contact_interface.centroid),
             hole_diameter=clamped.bolts.hole_diameter,
             head_diameter=clamped.bolts.head_diameter,
             thread_depth=getattr(clamped.side2, "depth", 0.0),
         )
         compliances = linear.compliances()
-    return ComputedJoint(compliances, set_elastic_bodies(file, bodies, attachment))
+    return ComputedJoint(compliances, set_elastic_bodies(parameter_file, bodies, attachment))
 
 
 def _contact_outline(assembly: "Assembly", centroid: Array) -> tuple[float, ...]:
@@ -163,25 +167,27 @@ def _contact_outline(assembly: "Assembly", centroid: Array) -> tuple[float, ...]
     return tuple(np.concatenate([-half - centroid, half - centroid]).tolist())
 
 
-def set_elastic_bodies(file: ParameterFile, bodies: ElasticBodies, attachment: str) -> ParameterFile:
+def set_elastic_bodies(
+    parameter_file: ParameterFile, bodies: ElasticBodies, attachment: str
+) -> ParameterFile:
     """Parameters of the joint with elastic sides, described by `bodies`."""
-    values = replace(file.values, sides="elastic", bodies=replace(bodies, attached=attachment))
+    values = replace(parameter_file.values, sides="elastic", bodies=replace(bodies, attached=attachment))
     source = f"finite elements of the bodies between {ATTACHMENTS[attachment]}, reduced to modes"
     names = [f"bodies.{name}" for name, value in flatten_parameters(bodies).items() if value != ()]
     stated = "elastic: the complete joint between its attachments; rigid: the interface alone"
     return replace(
-        file,
+        parameter_file,
         values=values,
-        origins={**file.origins, **dict.fromkeys(names, "derived"), "sides": "user"},
-        sources={**file.sources, **dict.fromkeys(names, source), "sides": stated},
+        origins={**parameter_file.origins, **dict.fromkeys(names, "derived"), "sides": "user"},
+        sources={**parameter_file.sources, **dict.fromkeys(names, source), "sides": stated},
     )
 
 
 def _interface_stiffness(
-    file: ParameterFile,
+    parameter_file: ParameterFile,
     preload: float,
-    joint: "JointFiniteElements",
-    pressure_shape: PressureDistribution | None,
+    joint_model: "JointFiniteElements",
+    normalised_pressure: PressureDistribution | None,
 ) -> Array:
     """Stiffness per area (points, 3) [N/m3] along x, y, z of the tightened interface, at integration points.
 
@@ -192,13 +198,15 @@ def _interface_stiffness(
     """
     from scipy.spatial import cKDTree
 
-    values, interface = file.values, joint.interface
-    pressure_shape = pressure_shape or pressure_distribution(values.pattern)
+    values, interface = parameter_file.values, joint_model.contact_interface
+    normalised_pressure = normalised_pressure or pressure_distribution(values.pattern)
     curve = tabulate_approach(values)
-    nodal = curve.derivatives(curve.inverse(preload_pressure(values, pressure_shape, preload, 0.0)), 1)[1]
-    normal = nodal[cKDTree(pressure_shape.position).query(interface.centred_position)[1]]
+    nodal = curve.derivatives(curve.inverse(preload_pressure(values, normalised_pressure, preload, 0.0)), 1)[
+        1
+    ]
+    normal = nodal[cKDTree(normalised_pressure.position).query(interface.centred_position)[1]]
     normal = normal * (
-        values.A_0 * (pressure_shape.area_share @ nodal) / (interface.quadrature_area @ normal)
+        values.A_0 * (normalised_pressure.area_share @ nodal) / (interface.quadrature_area @ normal)
     )
     ratio = float(values.shear_stiffness_ratio())
     return np.stack([ratio * normal, ratio * normal, normal], axis=1)
@@ -209,12 +217,12 @@ Facts = dict[str, tuple[float, str, str]]
 
 
 def compute_facts(
-    file: ParameterFile,
-    plates: BoltedPlates,
+    parameter_file: ParameterFile,
+    bolted_plates: BoltedPlates,
     attachment: str,
-    sides: str | None,
+    requested_sides: str | None,
     interface_only_text: str,
-    pressure_shape: PressureDistribution | None = None,
+    normalised_pressure: PressureDistribution | None = None,
 ) -> NewJoint:
     """Compute the complete joint: parameters with elastic sides and facts, or a warning why this failed.
 
@@ -226,22 +234,26 @@ def compute_facts(
     Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """
     try:
-        computed = compute_joint(file, plates, attachment, pressure_shape)
+        computed = compute_joint(parameter_file, bolted_plates, attachment, normalised_pressure)
     except ValueError as error:
-        if sides == "elastic":
+        if requested_sides == "elastic":
             raise
-        return NewJoint(file, {}, [f"members and bolts are not computed, {interface_only_text}: {error}"])
-    if sides == "rigid":
-        return NewJoint(file, _fact_rows(computed.compliances, plates.remaining_preload, attachment), [])
-    return NewJoint(computed.file, joint_facts(computed.file, plates.preload), [])
+        return NewJoint(
+            parameter_file, {}, [f"members and bolts are not computed, {interface_only_text}: {error}"]
+        )
+    if requested_sides == "rigid":
+        return NewJoint(
+            parameter_file, _fact_rows(computed.compliances, bolted_plates.remaining_preload, attachment), []
+        )
+    return NewJoint(computed.parameter_file, joint_facts(computed.parameter_file, bolted_plates.preload), [])
 
 
-def joint_facts(file: ParameterFile, preload: float) -> Facts:
+def joint_facts(parameter_file: ParameterFile, preload: float) -> Facts:
     """Facts about a joint with elastic sides at a preload [N] of each bolt, equal to report and FMU."""
-    compliances = BoltedJointSpring.of(file.values).compliances(preload)
-    tension = float(working_preload(file.values, preload))
+    compliances = BoltedJointSpring.for_joint(parameter_file.values).compliances(preload)
+    tension = float(working_preload(parameter_file.values, preload))
     suffix = f" at preload = {preload:.5g} N"
-    return _fact_rows(compliances, tension, file.values.bodies.attached, suffix)
+    return _fact_rows(compliances, tension, parameter_file.values.bodies.attached, suffix)
 
 
 def _fact_rows(
@@ -262,8 +274,10 @@ def _fact_rows(
 def _stiffness_facts(compliances: Compliances, attachment: str, fmu_suffix: str) -> Facts:
     """Stiffnesses in all directions, first of the complete joint, then of its members."""
     rows, members = {}, {}
-    for name, unit, (joint, interface, alone, _), parts in compliances.rows():
-        shares = ", ".join(f"{share:.0%} {part}" for share, part in zip(parts, COMPONENTS, strict=True))
+    for name, unit, (joint, interface, alone, _), parts in compliances.table_rows():
+        shares = ", ".join(
+            f"{share:.0%} {part}" for share, part in zip(parts, COMPLIANCE_COMPONENTS, strict=True)
+        )
         rows[f"joint_{name}"] = (
             joint,
             unit,
@@ -281,7 +295,7 @@ def _stiffness_facts(compliances: Compliances, attachment: str, fmu_suffix: str)
 
 def _interface_share(compliances: Compliances, is_interface_only: bool) -> Facts:
     """Share of the interface in the compliance of the complete joint."""
-    share = compliances.shares[0]
+    share = compliances.compliance_shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
     text = f"share of the interface in the compliance along z, at most {rest:.3g} in other directions; " + (
         "the FMU is the interface alone (--sides rigid)"

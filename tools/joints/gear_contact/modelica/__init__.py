@@ -17,17 +17,19 @@ from ....exchange.modelica.records import (
 )
 
 
-def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
-    contact = GearContactSpring.tabulate(file.values)
+def _make_records(
+    parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
+) -> list[ModelicaRecord]:
+    contact = GearContactSpring.tabulate(parameter_file.values)
     pressure = decimate_curve(contact.curve)
     approach = pressure.rows[:, :1] - contact.curve.displacement[0]
     table = InterpolationTable(
         np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.max_error
     )
-    return [ModelicaRecord(name=make_identifier(file.name), title=file.name, table=table)]
+    return [ModelicaRecord(name=make_identifier(parameter_file.name), title=parameter_file.name, table=table)]
 
 
-COMPONENT = ModelicaComponent(
+MODELICA_COMPONENT = ModelicaComponent(
     name="GearContact",
     base_record="GearContact",
     make_records=_make_records,

@@ -19,8 +19,10 @@ from ....exchange.modelica.records import (
 )
 
 
-def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
-    spring = GearMeshSpring.tabulate(file.values)
+def _make_records(
+    parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
+) -> list[ModelicaRecord]:
+    spring = GearMeshSpring.tabulate(parameter_file.values)
     table = decimate_curve(spring.curve)
     energy = to_curve(table).energy(table.rows[:, 0])
     values = format_parameter_values(_wheel_parameters(spring.joint)) | format_computed_values(
@@ -29,17 +31,20 @@ def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[M
     nodes = "{\n      " + ",\n      ".join(format_number(x, COMPUTED_DIGITS) for x in energy.tolist()) + "}"
     return [
         ModelicaRecord(
-            name=make_identifier(file.name), title=file.name, table=table, values={**values, "energy": nodes}
+            name=make_identifier(parameter_file.name),
+            title=parameter_file.name,
+            table=table,
+            values={**values, "energy": nodes},
         )
     ]
 
 
-def _wheel_parameters(mesh: MeshParameters) -> dict[str, float]:
+def _wheel_parameters(mesh_parameters: MeshParameters) -> dict[str, float]:
     names = ("r_b1", "r_b2", "teeth1", "backlash", "contact_ratio", "engagement", "d", "overlap_ratio")
-    return {name: getattr(mesh, name) for name in names}
+    return {name: getattr(mesh_parameters, name) for name in names}
 
 
-COMPONENT = ModelicaComponent(
+MODELICA_COMPONENT = ModelicaComponent(
     name="GearMesh",
     base_record="GearMesh",
     make_records=_make_records,

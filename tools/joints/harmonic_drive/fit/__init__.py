@@ -4,7 +4,7 @@ from ....common.options import Option
 from ....inputs.fitting.procedure import Procedure, lazy_fit
 from ..catalogue import STIFFNESS_COLUMNS
 
-FITS = (
+FIT_PROCEDURES = (
     Procedure(
         name="torque-angle",
         description="the harmonic drive to a torque-angle curve",
@@ -21,7 +21,7 @@ FITS = (
                 choices=("table",),
             ),
         ),
-        run=lazy_fit(f"{__name__}.torque_angle"),
+        run_fit=lazy_fit(f"{__name__}.torque_angle"),
     ),
     Procedure(
         name="loop",
@@ -35,7 +35,7 @@ FITS = (
                 is_number=True,
             ),
         ),
-        run=lazy_fit(f"{__name__}.hysteresis"),
+        run_fit=lazy_fit(f"{__name__}.hysteresis"),
     ),
     Procedure(
         name="log",
@@ -58,7 +58,7 @@ FITS = (
                 is_number=True,
             ),
         ),
-        run=lazy_fit(f"{__name__}.log"),
+        run_fit=lazy_fit(f"{__name__}.log"),
     ),
     Procedure(
         name="catalogue",
@@ -90,6 +90,6 @@ FITS = (
                 choices=("catalogue", "hu2023"),
             ),
         ),
-        run=lazy_fit(f"{__name__}.catalogue"),
+        run_fit=lazy_fit(f"{__name__}.catalogue"),
     ),
 )

@@ -35,14 +35,14 @@ MAX_ANGLE_ERROR = 0.009
 FITTED_ANGLE_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
 """Relative standard deviations [1] of the angle at T1, T2 and the rated torque. They are tried in turn until
 the fitted angles are within MAX_ANGLE_ERROR."""
-OTHER_ANGLE_DEVIATION = 0.2
+UNFITTED_ANGLE_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
 MAX_TORQUE_RATIO = 4.0
 """max_torque over rated torque [1], about the repeated peak torque of catalogue drives."""
 
 
 def fit(
-    start: ParameterFile | None,
+    start_parameters: ParameterFile | None,
     fitted_names: Sequence[str] | None,
     rated_torque: float | None,
     source: str,
@@ -65,27 +65,32 @@ def fit(
     rated, kind = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
     catalogue_row = CatalogueRow(**row, rated=rated)
     printed = source_numbers(catalogue_row, kind, ratio, source)
-    return (make_line_drive_from_row if law == "catalogue" else fit_pair)(
-        catalogue_row, start, fitted_names, printed, source
+    return (make_line_drive_from_row if law == "catalogue" else fit_contact_pair_law)(
+        catalogue_row, start_parameters, fitted_names, printed, source
     )
 
 
 def source_numbers(
-    row: CatalogueRow, rated_origin: str = "catalogue", ratio: float | None = None, source: str = "catalogue"
+    catalogue_row: CatalogueRow,
+    rated_origin: str = "catalogue",
+    ratio: float | None = None,
+    source: str = "catalogue",
 ) -> dict[str, SourcedNumber]:
     """Numbers of a catalogue row with their source: {parameter: number}; with the ratio, if it is known."""
-    origin = f"{source} ({row})"
+    origin = f"{source} ({catalogue_row})"
     rated = origin if rated_origin == "catalogue" else "no rated torque given; T2 of the catalogue"
-    numbers = {name: SourcedNumber(getattr(row, name), "catalogue", origin) for name in STIFFNESS_NAMES}
-    numbers["rated_torque"] = SourcedNumber(row.rated, rated_origin, rated)
+    numbers = {
+        name: SourcedNumber(getattr(catalogue_row, name), "catalogue", origin) for name in STIFFNESS_NAMES
+    }
+    numbers["rated_torque"] = SourcedNumber(catalogue_row.rated, rated_origin, rated)
     return numbers if ratio is None else numbers | {"ratio": SourcedNumber(ratio, "catalogue", origin)}
 
 
-def fit_pair(
-    row: CatalogueRow,
-    start: ParameterFile | None = None,
+def fit_contact_pair_law(
+    catalogue_row: CatalogueRow,
+    start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
-    numbers: Mapping[str, SourcedNumber] | None = None,
+    sourced_numbers: Mapping[str, SourcedNumber] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
     """Fit the smooth law of the contact pair to a row of a catalogue.
@@ -96,47 +101,52 @@ def fit_pair(
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
     """
-    numbers = numbers or source_numbers(row)
-    file = start or load_default("harmonic_drive")
-    rated = numbers["rated_torque"]
-    origin = numbers["T1"].source
-    file = drive.resize_drive(file, row.rated, MAX_TORQUE_RATIO, rated.kind, rated.source)
-    if "ratio" in numbers:
-        file = file.with_values({"ratio": numbers["ratio"].value}, "catalogue", origin)
-    file = file.with_values({EXTRA_PARAMETER: row.T1}, "catalogue", f"T1 of {origin}")
-    torque, max_torque = comparison_torques(row, file.values.max_torque), file.values.max_torque
+    sourced_numbers = sourced_numbers or source_numbers(catalogue_row)
+    file = start_parameters or load_default("harmonic_drive")
+    rated = sourced_numbers["rated_torque"]
+    origin = sourced_numbers["T1"].source
+    file = drive.resize_drive(file, catalogue_row.rated, MAX_TORQUE_RATIO, rated.kind, rated.source)
+    if "ratio" in sourced_numbers:
+        file = file.with_values({"ratio": sourced_numbers["ratio"].value}, "catalogue", origin)
+    file = file.with_values({EXTRA_PARAMETER: catalogue_row.T1}, "catalogue", f"T1 of {origin}")
+    torque, max_torque = comparison_torques(catalogue_row, file.values.max_torque), file.values.max_torque
     choices = (
         [tuple(fitted_names)] if fitted_names else [FITTED_PARAMETERS, (*FITTED_PARAMETERS, EXTRA_PARAMETER)]
     )
-    file = drive.scale_stiffness(file, choices[0], torque, row.wind_up(torque))
-    solution, deviation = _solve_weighted(row, file, choices, torque)
+    file = drive.scale_stiffness(file, choices[0], torque, catalogue_row.wind_up(torque))
+    solution, deviation = _solve_weighted(catalogue_row, file, choices, torque)
     result = fitted_parameters(file, solution.values, "catalogue", origin, f"torque 0 to {max_torque:g} N.m")
     result = replace(result, name=f"fitted to {source}")
-    errors = drive.wind_up(result.values, torque) / row.wind_up(torque) - 1.0
+    errors = drive.wind_up(result.values, torque) / catalogue_row.wind_up(torque) - 1.0
     worst = int(np.argmax(np.abs(errors)))
     text = f"at {torque[worst]:.3g} N.m, largest between {torque[0]:.3g} and {max_torque:g} N.m"
-    facts = _angle_errors(row, result.values, {})
+    facts = _angle_errors(catalogue_row, result.values, {})
     facts["angle_error_largest"] = float(errors[worst]), "1", text
     note = (
         f"standard deviations: the angle known to {100 * deviation:g} % at T1, T2 and rated torque, "
-        f"{100 * OTHER_ANGLE_DEVIATION:g} % elsewhere"
+        f"{100 * UNFITTED_ANGLE_DEVIATION:g} % elsewhere"
     )
     pictures = (
-        angle_picture(row, result.values, {}, torque),
-        stiffness_picture(row, result.values, {}, max_torque),
+        angle_picture(catalogue_row, result.values, {}, torque),
+        stiffness_picture(catalogue_row, result.values, {}, max_torque),
     )
-    return FitResult(result, solution, facts | _max_torque_fact(row, max_torque), pictures, notes=[note])
+    return FitResult(
+        result, solution, facts | _max_torque_fact(catalogue_row, max_torque), pictures, notes=[note]
+    )
 
 
-def comparison_torques(row: CatalogueRow, max_torque: float) -> Array:
+def comparison_torques(catalogue_row: CatalogueRow, max_torque: float) -> Array:
     """Torques [N.m] at which the smooth law is compared with the lines, up to about `max_torque`."""
-    ends = np.array([0.0, row.T1, row.T2, max(max_torque, 1.5 * row.T2)])
+    ends = np.array([0.0, catalogue_row.T1, catalogue_row.T2, max(max_torque, 1.5 * catalogue_row.T2)])
     samples = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
-    return np.unique(np.concatenate([row.fitted_torques, *samples]))
+    return np.unique(np.concatenate([catalogue_row.fitted_torques, *samples]))
 
 
 def _solve_weighted(
-    row: CatalogueRow, file: ParameterFile, unknown_sets: Sequence[Sequence[str]], torque: Array
+    catalogue_row: CatalogueRow,
+    parameter_file: ParameterFile,
+    unknown_sets: Sequence[Sequence[str]],
+    torque: Array,
 ) -> tuple[Solution, float]:
     """Fit with increasing weight at T1, T2 and the rated torque, until the angles there are met.
 
@@ -145,14 +155,14 @@ def _solve_weighted(
     Returns the solution and its relative standard deviation [1] of these angles. Raises RuntimeError if no
     fit meets them.
     """
-    exact, target = np.isin(torque, row.fitted_torques), row.wind_up(torque)
-    angles = make_predictor(file, lambda joint: drive.wind_up(joint, torque))
-    limits = dict(drive.parameter_bounds(file)) | {"K_FTS0": (row.K2, np.inf)}
+    exact, target = np.isin(torque, catalogue_row.fitted_torques), catalogue_row.wind_up(torque)
+    angles = make_predictor(parameter_file, lambda joint: drive.wind_up(joint, torque))
+    limits = dict(drive.parameter_bounds(parameter_file)) | {"K_FTS0": (catalogue_row.K2, np.inf)}
     best = np.inf
     for names, deviation in product(unknown_sets, FITTED_ANGLE_DEVIATIONS):
-        scale = np.where(exact, deviation, OTHER_ANGLE_DEVIATION)
+        scale = np.where(exact, deviation, UNFITTED_ANGLE_DEVIATION)
         solution = solve(
-            make_unknowns(file, names, limits),
+            make_unknowns(parameter_file, names, limits),
             lambda values, scale=scale: (angles(values) / target - 1.0) / scale,  # type: ignore[misc]
             noise=1.0,
             tolerance=1e-5,
@@ -161,14 +171,14 @@ def _solve_weighted(
         if worst <= MAX_ANGLE_ERROR:
             return solution, deviation
         best = min(best, worst)
-        file = file.with_values(
+        parameter_file = parameter_file.with_values(
             {n: v for n, v in solution.values.items() if n not in solution.names_at_bound},
             "catalogue",
             "start",
         )
     raise RuntimeError(
-        f"no law with {', '.join(unknown_sets[-1])} free keeps the angle of {row} at T1, T2 and rated torque "
-        f"{row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by {100 * best:.2g} %"
+        f"no law with {', '.join(unknown_sets[-1])} free keeps the angle of {catalogue_row} at T1, T2 and rated torque "
+        f"{catalogue_row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by {100 * best:.2g} %"
     )
 
 
@@ -176,7 +186,9 @@ PAIR_LAW_TEXT = "law of the contact pair"
 
 
 def make_line_drive(
-    name: str, numbers: Mapping[str, SourcedNumber], start: ParameterFile | None = None
+    drive_name: str,
+    sourced_numbers: Mapping[str, SourcedNumber],
+    start_parameters: ParameterFile | None = None,
 ) -> ParameterFile:
     """Make the parameters of a drive with the law `catalogue`.
 
@@ -185,19 +197,19 @@ def make_line_drive(
 
     Raises ValueError for a number outside its limits.
     """
-    file = start or load_default("harmonic_drive")
+    file = start_parameters or load_default("harmonic_drive")
     kept = ["corner"] if isinstance(file.values, CatalogueDrive) else []
-    if not (kept or "corner" in numbers):
+    if not (kept or "corner" in sourced_numbers):
         text = "default choice: the angle at the corners of catalogue drives within 0.4 %"
-        numbers = {**numbers, "corner": SourcedNumber(DEFAULT_CORNER_RATIO, "user", text)}
-    return drive.change_law(file, CatalogueDrive, name, numbers, kept)
+        sourced_numbers = {**sourced_numbers, "corner": SourcedNumber(DEFAULT_CORNER_RATIO, "user", text)}
+    return drive.change_law(file, CatalogueDrive, drive_name, sourced_numbers, kept)
 
 
 def make_line_drive_from_row(
-    row: CatalogueRow,
-    start: ParameterFile | None = None,
+    catalogue_row: CatalogueRow,
+    start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
-    numbers: Mapping[str, SourcedNumber] | None = None,
+    sourced_numbers: Mapping[str, SourcedNumber] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
     """Make the drive with the three lines of a row; no parameter is fitted.
@@ -208,57 +220,74 @@ def make_line_drive_from_row(
     """
     if fitted_names:
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
-    max_torque = MAX_TORQUE_RATIO * row.rated
+    max_torque = MAX_TORQUE_RATIO * catalogue_row.rated
     largest = SourcedNumber(max_torque, "estimate", f"{MAX_TORQUE_RATIO:g} times rated_torque")
-    file = make_line_drive(source, {**(numbers or source_numbers(row)), "max_torque": largest}, start)
-    pair, note = _fit_pair_or_note(row, start if start and start.law == "hu2023" else None)
-    facts = _angle_errors(row, file.values, {"max": max_torque}) | _max_torque_fact(row, max_torque)
+    file = make_line_drive(
+        source,
+        {**(sourced_numbers or source_numbers(catalogue_row)), "max_torque": largest},
+        start_parameters,
+    )
+    pair, note = _fit_contact_pair_law_or_note(
+        catalogue_row, start_parameters if start_parameters and start_parameters.law == "hu2023" else None
+    )
+    facts = _angle_errors(catalogue_row, file.values, {"max": max_torque}) | _max_torque_fact(
+        catalogue_row, max_torque
+    )
     also = {}
     if pair is not None:
         also = {PAIR_LAW_TEXT: pair}
-        facts |= _pair_facts(row, pair, max_torque)
-    angle = angle_picture(row, file.values, also, comparison_torques(row, max_torque))
+        facts |= _contact_pair_facts(catalogue_row, pair, max_torque)
+    angle = angle_picture(catalogue_row, file.values, also, comparison_torques(catalogue_row, max_torque))
     return FitResult(
         file,
         EMPTY_SOLUTION,
         facts,
-        (angle, stiffness_picture(row, file.values, also, max_torque)),
+        (angle, stiffness_picture(catalogue_row, file.values, also, max_torque)),
         notes=note,
     )
 
 
-def _fit_pair_or_note(row: CatalogueRow, start: ParameterFile | None) -> tuple[Drive | None, list[str]]:
+def _fit_contact_pair_law_or_note(
+    catalogue_row: CatalogueRow, start_parameters: ParameterFile | None
+) -> tuple[Drive | None, list[str]]:
     """Fit the law of the contact pair to the angles of the row; None and a note if no fit meets them."""
     try:
-        drive: Drive = fit_pair(row, start).parameters.values
+        drive: Drive = fit_contact_pair_law(catalogue_row, start_parameters).parameters.values
     except RuntimeError as error:
         return None, [f"the {PAIR_LAW_TEXT} cannot be told beside it: {error}"]
     return drive, []
 
 
-def _angle_errors(row: CatalogueRow, fitted_drive: Drive, extra_torques: Mapping[str, float]) -> Facts:
+def _angle_errors(
+    catalogue_row: CatalogueRow, fitted_drive: Drive, extra_torques: Mapping[str, float]
+) -> Facts:
     """Relative errors of the angle of a law at T1, T2, the rated torque, and extra torques [N.m]."""
     facts = {}
-    for name, T in {"T1": row.T1, "T2": row.T2, "rated": row.rated, **extra_torques}.items():
-        error = float(drive.wind_up(fitted_drive, np.array(T)) / row.wind_up(T)) - 1.0
+    for name, T in {
+        "T1": catalogue_row.T1,
+        "T2": catalogue_row.T2,
+        "rated": catalogue_row.rated,
+        **extra_torques,
+    }.items():
+        error = float(drive.wind_up(fitted_drive, np.array(T)) / catalogue_row.wind_up(T)) - 1.0
         facts[f"angle_error_{name}"] = (error, "1", f"law over catalogue - 1 at {T:g} N.m")
     return facts
 
 
-def _max_torque_fact(row: CatalogueRow, max_torque: float) -> Facts:
-    text = f"{MAX_TORQUE_RATIO:g} times the rated torque {row.rated:g} N.m"
+def _max_torque_fact(catalogue_row: CatalogueRow, max_torque: float) -> Facts:
+    text = f"{MAX_TORQUE_RATIO:g} times the rated torque {catalogue_row.rated:g} N.m"
     return {"max_torque": (max_torque, "N.m", text)}
 
 
-def _pair_facts(row: CatalogueRow, pair: Drive, max_torque: float) -> Facts:
+def _contact_pair_facts(catalogue_row: CatalogueRow, pair_drive: Drive, max_torque: float) -> Facts:
     """Largest errors of angle and stiffness of the contact-pair law, compared with the catalogue lines."""
     torque = np.linspace(0.0, max_torque, 401)[1:]
-    angle = drive.wind_up(pair, torque) / row.wind_up(torque) - 1.0
+    angle = drive.wind_up(pair_drive, torque) / catalogue_row.wind_up(torque) - 1.0
     i = int(np.argmax(np.abs(angle)))
     text = f"{PAIR_LAW_TEXT} over catalogue - 1"
     facts = {"pair_angle_error": (float(angle[i]), "1", f"{text} at {torque[i]:.3g} N.m, the largest")}
-    for name, T in (("zero", 0.0), ("rated", row.rated), ("max", max_torque)):
-        K, step = float(stiffness(pair, np.array(T))), float(row.stiffness(T))
+    for name, T in (("zero", 0.0), ("rated", catalogue_row.rated), ("max", max_torque)):
+        K, step = float(stiffness(pair_drive, np.array(T))), float(catalogue_row.stiffness(T))
         facts[f"pair_stiffness_{name}"] = (
             K / step - 1.0,
             "1",

@@ -81,7 +81,7 @@ def resize_drive(
 
 
 def scale_stiffness(
-    start_file: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array
+    start_file: ParameterFile, fitted_names: tuple[str, ...], torque: Array, angle: Array
 ) -> ParameterFile:
     """Scale the stiffness of the start parameters to a measured curve, angles (n) [rad] at torques (n) [N.m].
 
@@ -91,7 +91,7 @@ def scale_stiffness(
     level = {
         name: start_file.values_by_name[name] * ratio
         for name in STIFFNESS_PARAMETERS.get(start_file.law, ())
-        if name in names
+        if name in fitted_names
     }
     is_complete = level and len(level) == len(STIFFNESS_PARAMETERS[start_file.law])
     return start_file.with_values(level, "calibration", "start") if is_complete else start_file
@@ -100,8 +100,8 @@ def scale_stiffness(
 def change_law(
     start_file: ParameterFile,
     law_class: type[Drive],
-    name: str,
-    numbers: Mapping[str, SourcedNumber],
+    parameter_set_name: str,
+    sourced_numbers: Mapping[str, SourcedNumber],
     copied_names: Sequence[str] = (),
 ) -> ParameterFile:
     """Change the law of a drive.
@@ -115,14 +115,16 @@ def change_law(
         *copied_names
     ]
     values = {label: start_file.values_by_name[label] for label in shared} | {
-        k: p.value for k, p in numbers.items()
+        k: p.value for k, p in sourced_numbers.items()
     }
     kinds = {k: v for k, v in start_file.origins.items() if k in shared} | {
-        k: p.kind for k, p in numbers.items()
+        k: p.kind for k, p in sourced_numbers.items()
     }
     sources = {k: v for k, v in start_file.sources.items() if k in shared}
-    sources |= {k: p.source for k, p in numbers.items()}
-    return ParameterFile(start_file.joint, name, build_parameter_set(law_class, values), kinds, sources)
+    sources |= {k: p.source for k, p in sourced_numbers.items()}
+    return ParameterFile(
+        start_file.joint, parameter_set_name, build_parameter_set(law_class, values), kinds, sources
+    )
 
 
 def parameter_bounds(start_file: ParameterFile) -> Mapping[str, tuple[float, float]]:
@@ -221,20 +223,20 @@ def stiffness(drive: Drive, torque: Array) -> Array:
 
 
 def angle_picture(
-    row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], torque: Array
+    catalogue_row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], torque: Array
 ) -> Picture:
     """Plot of the wind-up at torques (n) [N.m]: catalogue, fitted law, and errors of the law.
 
     other_drives : {name: further law to plot}
     """
-    grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), row.wind_up(torque)
+    grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), catalogue_row.wind_up(torque)
     return Picture(
         data_x=torque,
         data_y=target / RAD_PER_ARCMIN,
         misfit=100.0 * (target / wind_up(fitted_drive, torque) - 1.0),
         law_curve=(grid, wind_up(fitted_drive, grid) / RAD_PER_ARCMIN),
         axis_labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
-        highlighted_points=np.isin(torque, row.fitted_torques),
+        highlighted_points=np.isin(torque, catalogue_row.fitted_torques),
         other_laws={
             name: (grid, wind_up(other, grid) / RAD_PER_ARCMIN) for name, other in other_drives.items()
         },
@@ -242,15 +244,15 @@ def angle_picture(
 
 
 def stiffness_picture(
-    row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], max_torque: float
+    catalogue_row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], max_torque: float
 ) -> Picture:
     """Plot of the stiffness up to `max_torque` [N.m], without the corners: catalogue, fitted law, and errors.
 
     other_drives : {name: further law to plot}
     """
     grid = np.linspace(0.0, max_torque, _CURVE_POINTS)
-    torque = grid[1::2][~np.isin(grid[1::2], (row.T1, row.T2))]
-    steps = row.stiffness(torque)
+    torque = grid[1::2][~np.isin(grid[1::2], (catalogue_row.T1, catalogue_row.T2))]
+    steps = catalogue_row.stiffness(torque)
     return Picture(
         data_x=torque,
         data_y=steps / 1e3,

@@ -76,7 +76,7 @@ def make_law(drive: Drive) -> HysteresisLaw:
 
 def fit(
     path: str | Path,
-    start: ParameterFile | None = None,
+    start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     inertia: float | None = None,
 ) -> FitResult:
@@ -93,15 +93,15 @@ def fit(
     """
     data = read_measurement(path, COLUMN_NAMES)
     names = list(fitted_names or FITTED_PARAMETERS)
-    start_file = start or load_default("harmonic_drive")
+    start_file = start_parameters or load_default("harmonic_drive")
     if isinstance(data.data, Loops):
         reach = 0.5 * float(np.ptp(data.data.force))
         wind_up = float(drive.wind_up(start_file.values, np.array(reach)))
         COLUMN_NAMES.check_stiffness_ratio(data.path, wind_up / data.amplitude, data.stated_units, start_file)
     file, rest = _set_start_hysteresis(start_file, names)
 
-    def law_at_values(values: Mapping[str, float]) -> HysteresisLaw:
-        return make_law(file.with_values(values, "calibration", "fit").values)
+    def law_at_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
+        return make_law(file.with_values(parameter_values, "calibration", "fit").values)
 
     model = hysteresis_fit.build_model(data, law_at_values, "inertia", inertia, 0.0)
     starts = {
@@ -124,20 +124,24 @@ def fit(
     )
 
 
-def _set_start_hysteresis(file: ParameterFile, names: Sequence[str]) -> tuple[ParameterFile, float]:
+def _set_start_hysteresis(
+    parameter_file: ParameterFile, fitted_names: Sequence[str]
+) -> tuple[ParameterFile, float]:
     """Start parameters with non-zero hysteresis, and K_WTS [N.m/rad] at zero torque.
 
     The fit needs non-zero values, because its unknowns are logarithms.
     """
-    rest = float(HarmonicDriveSpring.tabulate(file.values).curve.stiffness[0])
+    rest = float(HarmonicDriveSpring.tabulate(parameter_file.values).curve.stiffness[0])
     first = {
         HYSTERESIS_LOSS: DEFAULT_START_VALUES[HYSTERESIS_LOSS],
         HYSTERESIS_STIFFNESS: DEFAULT_START_VALUES[HYSTERESIS_STIFFNESS] * rest,
     }
     absent = {
-        name: value for name, value in first.items() if name in names and file.values_by_name[name] == 0.0
+        name: value
+        for name, value in first.items()
+        if name in fitted_names and parameter_file.values_by_name[name] == 0.0
     }
-    return file.with_values(absent, "calibration", "start"), rest
+    return parameter_file.with_values(absent, "calibration", "start"), rest
 
 
 STIFFNESS_NAMES = ("K1", "K2", "K3")
@@ -162,9 +166,9 @@ def measured_wind_up(samples: Samples, ratio: float) -> Array:
 
 
 def fit_rotor_inertia(
-    file: ParameterFile,
-    phi: Array,
-    tau: Array,
+    parameter_file: ParameterFile,
+    wind_ups: Array,
+    torques: Array,
     torque_changes: Array,
     torque_per_inertia: Array,
     max_inertia: float,
@@ -178,13 +182,13 @@ def fit_rotor_inertia(
     Returns inertia and standard deviation [kg.m2]; None if the data do not determine them. Raises
     RuntimeError if the fit does not converge.
     """
-    names = [name for name in LOG_PARAMETERS if name in file.values_by_name]
+    names = [name for name in LOG_PARAMETERS if name in parameter_file.values_by_name]
     unknown = Unknown(ROTOR_INERTIA, "kg.m2", 0.1 * max_inertia, LOWER_BOUND_RATIO * max_inertia, max_inertia)
     solution, _ = _fit_wind_ups(
-        file,
+        parameter_file,
         names,
-        phi,
-        lambda values: tau + values[ROTOR_INERTIA] * torque_per_inertia,
+        wind_ups,
+        lambda values: torques + values[ROTOR_INERTIA] * torque_per_inertia,
         torque_changes,
         [unknown],
     )
@@ -197,7 +201,11 @@ def fit_rotor_inertia(
 
 
 def fit_log(
-    file: ParameterFile, names: Sequence[str], phi: Array, tau: Array, torque_changes: Array
+    parameter_file: ParameterFile,
+    fitted_names: Sequence[str],
+    wind_ups: Array,
+    torques: Array,
+    torque_changes: Array,
 ) -> tuple[Solution, Picture]:
     """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
@@ -207,17 +215,23 @@ def fit_log(
 
     Raises RuntimeError if the fit does not converge.
     """
-    solution, law = _fit_wind_ups(file, names, phi, lambda values: tau, torque_changes)
+    solution, law = _fit_wind_ups(
+        parameter_file, fitted_names, wind_ups, lambda values: torques, torque_changes
+    )
     labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
     return solution, Picture(
-        tau, phi / RAD_PER_ARCMIN, (phi - law) / RAD_PER_ARCMIN, (tau, law / RAD_PER_ARCMIN), labels
+        torques,
+        wind_ups / RAD_PER_ARCMIN,
+        (wind_ups - law) / RAD_PER_ARCMIN,
+        (torques, law / RAD_PER_ARCMIN),
+        labels,
     )
 
 
 def _fit_wind_ups(
-    file: ParameterFile,
-    names: Sequence[str],
-    phi: Array,
+    parameter_file: ParameterFile,
+    fitted_names: Sequence[str],
+    wind_ups: Array,
     torque: Callable[[Mapping[str, float]], Array],
     torque_changes: Array,
     extra_unknowns: Sequence[Unknown] = (),
@@ -228,28 +242,36 @@ def _fit_wind_ups(
     torque_changes : as in `fit_log`
     extra_unknowns : on which the torque depends
     """
-    begin = {HYSTERESIS_LOSS: DEFAULT_HYSTERESIS_LOSS} if file.values_by_name[HYSTERESIS_LOSS] == 0.0 else {}
-    start = file.with_values({n: v for n, v in begin.items() if n in names}, "calibration", "start")
-    path = phi - phi[0]
+    begin = (
+        {HYSTERESIS_LOSS: DEFAULT_HYSTERESIS_LOSS}
+        if parameter_file.values_by_name[HYSTERESIS_LOSS] == 0.0
+        else {}
+    )
+    start = parameter_file.with_values(
+        {n: v for n, v in begin.items() if n in fitted_names}, "calibration", "start"
+    )
+    path = wind_ups - wind_ups[0]
 
-    def law_wind_up(values: Mapping[str, float], tau: Array) -> Array:
+    def law_wind_up(parameter_values: Mapping[str, float], torques: Array) -> Array:
         """Wind-up (n) [rad] of the law, shifted to the mean of the measured one."""
-        own_values = {name: values[name] for name in names}
-        spring = HarmonicDriveSpring.tabulate(file.with_values(own_values, "calibration", "fit").values)
-        wind_up_values = spring.curve.odd_inverse(tau - _hysteresis_torque(spring, path))
-        return np.asarray(wind_up_values - np.mean((wind_up_values - phi)[IGNORED_SAMPLES:]))
+        own_values = {name: parameter_values[name] for name in fitted_names}
+        spring = HarmonicDriveSpring.tabulate(
+            parameter_file.with_values(own_values, "calibration", "fit").values
+        )
+        wind_up_values = spring.curve.odd_inverse(torques - _hysteresis_torque(spring, path))
+        return np.asarray(wind_up_values - np.mean((wind_up_values - wind_ups)[IGNORED_SAMPLES:]))
 
     all_unknowns = [
         *make_unknowns(
             start,
-            names,
+            fitted_names,
             {HYSTERESIS_LOSS: (LOWER_BOUND_RATIO * start.values_by_name[HYSTERESIS_LOSS], np.inf)},
         ),
         *extra_unknowns,
     ]
     solution = solve(
         all_unknowns,
-        lambda values: (phi - law_wind_up(values, torque(values)))[IGNORED_SAMPLES:],
+        lambda values: (wind_ups - law_wind_up(values, torque(values)))[IGNORED_SAMPLES:],
         nuisance_count=1,
     )
     fitted_torque = torque(solution.values)

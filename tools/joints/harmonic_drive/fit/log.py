@@ -14,7 +14,7 @@ from scipy.linalg import block_diag
 
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import KELVIN_AT_ZERO
+from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
 from ....inputs.fitting.least_squares import Solution
 from ....inputs.fitting.outcome import Facts, FitResult, Picture, fitted_parameters, undetermined_names
@@ -39,7 +39,7 @@ standard deviation of the total inertia [1]."""
 
 def fit(
     paths: Sequence[Path],
-    start: ParameterFile | None = None,
+    start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     columns: Sequence[str] | None = None,
     torque_constant: float | None = None,
@@ -61,7 +61,7 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
-    file = _start_parameters(start, ratio)
+    file = _start_parameters(start_parameters, ratio)
     names = parse_columns(columns or ())
     logs = [read_log(path, names, torque_constant, file.values) for path in paths]
     samples = join_samples([log.select(log.is_developed) for log in logs])
@@ -139,21 +139,24 @@ def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLog) -> None:
 
 
 def _fit_rotor_inertia(
-    file: ParameterFile, log: Samples, fitted_log: FittedLog
+    parameter_file: ParameterFile, log_samples: Samples, fitted_log: FittedLog
 ) -> tuple[float, float] | None:
     """Rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
-    if file.law != "catalogue":
+    if parameter_file.law != "catalogue":
         return None
     square = fitted_log.drive.ratio**2
-    load, spread = fitted_log.evaluate_load(log)
-    phi = hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio))
+    load, spread = fitted_log.evaluate_load(log_samples)
+    phi = hysteresis.measured_wind_up(log_samples, abs(fitted_log.drive.ratio))
     return hysteresis.fit_rotor_inertia(
-        file, phi, -load, -spread, square * log.ddq, fitted_log.inertia / square
+        parameter_file, phi, -load, -spread, square * log_samples.ddq, fitted_log.inertia / square
     )
 
 
 def _fit_stiffness(
-    file: ParameterFile, log: Samples, fitted_log: FittedLog, fitted_names: Sequence[str] | None
+    parameter_file: ParameterFile,
+    log_samples: Samples,
+    fitted_log: FittedLog,
+    fitted_names: Sequence[str] | None,
 ) -> tuple[tuple[Solution, Picture] | None, list[str]]:
     """Fit stiffness and hysteresis to a log with the motor angle.
 
@@ -164,38 +167,44 @@ def _fit_stiffness(
     names = [
         name
         for name in hysteresis.LOG_PARAMETERS
-        if name in file.values_by_name and (not fitted_names or name in fitted_names)
+        if name in parameter_file.values_by_name and (not fitted_names or name in fitted_names)
     ]
-    if file.law != "catalogue" or not names:
+    if parameter_file.law != "catalogue" or not names:
         return None, ["stiffness and hysteresis are fitted only if the start file has law = catalogue"]
-    load, spread = log.sensor_torque, np.zeros((0, log.q.size))
+    load, spread = log_samples.sensor_torque, np.zeros((0, log_samples.q.size))
     if not np.all(np.isfinite(load)):
-        load, spread = fitted_log.evaluate_load(log)
+        load, spread = fitted_log.evaluate_load(log_samples)
     return hysteresis.fit_log(
-        file, names, hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio)), -load, -spread
+        parameter_file,
+        names,
+        hysteresis.measured_wind_up(log_samples, abs(fitted_log.drive.ratio)),
+        -load,
+        -spread,
     ), []
 
 
-def _combine_solutions(first: Solution, second: Solution) -> Solution:
+def _combine_solutions(first_solution: Solution, second_solution: Solution) -> Solution:
     """Combine two independent fits to one solution; residuals are divided by the noise of each fit."""
-    scaled = [(fit.residuals / fit.noise, fit.jacobian / fit.noise) for fit in (first, second)]
+    scaled = [
+        (fit.residuals / fit.noise, fit.jacobian / fit.noise) for fit in (first_solution, second_solution)
+    ]
     return Solution(
-        unknowns=(*first.unknowns, *second.unknowns),
-        values={**first.values, **second.values},
+        unknowns=(*first_solution.unknowns, *second_solution.unknowns),
+        values={**first_solution.values, **second_solution.values},
         residuals=np.concatenate([residuals for residuals, _ in scaled]),
         noise=1.0,
         jacobian=block_diag(*(jacobian for _, jacobian in scaled)),
-        covariance=block_diag(first.covariance, second.covariance),
-        names_at_bound=(*first.names_at_bound, *second.names_at_bound),
-        refusal_message=first.refusal_message or second.refusal_message,
+        covariance=block_diag(first_solution.covariance, second_solution.covariance),
+        names_at_bound=(*first_solution.names_at_bound, *second_solution.names_at_bound),
+        refusal_message=first_solution.refusal_message or second_solution.refusal_message,
     )
 
 
-def _start_parameters(start: ParameterFile | None, ratio: float | None) -> ParameterFile:
+def _start_parameters(start_parameters: ParameterFile | None, ratio: float | None) -> ParameterFile:
     """Start parameters with the speed ratio. Raises ValueError if neither a file nor a ratio is given."""
-    if start is None and ratio is None:
+    if start_parameters is None and ratio is None:
         raise ValueError("the log does not tell the ratio; expected --params FILE of the drive, or --ratio")
-    file = start or load_default("harmonic_drive")
+    file = start_parameters or load_default("harmonic_drive")
     return file if ratio is None else file.with_values({"ratio": ratio}, "user", "stated")
 
 
@@ -239,7 +248,7 @@ def _describe_ranges(samples: Samples) -> str:
 
 
 def fit_facts(
-    file: ParameterFile, samples: Samples, fitted_log: FittedLog, fitted_names: Sequence[str]
+    parameter_file: ParameterFile, samples: Samples, fitted_log: FittedLog, fitted_names: Sequence[str]
 ) -> Facts:
     """Facts about the fit: inertia, offset, gravity, residual, prediction error of held-out samples."""
     ratio = abs(fitted_log.drive.ratio)
@@ -260,7 +269,7 @@ def fit_facts(
     )
     early, late = samples.select(~samples.is_held_out), samples.select(samples.is_held_out)
     if late.dq.size and early.dq.size > len(fitted_names) + len(terms.unknown_names):
-        early_fit = fit_samples(file, early, fitted_names, fitted_log.rotor_inertia)
+        early_fit = fit_samples(parameter_file, early, fitted_names, fitted_log.rotor_inertia)
         error = _root_mean_square(late.motor_torque - early_fit.evaluate_torque(late)[1])
         facts["held_out"] = (
             error,
@@ -272,10 +281,10 @@ def fit_facts(
     return facts
 
 
-def _constant_friction_torque(earlier: Samples, later: Samples, ratio: float) -> Array:
+def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, ratio: float) -> Array:
     """Motor torque (n) [N.m] of later samples, by a model with constant friction fitted to earlier ones."""
     models = []
-    for samples in (earlier, later):
+    for samples in (earlier_samples, later_samples):
         terms = LinearTerms.at_samples(samples, ratio)
         models.append(
             (
@@ -285,7 +294,8 @@ def _constant_friction_torque(earlier: Samples, later: Samples, ratio: float) ->
         )
     (early_matrix, early_known), (late_matrix, late_known) = models
     return np.asarray(
-        late_matrix @ np.linalg.lstsq(early_matrix, earlier.motor_torque - early_known)[0] + late_known
+        late_matrix @ np.linalg.lstsq(early_matrix, earlier_samples.motor_torque - early_known)[0]
+        + late_known
     )
 
 
@@ -309,7 +319,7 @@ def draw_pictures(samples: Samples, fitted_log: FittedLog) -> Iterator[Picture]:
         time = samples.time[rows]
         yield _friction_picture(time, measured[rows], misfit[rows], (time, braked[rows]), "time [s]")
     if (known := np.flatnonzero(np.isfinite(samples.temperature))).size:
-        warmth = samples.temperature[known] - KELVIN_AT_ZERO
+        warmth = samples.temperature[known] - CELSIUS_ZERO_IN_KELVIN
         ends = np.array([warmth.min(), warmth.max()])
         over, rest = measured[known] / braked[known], MILLI_PER_UNIT * misfit[known]
         yield Picture(

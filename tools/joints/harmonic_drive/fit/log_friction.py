@@ -76,7 +76,7 @@ class LinearTerms:
         return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_gravity)
 
 
-def motor_friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> Array:
+def motor_friction(drive: Drive, joint_speed: Array, temperature: Array, load: Array) -> Array:
     """Friction torque (...) [N.m] at the motor, of a moving drive.
 
     joint_speed : speed (...) [rad/s] of the joint
@@ -85,7 +85,7 @@ def motor_friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> 
     """
     forward = replace(drive, ratio=abs(drive.ratio))
     warmth = np.where(np.isfinite(temperature), temperature, REFERENCE_TEMPERATURE)
-    w1 = forward.ratio * dq
+    w1 = forward.ratio * joint_speed
     positive, negative = friction_limits(forward, w1, -load, warmth)
     return np.asarray(np.where(w1 > 0.0, positive, -negative) + viscous_torque(forward, w1, warmth))
 
@@ -184,9 +184,11 @@ class FittedLog:
         changes = [terms.tooth_load(samples, end, ratio, rotor) - load for end, rotor in cases]
         return load, np.reshape(changes, (len(changes), load.size))
 
-    def no_load_friction(self, dq: Array, temperature: float) -> Array:
+    def no_load_friction(self, joint_speed: Array, temperature: float) -> Array:
         """No-load friction torque (n) [N.m] at joint speeds (n) [rad/s] and a temperature [K]."""
-        return motor_friction(self.drive, dq, np.full(dq.size, temperature), np.zeros(dq.size))
+        return motor_friction(
+            self.drive, joint_speed, np.full(joint_speed.size, temperature), np.zeros(joint_speed.size)
+        )
 
 
 def select_parameters(
@@ -244,44 +246,46 @@ def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Arra
 
 
 def fit_samples(
-    file: ParameterFile, samples: Samples, names: Sequence[str], rotor_inertia: float
+    parameter_file: ParameterFile, samples: Samples, fitted_names: Sequence[str], rotor_inertia: float
 ) -> FittedLog:
     """Fit friction parameters and linear terms to samples.
 
     fitted_names  : of the friction parameters to fit
     rotor_inertia : [kg.m2]
     """
-    ratio = abs(file.values.ratio)
-    terms, linear = _fit_linear_model(samples, file.values)
-    start_values, linear = _start_values(file, samples, linear), linear[2:]
-    changed = file.with_values({n: v for n, v in start_values.items() if n in names}, "calibration", "start")
+    ratio = abs(parameter_file.values.ratio)
+    terms, linear = _fit_linear_model(samples, parameter_file.values)
+    start_values, linear = _start_values(parameter_file, samples, linear), linear[2:]
+    changed = parameter_file.with_values(
+        {n: v for n, v in start_values.items() if n in fitted_names}, "calibration", "start"
+    )
     bounds = {name: (LOWER_BOUND_RATIO * value, np.inf) for name, value in start_values.items()}
     for _ in range(LOAD_ITERATIONS):
         load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
 
-        def net_torque(values: Mapping[str, float], load: Array = load) -> Array:
+        def net_torque(parameter_values: Mapping[str, float], load: Array = load) -> Array:
             """Motor torque (n) [N.m] without friction and measured gravity."""
-            drive = file.with_values(values, "calibration", "fit").values
+            drive = parameter_file.with_values(parameter_values, "calibration", "fit").values
             return np.asarray(
                 samples.motor_torque - terms.measured_gravity - filtered_motor_friction(drive, samples, load)
             )
 
-        def residuals(values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]
-            remaining = net_torque_function(values)
+        def residuals(parameter_values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]
+            remaining = net_torque_function(parameter_values)
             return np.asarray(remaining - terms.design_matrix @ terms.solve_unknowns(remaining))
 
         solution = solve(
-            make_unknowns(changed, names, bounds), residuals, nuisance_count=len(terms.unknown_names)
+            make_unknowns(changed, fitted_names, bounds), residuals, nuisance_count=len(terms.unknown_names)
         )
         linear = terms.solve_unknowns(net_torque(solution.values))
-        changed = file.with_values(solution.values, "calibration", "fit")
+        changed = parameter_file.with_values(solution.values, "calibration", "fit")
     direct = solution.noise**2 * np.linalg.pinv(terms.design_matrix.T @ terms.design_matrix)
     indirect = _propagate_deviations(solution, lambda values: terms.solve_unknowns(net_torque(values)))
     return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0)
 
 
 def drop_undetermined(
-    file: ParameterFile, samples: Samples, fitted_log: FittedLog, names: Sequence[str]
+    parameter_file: ParameterFile, samples: Samples, fitted_log: FittedLog, fitted_names: Sequence[str]
 ) -> tuple[FittedLog, list[str], list[str]]:
     """Repeat the fit without the parameters that the log does not determine.
 
@@ -291,17 +295,17 @@ def drop_undetermined(
     """
     undetermined = [
         n
-        for n in names
+        for n in fitted_names
         if n in START_VALUES and fitted_log.solution.relative_deviations[n] > np.log(UNDETERMINED_FACTOR)
     ]
-    determined = [name for name in names if name not in undetermined]
+    determined = [name for name in fitted_names if name not in undetermined]
     if undetermined and determined:
-        other = fit_samples(file, samples, determined, fitted_log.rotor_inertia)
+        other = fit_samples(parameter_file, samples, determined, fitted_log.rotor_inertia)
         increase = np.sum(other.solution.residuals**2) - np.sum(fitted_log.solution.residuals**2)
         if increase < len(undetermined) * (MAX_RESIDUAL_INCREASE * fitted_log.solution.noise) ** 2:
             text = "the log does not determine {}, which keeps its value: the fit is as good with that value"
             return other, determined, [text.format(name) for name in undetermined]
-    return fitted_log, list(names), []
+    return fitted_log, list(fitted_names), []
 
 
 def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
@@ -316,42 +320,50 @@ def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
 
 
 def fit_with_rotor(
-    file: ParameterFile, samples: Samples, names: Sequence[str], rotor_inertia: float, rotor_deviation: float
+    parameter_file: ParameterFile,
+    samples: Samples,
+    fitted_names: Sequence[str],
+    rotor_inertia: float,
+    rotor_deviation: float,
 ) -> FittedLog:
     """Fit with a rotor inertia and its standard deviation [kg.m2], which is added to the covariance."""
-    fit = fit_samples(file, samples, names, rotor_inertia)
-    shifted = fit_samples(file, samples, names, rotor_inertia + rotor_deviation).solution.values
+    fit = fit_samples(parameter_file, samples, fitted_names, rotor_inertia)
+    shifted = fit_samples(
+        parameter_file, samples, fitted_names, rotor_inertia + rotor_deviation
+    ).solution.values
     changes = np.array([np.log(shifted[name] / value) for name, value in fit.solution.values.items()])
     wider = replace(fit.solution, covariance=fit.solution.covariance + np.outer(changes, changes))
     return replace(fit, solution=wider, rotor_deviation=rotor_deviation)
 
 
-def _propagate_deviations(solution: Solution, function: Callable[[Mapping[str, float]], Array]) -> Array:
+def _propagate_deviations(
+    solution: Solution, propagated_function: Callable[[Mapping[str, float]], Array]
+) -> Array:
     """Changes (k, m) of a function by each of the k independent standard deviations of a solution.
 
     propagated_function : {name: value} -> (m)
     """
     variances, directions = np.linalg.eigh(solution.covariance)
-    rows, reference = [], function(solution.values)
+    rows, reference = [], propagated_function(solution.values)
     for deviation, direction in zip(np.sqrt(np.maximum(variances, 0.0)), directions.T, strict=True):
         changed = {
             n: v * float(np.exp(DIFFERENCE_STEP * d))
             for (n, v), d in zip(solution.values.items(), direction, strict=True)
         }
-        rows.append((function(changed) - reference) * deviation / DIFFERENCE_STEP)
+        rows.append((propagated_function(changed) - reference) * deviation / DIFFERENCE_STEP)
     return np.array(rows)
 
 
-def _start_values(file: ParameterFile, samples: Samples, linear_fit: Array) -> dict[str, float]:
+def _start_values(parameter_file: ParameterFile, samples: Samples, linear_fit: Array) -> dict[str, float]:
     """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
 
     linear_fit : result of `_fit_linear_model`
     """
     size = float(np.median(np.abs(samples.motor_torque))) or 1.0
-    fastest = abs(file.values.ratio) * float(np.max(np.abs(samples.dq)))
+    fastest = abs(parameter_file.values.ratio) * float(np.max(np.abs(samples.dq)))
     dry = max(float(linear_fit[0]), 0.05 * size)
     others = {
-        name: file.values_by_name[name] if file.values_by_name[name] > 0.0 else value
+        name: parameter_file.values_by_name[name] if parameter_file.values_by_name[name] > 0.0 else value
         for name, value in START_VALUES.items()
     }
     return {

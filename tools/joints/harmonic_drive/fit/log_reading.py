@@ -17,7 +17,7 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import KELVIN_AT_ZERO, UnitSizes, unit_sizes
+from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, UnitSizes, unit_sizes
 
 from ....common import columns
 
@@ -67,14 +67,14 @@ class Samples:
     is_dynamic: NDArray[np.bool_]
     is_developed: NDArray[np.bool_]
 
-    def select(self, rows: NDArray[np.bool_] | SampleIndices) -> "Samples":
+    def select(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
         """Select samples, by a mask or by indices."""
-        return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
+        return Samples(*(getattr(self, field.name)[sample_selection] for field in fields(self)))
 
 
-def join_samples(logs: Sequence[Samples]) -> Samples:
+def join_samples(samples_of_logs: Sequence[Samples]) -> Samples:
     """Join the samples of several logs."""
-    return Samples(*(np.concatenate([getattr(p, f.name) for p in logs]) for f in fields(Samples)))
+    return Samples(*(np.concatenate([getattr(p, f.name) for p in samples_of_logs]) for f in fields(Samples)))
 
 
 def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Samples:
@@ -103,9 +103,11 @@ def window_size(time_step: float) -> int:
     return max(2 * round(0.5 * FILTER_WINDOW / time_step) + 1, FILTER_NODES)
 
 
-def filter_values(values: Array, time_step: float, derivative: int = 0) -> Array:
+def filter_values(values: Array, time_step: float, derivative_order: int = 0) -> Array:
     """Filter values (n) at a constant time step [s]; or their derivative of the order `derivative_order`."""
-    return np.asarray(savgol_filter(values, window_size(time_step), FILTER_DEGREE, derivative, time_step))
+    return np.asarray(
+        savgol_filter(values, window_size(time_step), FILTER_DEGREE, derivative_order, time_step)
+    )
 
 
 def dynamic_samples(
@@ -114,26 +116,28 @@ def dynamic_samples(
     """Filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
     none = np.full(time.size, np.nan)
 
-    def smooth(name: str) -> Array:
-        return filter_values(columns_by_name[name], time_step) if name in columns_by_name else none
+    def filter_column(column_name: str) -> Array:
+        return (
+            filter_values(columns_by_name[column_name], time_step) if column_name in columns_by_name else none
+        )
 
     without_dq = "dq" not in columns_by_name
-    dq = filter_values(columns_by_name["q"], time_step, 1) if without_dq else smooth("dq")
+    dq = filter_values(columns_by_name["q"], time_step, 1) if without_dq else filter_column("dq")
     nodes, weights = _filter_nodes(window_size(time_step))
     return Samples(
         time=time,
-        q=smooth("q"),
+        q=filter_column("q"),
         dq=dq,
         ddq=filter_values(columns_by_name["q"], time_step, 2)
         if without_dq
         else filter_values(columns_by_name["dq"], time_step, 1),
         window_speeds=dq[np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)],
         window_weights=np.repeat(weights[None, :], time.size, axis=0),
-        motor_torque=smooth("tau"),
-        gravity_torque=smooth("gravity"),
+        motor_torque=filter_column("tau"),
+        gravity_torque=filter_column("gravity"),
         temperature=columns_by_name.get("temperature", none),
-        motor_angle=smooth("q_motor"),
-        sensor_torque=smooth("link_torque"),
+        motor_angle=filter_column("q_motor"),
+        sensor_torque=filter_column("link_torque"),
         is_held_out=time > time[0] + 0.7 * (time[-1] - time[0]),
         is_dynamic=np.ones(time.size, dtype=bool),
         is_developed=_is_friction_developed(dq, time_step, window_size(time_step), drive),
@@ -151,18 +155,20 @@ def _filter_nodes(window_width: int) -> tuple[SampleIndices, Array]:
     return nodes, np.array(hats) @ savgol_coeffs(window_width, FILTER_DEGREE, use="dot")
 
 
-def _is_friction_developed(dq: Array, time_step: float, window_width: int, drive: Drive) -> NDArray[np.bool_]:
+def _is_friction_developed(
+    joint_speed: Array, time_step: float, window_width: int, drive: Drive
+) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
     The motor has rotated by DEVELOPED_ROTATION_RATIO times `presliding` since its last reversal, and no
     reversal lies within the window of the filter (`window_width` samples).
     """
-    sign = np.sign(dq)
+    sign = np.sign(joint_speed)
     run = np.concatenate([[0], np.cumsum(np.diff(sign) != 0.0)])
     first = np.concatenate([[0], np.flatnonzero(np.diff(run)) + 1])
-    last = np.concatenate([first[1:], [dq.size]])
-    index = np.arange(dq.size)
-    rotation = np.concatenate([[0.0], np.cumsum(np.abs(dq[1:]))]) * time_step * abs(drive.ratio)
+    last = np.concatenate([first[1:], [joint_speed.size]])
+    index = np.arange(joint_speed.size)
+    rotation = np.concatenate([[0.0], np.cumsum(np.abs(joint_speed[1:]))]) * time_step * abs(drive.ratio)
     before, after = index - first[run], last[run] - 1 - index
     developed = rotation - rotation[first[run]] > DEVELOPED_ROTATION_RATIO * drive.presliding
     return np.asarray(developed & (before > window_width // 2) & (after > window_width // 2) & (sign != 0.0))
@@ -245,7 +251,7 @@ def read_log(
     have = dict(table.columns)
     torque = _motor_torque(table, torque_constant)
     if "temperature" in have and table.units["temperature"] != "K":
-        have["temperature"] = have["temperature"] + KELVIN_AT_ZERO
+        have["temperature"] = have["temperature"] + CELSIUS_ZERO_IN_KELVIN
     if "time" in have:
         return _read_dynamic(table, have, torque, drive)
     table.require_column("dq", COLUMN_UNITS)
@@ -254,33 +260,35 @@ def read_log(
     return samples
 
 
-def _motor_torque(table: columns.Columns, torque_constant: float | None) -> Array:
+def _motor_torque(log_columns: columns.Columns, torque_constant: float | None) -> Array:
     """Motor torque (n) [N.m], from the column of the torque or of the current."""
-    if "tau" in table.columns:
-        return table.columns["tau"]
-    if "i" not in table.columns:
+    if "tau" in log_columns.columns:
+        return log_columns.columns["tau"]
+    if "i" not in log_columns.columns:
         wanted = columns.format_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
-        raise ValueError(f"{table.path}: has no torque and no current of the motor; expected {wanted}")
-    current = table.columns["i"]
+        raise ValueError(f"{log_columns.path}: has no torque and no current of the motor; expected {wanted}")
+    current = log_columns.columns["i"]
     if np.max(np.abs(current)) > MAX_CURRENT:
         raise ValueError(
-            f"{table.path}: a current of {np.max(np.abs(current)):.4g} A is outside "
+            f"{log_columns.path}: a current of {np.max(np.abs(current)):.4g} A is outside "
             f"[-{MAX_CURRENT:g}, {MAX_CURRENT:g}] A; likely i is in mA"
         )
     if torque_constant is None:
-        raise ValueError(f"{table.path}: has a current alone; expected --torque-constant [N.m/A] beside it")
+        raise ValueError(
+            f"{log_columns.path}: has a current alone; expected --torque-constant [N.m/A] beside it"
+        )
     return torque_constant * current
 
 
 def _read_dynamic(
-    table: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: Drive
+    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: Drive
 ) -> Samples:
     """Filtered samples of a dynamic log, one per window of the filter."""
     if "q" not in columns_by_name and "dq" not in columns_by_name:
         raise ValueError(
-            f"{table.path}: has neither q nor dq; expected {columns.format_heading(COLUMN_UNITS)}"
+            f"{log_columns.path}: has neither q nor dq; expected {columns.format_heading(COLUMN_UNITS)}"
         )
-    time, step = _time_step(table)
+    time, step = _time_step(log_columns)
     even = np.arange(time[0], time[-1] + 0.5 * step, step)
     columns_by_name = {
         name: np.interp(even, time, x) for name, x in (*columns_by_name.items(), ("tau", torque))
@@ -288,33 +296,33 @@ def _read_dynamic(
     width = window_size(step)
     if even.size < 2 * width:
         raise ValueError(
-            f"{table.path}: takes {time[-1] - time[0]:.4g} s, expected at least {2 * width * step:.3g} s"
+            f"{log_columns.path}: takes {time[-1] - time[0]:.4g} s, expected at least {2 * width * step:.3g} s"
         )
     samples = dynamic_samples(even, step, columns_by_name, drive)
     if "dq" in columns_by_name and "q" in columns_by_name:
-        _check_speed_column(table, filter_values(columns_by_name["q"], step, 1), samples.dq)
-    _check_samples(table.path, samples, drive)
+        _check_speed_column(log_columns, filter_values(columns_by_name["q"], step, 1), samples.dq)
+    _check_samples(log_columns.path, samples, drive)
     return samples.select(np.arange(width // 2, even.size - width // 2, width))
 
 
-def _time_step(table: columns.Columns) -> tuple[Array, float]:
+def _time_step(log_columns: columns.Columns) -> tuple[Array, float]:
     """Times (n) [s] of a log, and the time step [s] for resampling.
 
     Raises ValueError for times that do not increase, and for gaps.
     """
-    time = table.columns["time"]
+    time = log_columns.columns["time"]
     steps = np.diff(time)
     if np.any(wrong := steps <= 0.0):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{table.path}: line {table.line_numbers[first + 1]}: time = {time[first + 1]:.9g} s after "
+            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: time = {time[first + 1]:.9g} s after "
             f"{time[first]:.9g} s runs back; expected rising times"
         )
     step = float(np.median(steps))
     if np.any(wrong := steps > GAP_RATIO * step):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{table.path}: line {table.line_numbers[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
+            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
             f"{GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
         )
     if np.max(np.abs(steps - step)) < STEP_TOLERANCE * step:
@@ -322,18 +330,18 @@ def _time_step(table: columns.Columns) -> tuple[Array, float]:
     return time, step
 
 
-def _check_speed_column(table: columns.Columns, derivative_of_q: Array, dq: Array) -> None:
+def _check_speed_column(log_columns: columns.Columns, derivative_of_q: Array, joint_speed: Array) -> None:
     """Check that dq is the derivative of q. Raises ValueError if not."""
     most = float(np.max(np.abs(derivative_of_q)))
-    scale = float(dq @ derivative_of_q / (derivative_of_q @ derivative_of_q)) if most else 0.0
-    if np.max(np.abs(dq)) and not SPEED_RATIO_RANGE[0] <= scale <= SPEED_RATIO_RANGE[1]:
+    scale = float(joint_speed @ derivative_of_q / (derivative_of_q @ derivative_of_q)) if most else 0.0
+    if np.max(np.abs(joint_speed)) and not SPEED_RATIO_RANGE[0] <= scale <= SPEED_RATIO_RANGE[1]:
         hint = (
             "; likely one of them is in degrees"
             if 40.0 < max(abs(scale), 1.0 / abs(scale or 1.0)) < 80.0
             else ""
         )
         raise ValueError(
-            f"{table.path}: dq is {scale:.3g} times the derivative of q over time, expected 1{hint}"
+            f"{log_columns.path}: dq is {scale:.3g} times the derivative of q over time, expected 1{hint}"
         )
 
 

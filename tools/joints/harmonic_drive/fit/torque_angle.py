@@ -44,12 +44,12 @@ class MeasuredCurve:
 
     path: Path
     midline: backbone.Backbone
-    start: ParameterFile
+    start_file: ParameterFile
 
 
 def fit(
     path: str | Path,
-    start: ParameterFile | None = None,
+    start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     rated_torque: float | None = None,
     law: str | None = None,
@@ -73,9 +73,9 @@ def fit(
     if law == "table":
         if fitted_names:
             raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
-        return fit_table(path, start, rated_torque)
-    record = read_curve(path, start, rated_torque)
-    line, file = record.midline, record.start
+        return fit_table(path, start_parameters, rated_torque)
+    record = read_curve(path, start_parameters, rated_torque)
+    line, file = record.midline, record.start_file
     if file.law == "table":
         raise ValueError(f"{record.path}: the law table has nothing to fit; --law table makes a new table")
     names = tuple(
@@ -87,11 +87,11 @@ def fit(
     weight = np.sqrt(line.sample_counts)
     size = float(np.ptp(line.angle))
 
-    def offset(predicted: Array) -> float:
-        return float(np.average(line.angle - predicted, weights=line.sample_counts))
+    def mean_angle_offset(predicted_angle: Array) -> float:
+        return float(np.average(line.angle - predicted_angle, weights=line.sample_counts))
 
-    def weighted_residuals(predicted: Array) -> Array:
-        return np.asarray(weight * (line.angle - predicted - offset(predicted)) / size)
+    def weighted_residuals(predicted_angle: Array) -> Array:
+        return np.asarray(weight * (line.angle - predicted_angle - mean_angle_offset(predicted_angle)) / size)
 
     angles = make_predictor(file, lambda joint: drive.wind_up(joint, line.torque))
     solution = solve(
@@ -100,10 +100,14 @@ def fit(
         nuisance_count=1,
     )
     result = fitted_parameters(file, solution.values, "calibration", record.path.name, describe_range(line))
-    return make_result(record, result, solution, offset(angles(solution.values)), solution.noise * size)
+    return make_result(
+        record, result, solution, mean_angle_offset(angles(solution.values)), solution.noise * size
+    )
 
 
-def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: float | None) -> MeasuredCurve:
+def read_curve(
+    path: str | Path, start_parameters: ParameterFile | None, rated_torque: float | None
+) -> MeasuredCurve:
     """Read the midline of a file and prepare the start parameters. Raises ValueError as `fit`."""
     table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS, COLUMN_SYNONYMS)
     torque, angle = (table.require_column(name, COLUMN_UNITS) for name in COLUMN_UNITS)
@@ -111,7 +115,7 @@ def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: floa
         line = backbone.find_backbone(torque, angle)
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
-    start_file = start or load_default("harmonic_drive")
+    start_file = start_parameters or load_default("harmonic_drive")
     file = _resize_start(start_file, line.torque, rated_torque, table.path)
     _check_size(line, file, table)
     size = start_file.values.rated_torque / file.values.rated_torque
@@ -128,29 +132,33 @@ def describe_range(midline: backbone.Backbone) -> str:
 
 
 def make_result(
-    record: MeasuredCurve, result: ParameterFile, solution: Solution, angle_offset: float, angle_noise: float
+    measured_curve: MeasuredCurve,
+    fitted_file: ParameterFile,
+    solution: Solution,
+    angle_offset: float,
+    angle_noise: float,
 ) -> FitResult:
     """Make the result of a fit: parameter file, facts, plot and notes.
 
     angle_offset : [rad] angle at zero torque
     angle_noise  : [rad] standard deviation of one sample
     """
-    line = record.midline
-    residuals = line.angle - drive.wind_up(result.values, line.torque) - angle_offset
+    line = measured_curve.midline
+    residuals = line.angle - drive.wind_up(fitted_file.values, line.torque) - angle_offset
     grid = np.linspace(line.torque[0], line.torque[-1], 400)
     picture = Picture(
         data_x=line.torque,
         data_y=(line.angle - angle_offset) / RAD_PER_ARCMIN,
         misfit=residuals / RAD_PER_ARCMIN,
-        law_curve=(grid, drive.wind_up(result.values, grid) / RAD_PER_ARCMIN),
+        law_curve=(grid, drive.wind_up(fitted_file.values, grid) / RAD_PER_ARCMIN),
         axis_labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
     return FitResult(
-        result,
+        fitted_file,
         solution,
-        _facts(line, angle_offset, residuals, angle_noise),
+        _curve_facts(line, angle_offset, residuals, angle_noise),
         [picture],
-        notes=_notes(line, residuals),
+        notes=_curve_notes(line, residuals),
     )
 
 
@@ -205,7 +213,9 @@ def _check_size(midline: backbone.Backbone, start_file: ParameterFile, table: co
             )
 
 
-def _facts(midline: backbone.Backbone, angle_offset: float, residuals: Array, angle_noise: float) -> Facts:
+def _curve_facts(
+    midline: backbone.Backbone, angle_offset: float, residuals: Array, angle_noise: float
+) -> Facts:
     """Facts about the measured curve: offset, loop area, backlash, drift, noise, largest error."""
     facts = {
         "points": (float(np.sum(midline.sample_counts)), "1", "samples used"),
@@ -226,7 +236,7 @@ def _facts(midline: backbone.Backbone, angle_offset: float, residuals: Array, an
     return facts
 
 
-def _notes(midline: backbone.Backbone, residuals: Array) -> list[str]:
+def _curve_notes(midline: backbone.Backbone, residuals: Array) -> list[str]:
     """Notes about quantities that the curve does not determine, and about systematic errors of the law."""
     notes = []
     if midline.loop_area is None:
@@ -243,7 +253,7 @@ SPACING_EXPONENT = 1.5
 
 
 def fit_table(
-    path: str | Path, start: ParameterFile | None = None, rated_torque: float | None = None
+    path: str | Path, start_parameters: ParameterFile | None = None, rated_torque: float | None = None
 ) -> FitResult:
     """Make a drive with the law `table` from a file with the columns torque and angle, read as in `fit`.
 
@@ -251,8 +261,8 @@ def fit_table(
 
     Raises ValueError as `fit`, and for a curve that does not include zero torque or does not rise.
     """
-    record = read_curve(path, start, rated_torque)
-    line, start_file = record.midline, record.start
+    record = read_curve(path, start_parameters, rated_torque)
+    line, start_file = record.midline, record.start_file
     try:
         torque, angle, offset = table_points(line)
     except ValueError as error:

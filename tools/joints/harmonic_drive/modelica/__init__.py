@@ -6,10 +6,10 @@ import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import PLAY_WIDTH_RATIO, Drive
 from jointfmu.joints.harmonic_drive.friction import (
-    LIMIT_SHARES,
     PRIOR_ROTATION_TIME,
     REFERENCE_TEMPERATURE,
-    STIFFNESS_SHARES,
+    SLIDER_LIMIT_SHARES,
+    SLIDER_STIFFNESS_SHARES,
 )
 from jointfmu.joints.harmonic_drive.hysteresis import slider_shares, stiffness_exponent
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -35,17 +35,19 @@ _COMPONENT_PARAMETERS = tuple(name for name, _ in flat_fields(Drive) if name not
 """Parameters of the drive that are parameters of the component, too."""
 
 
-def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
-    drive = file.values
+def _make_records(
+    parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
+) -> list[ModelicaRecord]:
+    drive = parameter_file.values
     spring = HarmonicDriveSpring.tabulate(drive)
     stated = format_parameter_values({name: getattr(drive, name) for name in _COMPONENT_PARAMETERS})
-    stated |= format_parameter_values({"T": file.start_value("temperature")})
+    stated |= format_parameter_values({"T": parameter_file.start_value("temperature")})
     derived = format_computed_values({"K_FTS0": drive.K_FTS} | _hysteresis_totals(spring))
     sliders = np.array(slider_shares(stiffness_exponent(drive)), dtype=np.float64).T
     return [
         ModelicaRecord(
-            name=make_identifier(file.name),
-            title=file.name,
+            name=make_identifier(parameter_file.name),
+            title=parameter_file.name,
             table=decimate_curve(spring.curve),
             values=stated | derived | {"sliders": format_matrix(sliders)},
         )
@@ -61,7 +63,7 @@ def _hysteresis_totals(spring: HarmonicDriveSpring) -> dict[str, float]:
     }
 
 
-COMPONENT = ModelicaComponent(
+MODELICA_COMPONENT = ModelicaComponent(
     name="HarmonicDriveSpring",
     base_record="HarmonicDrive",
     make_records=_make_records,
@@ -73,12 +75,12 @@ COMPONENT = ModelicaComponent(
     component_only_parameters=("hysteresis_loss", "hysteresis_stiffness"),
     make_template_texts=lambda drive: {
         "end": f"{drive.max_load:g} N m",
-        "brakes": format_matrix(np.column_stack([STIFFNESS_SHARES, LIMIT_SHARES])),
+        "brakes": format_matrix(np.column_stack([SLIDER_STIFFNESS_SHARES, SLIDER_LIMIT_SHARES])),
         "turned": format_number(PRIOR_ROTATION_TIME),
         "reference": format_number(REFERENCE_TEMPERATURE),
         "width": format_number(PLAY_WIDTH_RATIO),
     },
-    note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "
+    package_note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "
     '<code>flange_a</code> of <a href="modelica://JointStiffness.Components.HarmonicDriveSpring">'
     "HarmonicDriveSpring</a>: an acausal component is its own inverse. With <code>d</code> = 0 and no "
     "inertia set <code>use_damping=false</code>.",

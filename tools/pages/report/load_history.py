@@ -51,7 +51,7 @@ class LoadHistory:
     def loop_inputs(self) -> dict[str, float]:
         """{input: value} in the load cycles: the start value, or if it is zero the setting of the cycles."""
         assert self.model.load_cycle
-        settings = self.model.load_cycle.settings
+        settings = self.model.load_cycle.variable_values
         return {name: value or float(settings.get(name, 0.0)) for name, value in self.start_values.items()}
 
     def compute_loops(self) -> HysteresisLoops:
@@ -63,7 +63,7 @@ class LoadHistory:
         swing = CyclicPath(centre=self.loop_inputs[loop.input_name], points=_LOAD_CYCLE.points)
         largest = self._largest_amplitude(output)
         results = [
-            self._follow_path(loop.input_name, swing.input_values(a * largest), driven | outputs)
+            self._compute_along_path(loop.input_name, swing.input_values(a * largest), driven | outputs)
             for a in AMPLITUDE_RATIOS
         ]
         return loops_from_results(results, loop.input_name, output, swing)
@@ -79,7 +79,7 @@ class LoadHistory:
 
         def force_range(amplitude: float) -> float:
             points = self.loop_inputs[loop.input_name] + np.array([0.0, amplitude])
-            return float(np.ptp(self._follow_path(loop.input_name, points, {}).columns[output]))
+            return float(np.ptp(self._compute_along_path(loop.input_name, points, {}).columns[output]))
 
         end = force_range(largest)
         if _GROSS_SLIP_RATIO * force_range(2.0 * largest) > end:
@@ -90,7 +90,7 @@ class LoadHistory:
             low, high = (low, middle) if force_range(middle) > _GROSS_SLIP_RATIO * end else (middle, high)
         return min(largest, float(f"{2.0 * high:.2g}"))
 
-    def _follow_path(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
+    def _compute_along_path(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
         """Compute the outputs along a path of one input, from rest."""
         columns = self._engine.follow({**self.loop_inputs, name: points}).columns
         read = (name, *(v.name for v in self.model.outputs))
@@ -103,16 +103,16 @@ class LoadHistory:
         """
         model = self.model
 
-        def warnings_at(x: float) -> dict[int, str]:
-            columns = self._engine.follow({model.ramp.input_name: x}, each_from_rest=True).columns
+        def warnings_at(input_value: float) -> dict[int, str]:
+            columns = self._engine.follow({model.ramp.input_name: input_value}, each_from_rest=True).columns
             return model.find_warnings(
                 self.spring, {name: float(column[0]) for name, column in columns.items()}
             )
 
         before = warnings_at(0.0)
 
-        def new_warnings(x: float) -> list[str]:
-            return [text for number, text in warnings_at(x).items() if number not in before]
+        def new_warnings(input_value: float) -> list[str]:
+            return [text for number, text in warnings_at(input_value).items() if number not in before]
 
         low, high = 0.0, 2.0**-_MAX_DOUBLINGS * model.ramp.end_value
         while not new_warnings(high):

@@ -75,7 +75,7 @@ class TransmissionView(NamedTuple):
     default_speed: float
 
 
-class Example(NamedTuple):
+class ExampleValues(NamedTuple):
     """Values of variables that a button on the page sets to show an effect of the joint; description."""
 
     doc: str
@@ -103,4 +103,4 @@ class LaboratoryModel:
     measured_curves: Sequence[MeasuredCurve] = ()
     contact_map: ContactMap | None = None
     transmission: TransmissionView | None = None
-    example: Example | None = None
+    example: ExampleValues | None = None

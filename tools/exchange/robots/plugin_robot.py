@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from xml.etree import ElementTree
 
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -16,7 +16,7 @@ from .elastic import MOTOR_SUFFIX, ElasticAxis, add_drives
 from .names import make_identifier
 
 
-def find_spring_fmu(file: ParameterFile) -> str:
+def find_two_flange_fmu(file: ParameterFile) -> str:
     """Name of the FMU of a drive that connects two flanges."""
     models = KINDS[file.joint].models
     return next(
@@ -38,20 +38,20 @@ def compile_plugins(drive_files: Mapping[str, ParameterFile], out: Path) -> dict
         for file in drive_files.values():
             name = make_identifier(file.name)
             if name not in paths:
-                (fmu,) = build([find_spring_fmu(file)], ["fmi3"], file, Path(folder), alias=name)
+                (fmu,) = build_fmus([find_two_flange_fmu(file)], ["fmi3"], file, Path(folder), alias=name)
                 paths[name] = plugin(fmu, out)
     return paths
 
 
-def format_plugin_robot(
-    spec: Any, axes: Sequence[ElasticAxis], drive_files: Mapping[str, ParameterFile]
+def format_robot_with_plugins(
+    robot_spec: Any, axes: Sequence[ElasticAxis], drive_files: Mapping[str, ParameterFile]
 ) -> str:
     """Format the MJCF of a robot with plugins as drives.
 
     axes        : axes with a drive
     drive_files : {joint: parameter file of its drive}
     """
-    model_spec = add_drives(spec, list(axes), has_springs=False)
+    model_spec = add_drives(robot_spec, list(axes), has_springs=False)
     model_spec.compile()
     root = ElementTree.fromstring(model_spec.to_xml())
     extension = ElementTree.Element("extension")
