@@ -33,7 +33,7 @@ from .quantity import (
     replace_values,
 )
 
-EntryValue = TypeVar("T")
+EntryValue = TypeVar("EntryValue")
 
 SCHEMA_VERSION = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")

@@ -13,8 +13,8 @@ from itertools import islice
 from threading import Event, Lock, RLock, Thread
 from typing import Any, TypeVar
 
-Job = TypeVar("J")
-Result = TypeVar("T")
+Job = TypeVar("Job")
+Result = TypeVar("Result")
 MAX_JOB_ATTEMPTS = 4
 """Largest number of attempts [1] for a job whose process dies."""
 STATUS_DELAY = 2.0

@@ -30,7 +30,7 @@ from jointfmu.parameters import load_parameter_file
 from jointfmu.quantity import build_parameter_set
 from jointfmu.version import __version__
 
-Result = TypeVar("T")
+Result = TypeVar("Result")
 
 
 class AcceptedStep(NamedTuple):

@@ -179,7 +179,7 @@ class ContactModel:
         free_load = np.concatenate(
             [load[free] for load, free in zip(loads, self._free_unknowns, strict=True)]
         )
-        energy = replace(self._unloaded_energy, load=free_load)
+        energy = replace(self._unloaded_energy, load_vector=free_load)
         minimum = energy.minimise(
             offset - gap, None if initial_solution is None else initial_solution.energy_minimum
         )

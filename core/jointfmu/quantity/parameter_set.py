@@ -11,7 +11,7 @@ from typing import Any, TypeVar, get_type_hints
 from .declaration import find_problems, name_in_file
 from .interval import Interval, Number
 
-ParameterSet = TypeVar("T")
+ParameterSet = TypeVar("ParameterSet")
 
 
 @cache

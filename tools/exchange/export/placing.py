@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import conversion_factor, replace_symbols
 from jointfmu.version import __version__
 
-ValueType = TypeVar("T", float, NDArray[np.float64])
+ValueType = TypeVar("ValueType", float, NDArray[np.float64])
 
 
 @dataclass(frozen=True, slots=True)

@@ -98,7 +98,7 @@ def identify(
 
 def make_two_sided_series(series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
-    return replace(series, value=2.0 * series.value, function_value=2.0 * series.structure_or_psd)
+    return replace(series, value=2.0 * series.value, structure_or_psd=2.0 * series.structure_or_psd)
 
 
 def add_series(first_series: ScaleSeries, second_series: ScaleSeries) -> ScaleSeries:
@@ -131,7 +131,7 @@ def add_series(first_series: ScaleSeries, second_series: ScaleSeries) -> ScaleSe
     return replace(
         first_series,
         value=first_series.value + value,
-        function_value=first_series.structure_or_psd + raw,
+        structure_or_psd=first_series.structure_or_psd + raw,
         covariance=covariance,
     )
 

@@ -54,7 +54,7 @@ class ScaleSeries:
             self,
             scale=self.scale[selection],
             value=self.value[selection],
-            function_value=self.structure_or_psd[selection],
+            structure_or_psd=self.structure_or_psd[selection],
             expected_value=lambda H: self.expected_value(H)[selection],
             covariance=lambda H: self.covariance(H)[np.ix_(selection, selection)],
         )

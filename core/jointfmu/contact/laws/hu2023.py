@@ -202,7 +202,11 @@ def corrected_distribution(law: Hu2023) -> SpotDistribution:
         for i, st in enumerate(stages)
     ]
     normal = [
-        replace(t, lower=np.maximum(t.lower_log_area, 0.0), upper=np.maximum(t.upper_log_area, 0.0))
+        replace(
+            t,
+            lower_log_area=np.maximum(t.lower_log_area, 0.0),
+            upper_log_area=np.maximum(t.upper_log_area, 0.0),
+        )
         for t in normal
     ]
     terms: dict[str, tuple[RegimeTerm, ...]] = {
