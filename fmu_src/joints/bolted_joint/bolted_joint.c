@@ -42,6 +42,7 @@ bool tabulate_model(Joint *joint, Text *reason)
     if (!set_spot_distribution(&model->contact.spots, joint->constants, reason) ||
         !refine_curve(joint, tabulate, APPROACH_STEPS, reason))
         return false;
+    tabulate_energy(&joint->curve);
     joint_constants(0, joint->constants, constants);
     set_parts(joint, constants);
     if (ELASTIC && (!model->friction.has_history || constants[5] != 0.0)) {

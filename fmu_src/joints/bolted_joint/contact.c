@@ -121,7 +121,7 @@ bool state_outside(const Contact *contact, double approach, int order, double *y
         return true;
     }
     for (int w = 0; w < N_LAW_STATE; w++) {
-        works[w] = contact->law.state_polynomial[0][w][0];
+        works[w] = state_polynomial(curve, 0, w)[0];
         slopes[w] = 0.0;
     }
     return true;
@@ -137,6 +137,7 @@ static inline bool evaluate_batch(const Contact *contact, const double *modal_op
                                   int n, bool with_work, PointBatch *batch, Text *reason)
 {
     const Curve *curve = contact->curve;
+    const Segment *segments = curve->segments;
     const double begin = curve->start.x, end = curve->end.x;
     double approach[POINT_BATCH], at[POINT_BATCH];
     int segment[POINT_BATCH];
@@ -145,15 +146,15 @@ static inline bool evaluate_batch(const Contact *contact, const double *modal_op
         approach[i] = x;
         const double inside = x < begin ? begin : (x < end ? x : begin);
         segment[i] = curve_find_segment(curve, inside);
-        at[i] = (inside - curve->x[segment[i]]) * curve->inverse_length[segment[i]];
+        at[i] = segment_parameter(curve, segment[i], inside);
     }
     for (int i = 0; i < n; i++) {
         const int k = segment[i];
-        const double t = at[i], *a = curve->coefficients[k];
+        const double t = at[i], *a = segments[k].coefficients;
         batch->p[i] = polynomial_value(a, t);
-        batch->k[i] = polynomial_slope(a, t) * curve->inverse_length[k];
+        batch->k[i] = polynomial_slope(a, t) * segments[k].inverse_length;
         for (int w = 0; w < N_LAW_STATE && with_work; w++)
-            batch->works[i][w] = polynomial_value(contact->law.state_polynomial[k][w], t);
+            batch->works[i][w] = polynomial_value(state_polynomial(curve, k, w), t);
     }
     for (int i = 0; i < n; i++) {
         double y[2], slopes[N_LAW_STATE];
@@ -187,7 +188,6 @@ OPTIMIZE_FOR_SIZE
 void contact_tabulate(Contact *contact)
 {
     contact->preload.is_current = false;
-    tabulate_energy(&contact->energy, contact->curve);
     for (int i = 0; i < n_points(); i++) {
         const double share = data.points[i][SHARE], x = data.points[i][POSITION_X], y = data.points[i][POSITION_Y];
         const double weight[6] = {share, share * x, share * y, share * y * y, share * x * x, share * x * y};

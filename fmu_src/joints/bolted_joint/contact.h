@@ -33,7 +33,6 @@ typedef struct {
 typedef struct {
     const double *c; /* constants of the joint */
     const Curve *curve;
-    CurveEnergy energy; /* integral of the curve */
     SpotDistribution spots;
     ApproachTable law; /* of first loading over the approach */
     double area;  /* nominal area of the contact [m2] */
@@ -79,9 +78,9 @@ static inline bool point_state(const Contact *contact, double approach, int orde
     if (!(approach >= curve->start.x && approach < curve->end.x))
         return state_outside(contact, approach, order, y, works, slopes, reason);
     const int segment = curve_find_segment(curve, approach);
-    const double t = (approach - curve->x[segment]) * curve->inverse_length[segment];
+    const double t = segment_parameter(curve, segment, approach);
     segment_derivatives(curve, segment, t, order, y);
-    interpolate_law_state(&contact->law, curve, segment, t, works, slopes);
+    interpolate_law_state(curve, segment, t, works, slopes);
     return true;
 }
 

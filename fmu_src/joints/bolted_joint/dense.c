@@ -120,30 +120,34 @@ void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*co
 /* Sums go in lanes, which a processor adds side by side. */
 
 ALWAYS_INLINE void products(int n, const double (*restrict weighted)[N_COLUMNS],
-                            const double (*restrict rows)[N_COLUMNS], int size, bool all,
+                            const double (*restrict rows)[N_COLUMNS], int size, bool all, bool resume,
                             double (*restrict h)[N_COLUMNS])
 {
     for (int r = 0; r < size; r += L) /* in blocks, whose sums stay in registers */
         for (int c = 0; c <= (all ? size - L : r); c += L) {
-            double sum[L][L] = {{0.0}};
+            double sum[L][L];
+            for (int k = 0; k < L; k++)
+                for (int l = 0; l < L; l++)
+                    sum[k][l] = resume ? h[r + k][c + l] : 0.0;
             for (int i = 0; i < n; i++)
                 for (int k = 0; k < L; k++)
                     for (int l = 0; l < L; l++)
                         sum[k][l] += weighted[i][r + k] * rows[i][c + l];
             for (int k = 0; k < L; k++)
                 for (int l = 0; l < L; l++)
-                    h[r + k][c + l] += sum[k][l];
+                    h[r + k][c + l] = resume ? sum[k][l] : h[r + k][c + l] + sum[k][l];
         }
 }
 DEFINE_BASELINE_AND_AVX(products,
                (int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
-                bool all, double (*restrict h)[N_COLUMNS]),
-               (n, weighted, rows, size, all, h))
+                bool all, bool resume, double (*restrict h)[N_COLUMNS]),
+               (n, weighted, rows, size, all, resume, h))
 
 void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS],
-                    const double (*restrict rows)[N_COLUMNS], int size, bool all, double (*restrict h)[N_COLUMNS])
+                    const double (*restrict rows)[N_COLUMNS], int size, bool all, bool resume,
+                    double (*restrict h)[N_COLUMNS])
 {
-    (use_avx ? products_avx : products_baseline)(n, weighted, rows, size, all, h);
+    (use_avx ? products_avx : products_baseline)(n, weighted, rows, size, all, resume, h);
 }
 
 ALWAYS_INLINE void add_rows(int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum)

@@ -39,9 +39,11 @@ void dense_solve(bool use_avx, const Factorization *factors, double *x);
 void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double (*result)[N_COLUMNS]);
 void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*const rows[4])[N_COLUMNS],
                    double (*result)[N_COLUMNS]);
-/* Add the products of n weighted rows with rows to h up to a size, all or the lower half. */
+/* Add the products of n weighted rows with rows to h up to a size, all or the lower half: their sum; or, to resume the
+ * sum of the rows before, one after the other. */
 void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS],
-                    const double (*restrict rows)[N_COLUMNS], int size, bool all, double (*restrict h)[N_COLUMNS]);
+                    const double (*restrict rows)[N_COLUMNS], int size, bool all, bool resume,
+                    double (*restrict h)[N_COLUMNS]);
 /* Add n rows with their weights to a sum over the modes. */
 void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double *sum);
 /* What n rows are along x, each in its place of the result. */

@@ -62,14 +62,17 @@ static void assemble_normal_stiffness(Equilibrium *e, int size)
     const double(*const rows[2])[N_COLUMNS] = {(const double(*)[N_COLUMNS])bodies->opening_jacobian,
                                                (const double(*)[N_COLUMNS])bodies->elongation_jacobian};
     memset(e->normal_stiffness, 0, sizeof e->normal_stiffness);
-    for (int s = 0; s < 2; s++) {
-        for (int i = 0; i < sizes[s]; i++)
-            e->weights[i] = s == 0 ? contact->area * data.points[i][SHARE] * contact->stiffness[i]
-                                   : bolts->stiffness * bolts->active_fraction[i];
-        dense_weigh(bodies->use_avx, sizes[s], e->weights, rows[s], e->weighted);
-        dense_products(bodies->use_avx, sizes[s], (const double(*)[N_COLUMNS])e->weighted, rows[s], size, false,
-                       e->normal_stiffness);
-    }
+    for (int s = 0; s < 2; s++)
+        for (int first = 0; first < sizes[s]; first += WEIGHTED_ROWS) {
+            const int n = sizes[s] - first < WEIGHTED_ROWS ? sizes[s] - first : WEIGHTED_ROWS;
+            double weights[WEIGHTED_ROWS];
+            for (int i = 0, row = first; i < n; i++, row++)
+                weights[i] = s == 0 ? contact->area * data.points[row][SHARE] * contact->stiffness[row]
+                                    : bolts->stiffness * bolts->active_fraction[row];
+            dense_weigh(bodies->use_avx, n, weights, rows[s] + first, e->weighted);
+            dense_products(bodies->use_avx, n, (const double(*)[N_COLUMNS])e->weighted, rows[s] + first, size, false,
+                           first > 0, e->normal_stiffness);
+        }
 }
 
 /* Stiffness of the patches against modal coordinates and tangential motions, from the traction derivatives; all of it,
@@ -89,7 +92,7 @@ static void assemble_shear_stiffness(Equilibrium *e, int size, bool all)
             for (int s = 0; s < 4; s++)
                 weights[j][s] = area * data.patches[j][SHARE] * e->derivatives[j][s][d];
         dense_combine(bodies->use_avx, n, (const double(*)[4])weights, rows, e->weighted);
-        dense_products(bodies->use_avx, n, (const double(*)[N_COLUMNS])e->weighted, rows[d], size, all,
+        dense_products(bodies->use_avx, n, (const double(*)[N_COLUMNS])e->weighted, rows[d], size, all, false,
                        e->shear_stiffness);
     }
 }

@@ -15,6 +15,10 @@
 /* Preload, moment, rigid displacement, and the end of a history. */
 enum { PREDICTOR_KEY = 5 + 3 + MODES + 6 * MAX_PATCHES };
 
+/* Rows of a Jacobian that are weighted and multiplied together; all patches and all bolts are. */
+enum { WEIGHTED_ROWS = (int)MAX_BOLT_ELONGATION > 64 ? (int)MAX_BOLT_ELONGATION : 64 };
+_Static_assert((int)MAX_PATCHES <= (int)WEIGHTED_ROWS, "one set of rows");
+
 /* Derivatives of the modal coordinates by q at the start of a load step, by its tangent; and what they depend on. */
 typedef struct {
     bool is_known;
@@ -35,8 +39,7 @@ typedef struct {
     double condensed[N_DISPLACEMENTS]; /* diagonal of the condensed stiffness at its end [N/m, N.m] */
     /* Work arrays, as Windows does not allow them on the stack. */
     double modal_opening[MAX_PATCH_DISPLACEMENT_X][N_COLUMNS]; /* derivatives of the opening of the patches */
-    double weights[MAX_OPENING + MAX_BOLT_ELONGATION];
-    double weighted[MAX_OPENING + MAX_PATCH_DISPLACEMENT_X + MAX_BOLT_ELONGATION][N_COLUMNS];
+    double weighted[WEIGHTED_ROWS][N_COLUMNS]; /* rows of the Jacobians times their weights */
     double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
     TractionDerivatives derivatives[MAX_PATCHES];
     Factorization factors; /* of the modal tangent in Newton's method */

@@ -115,12 +115,12 @@ void heights_after_liftoff(Foundation *f, double lowest)
 }
 
 /* Load with two derivatives and energy beyond the ends of the curve. */
-static void extrapolate_state(const Curve *curve, const CurveEnergy *energy, PatchState *p)
+static void extrapolate_state(const Curve *curve, PatchState *p)
 {
     const bool after = p->approach >= curve->end.x;
     const double beyond = p->approach - (after ? curve->end.x : curve->start.x);
     curve_evaluate(curve, p->approach, 2, p->y);
-    p->energy = energy->node_energy[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
+    p->energy = curve->node_energy[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
 }
 
 void find_ranges(const Foundation *f, PatchState *p)
@@ -135,15 +135,14 @@ void find_ranges(const Foundation *f, PatchState *p)
 PatchState patch_state(const Foundation *f, double approach, int near)
 {
     const Curve *curve = f->curve;
-    const CurveEnergy *energy = f->energy;
     PatchState p = {.approach = approach, .full_ranges = near};
     if (approach >= curve->start.x && approach < curve->end.x) {
         const int segment = curve_find_segment(curve, approach);
-        const double t = (approach - curve->x[segment]) * curve->inverse_length[segment];
+        const double t = segment_parameter(curve, segment, approach);
         segment_derivatives(curve, segment, t, 2, p.y);
-        p.energy = segment_energy(energy, curve, segment, t);
+        p.energy = segment_energy(curve, segment, t);
     } else {
-        extrapolate_state(curve, energy, &p);
+        extrapolate_state(curve, &p);
     }
     find_ranges(f, &p);
     return p;

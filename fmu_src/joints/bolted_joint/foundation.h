@@ -16,7 +16,6 @@ _Static_assert((int)FOUNDATION_SLIDERS <= (int)MAX_SLIDERS, "in one call");
 
 typedef struct {
     const Curve *curve;
-    const CurveEnergy *energy; /* integral of the curve */
     double mu, ratio;     /* friction coefficient, stiffness ratio K_T/K_N [1] */
     const double *torsion_directions[2]; /* unit vectors of the sliders on the circle of the patch */
     double offset;         /* of the heights [1], see `slider_heights` */
@@ -104,7 +103,7 @@ typedef struct {
     Run runs[BATCH_SIZE / 2];
 } SliderWork;
 
-/* Set all heights for an onset approach; curve, energy, mu, ratio, directions and offset are given. */
+/* Set all heights for an onset approach; curve, mu, ratio, directions and offset are given. */
 void foundation_set_heights(Foundation *foundation, double onset_approach);
 /* Move the first height above the smallest approach so far down to it. */
 void heights_after_liftoff(Foundation *foundation, double min_approach);

@@ -277,7 +277,6 @@ void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx)
     for (int j = 0; j < n_patches(); j++) {
         Foundation *f = &friction->foundation[j];
         f->curve = contact->curve;
-        f->energy = &contact->energy;
         f->mu = friction->mu;
         f->ratio = friction->stiffness_ratio;
         f->torsion_directions[0] = data.torsion_directions[0];

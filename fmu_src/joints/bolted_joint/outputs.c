@@ -158,10 +158,9 @@ static inline double energy_at(const Contact *contact, double approach, double *
     const double inside =
         approach < curve->start.x ? curve->start.x : (approach > curve->end.x ? curve->end.x : approach);
     const int segment = curve_find_segment(curve, inside);
-    const double t = (inside - curve->x[segment]) * curve->inverse_length[segment], beyond = approach - inside;
+    const double t = segment_parameter(curve, segment, inside), beyond = approach - inside;
     segment_derivatives(curve, segment, t, 1, y);
-    const double energy =
-        segment_energy(&contact->energy, curve, segment, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
+    const double energy = segment_energy(curve, segment, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
     y[0] += beyond * y[1];
     return energy;
 }
@@ -177,9 +176,9 @@ static inline double energy_and_load(const Contact *contact, double approach, do
         return energy;
     }
     const int segment = curve_find_segment(curve, approach);
-    const double t = (approach - curve->x[segment]) * curve->inverse_length[segment];
-    *load = polynomial_value(curve->coefficients[segment], t);
-    return segment_energy(&contact->energy, curve, segment, t);
+    const double t = segment_parameter(curve, segment, approach);
+    *load = polynomial_value(curve->segments[segment].coefficients, t);
+    return segment_energy(curve, segment, t);
 }
 
 /* Arguments of `cycle_energies` and `small_cycle_energies`; the seeds have rates of those from the amplitude on. */

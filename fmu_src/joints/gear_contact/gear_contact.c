@@ -31,16 +31,23 @@ static bool evaluate_curve(const Joint *joint, double pressure, double *x, doubl
     double y[3], load_at_result;
     int segment_hint = 0;
     const double delta = curve_inverse(curve, pressure, &segment_hint, &load_at_result);
-    curve_evaluate(curve, delta, 2, y);
+    const bool is_inside = delta >= 0.0 && delta < curve->end.x; /* neither in the closing nor beyond the table */
+    int segment = 0;
+    double t = 0.0;
+    if (is_inside) {
+        segment = curve_find_segment(curve, delta);
+        t = segment_parameter(curve, segment, delta);
+        segment_derivatives(curve, segment, t, 2, y);
+    } else {
+        curve_evaluate(curve, delta, 2, y);
+    }
     const double compliance = y[1] > 0.0 ? 1.0 / y[1] : 0.0;
-    x[0] = delta - curve->x[0];
+    x[0] = delta - curve->segments[0].x;
     x[1] = y[1];
     slopes[0] = compliance;
     slopes[1] = y[2] * compliance;
-    if (delta >= 0.0 && delta < curve->end.x) {
-        const int segment = curve_find_segment(curve, delta);
-        const double t = (delta - curve->x[segment]) * curve->inverse_length[segment];
-        interpolate_law_state(&model->approach, curve, segment, t, x + 2, slopes + 2);
+    if (is_inside) {
+        interpolate_law_state(curve, segment, t, x + 2, slopes + 2);
         for (int q = 0; q < N_LAW_STATE; q++)
             slopes[2 + q] *= compliance;
         return true;

@@ -2,6 +2,7 @@
 #include "gear_mesh.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "tabulated_joint.h"
 
@@ -32,8 +33,8 @@ static bool add_node(Joint *joint, double x, bool is_first, int last_node)
     double pressure[3], below[3];
     curve_evaluate(flanks, x, 2, pressure);
     segment_derivatives(flanks, last_node - 1, 1.0, 2, below); /* a regime may end there: derivatives from below */
-    const double pressure_curvature = x == flanks->x[last_node] ? below[2] : pressure[2];
-    const Node node = pair_node(joint, x - flanks->x[0], pressure, pressure_curvature);
+    const double pressure_curvature = x == flanks->segments[last_node].x ? below[2] : pressure[2];
+    const Node node = pair_node(joint, x - flanks->segments[0].x, pressure, pressure_curvature);
     if (!is_first)
         return curve_add_node(&joint->curve, node);
     curve_begin_piece(&joint->curve, node);
@@ -47,7 +48,7 @@ static bool tabulate_closing(Joint *joint, int divisions)
     const int steps = PAIR_CLOSING_STEPS * divisions;
     for (int i = 0; i <= steps; i++) {
         const double t = (double)i / steps;
-        if (!add_node(joint, (1.0 - t * t) * flanks->x[0], i == 0, CLOSING_STEPS))
+        if (!add_node(joint, (1.0 - t * t) * flanks->segments[0].x, i == 0, CLOSING_STEPS))
             return false;
     }
     return true;
@@ -57,22 +58,25 @@ static bool tabulate_closing(Joint *joint, int divisions)
  * `divisions`. */
 static bool add_piece(Joint *joint, int first_node, int last_node, int divisions)
 {
-    const double *x = joint->model.flanks.x;
+    const Segment *segments = joint->model.flanks.segments;
     bool is_first = true;
-    for (int i = first_node; i < last_node; i++)
+    for (int i = first_node; i < last_node; i++) {
+        const double x = segments[i].x, length = segments[i + 1].x - x;
         for (int division = 0; division < divisions; division++) {
-            if (!add_node(joint, x[i] + (x[i + 1] - x[i]) * division / divisions, is_first, last_node))
+            if (!add_node(joint, x + length * division / divisions, is_first, last_node))
                 return false;
             is_first = false;
         }
-    return add_node(joint, x[last_node], is_first, last_node);
+    }
+    return add_node(joint, segments[last_node].x, is_first, last_node);
 }
 
 /* Node of the flanks at a pressure. */
 static int find_pressure_node(const Curve *flanks, double pressure)
 {
     int i = 0;
-    while (i < flanks->n - 2 && 0.5 * (flanks->coefficients[i][0] + flanks->coefficients[i + 1][0]) < pressure)
+    while (i < flanks->n - 2 &&
+           0.5 * (flanks->segments[i].coefficients[0] + flanks->segments[i + 1].coefficients[0]) < pressure)
         i++;
     return i;
 }
@@ -82,7 +86,8 @@ static int find_pressure_node(const Curve *flanks, double pressure)
 static int find_pieces(const JointModel *model, const double *c, int *nodes)
 {
     const SpotDistribution *spots = &model->spots;
-    const double min_pressure = model->flanks.coefficients[CLOSING_STEPS][0], max_pressure = model->flanks.end.y;
+    const double min_pressure = model->flanks.segments[CLOSING_STEPS].coefficients[0];
+    const double max_pressure = model->flanks.end.y;
     int n = 0;
     nodes[0] = CLOSING_STEPS;
     for (int i = 0; i < spots->n_regime_ends; i++) {
@@ -101,9 +106,9 @@ static bool tabulate_pair(Joint *joint, int divisions, Text *reason)
 {
     int nodes[N_LAW_REGIME_ENDS + 2];
     const int n_pieces = find_pieces(&joint->model, joint->constants, nodes);
-    (void)reason;
-    curve_begin(&joint->curve, joint->model.flanks.error);
-    if (!tabulate_closing(joint, divisions))
+    const int n_segments = PAIR_CLOSING_STEPS + nodes[n_pieces] - nodes[0]; /* before they are divided */
+    if (!curve_begin(&joint->curve, n_segments * divisions + 1, 0, joint->model.flanks.error, reason) ||
+        !tabulate_closing(joint, divisions))
         return false;
     for (int i = 0; i < n_pieces; i++)
         if (!add_piece(joint, nodes[i], nodes[i + 1], divisions))
@@ -118,13 +123,15 @@ bool tabulate_model(Joint *joint, Text *reason)
     if (!set_spot_distribution(&model->spots, joint->constants, reason) ||
         !refine_curve(joint, tabulate_flanks, APPROACH_STEPS, reason))
         return false;
-    model->flanks = joint->curve;
     const double closed[2] = {model->approach.closing_end_pressure, 0.0};
-    model->closing_end = pair_node(joint, -model->flanks.x[0], closed, 0.0).x;
-    if (!refine_curve(joint, tabulate_pair, 1, reason))
-        return false;
-    tabulate_energy(&model->energy, &joint->curve);
-    return true;
+    model->flanks = joint->curve;
+    memset(&joint->curve, 0, sizeof joint->curve);
+    model->closing_end = pair_node(joint, -model->flanks.segments[0].x, closed, 0.0).x;
+    const bool is_accurate = refine_curve(joint, tabulate_pair, 1, reason);
+    curve_free(&model->flanks);
+    if (is_accurate)
+        tabulate_energy(&joint->curve);
+    return is_accurate;
 }
 
 /* Tooth pair at a deflection: load, stiffness and energy x; load and its derivatives y up to `order`. */
@@ -133,9 +140,9 @@ static void evaluate_pair(const Joint *joint, double deflection, int order, doub
     const Curve *curve = &joint->curve;
     const double clipped = fmin(deflection, curve->end.x), excess = fmax(deflection - clipped, 0.0);
     const int i = curve_find_segment(curve, clipped);
-    const double t = (clipped - curve->x[i]) * curve->inverse_length[i];
+    const double t = segment_parameter(curve, i, clipped);
     segment_derivatives(curve, i, t, order, y);
-    x[2] = segment_energy(&joint->model.energy, curve, i, t) + excess * (y[0] + 0.5 * excess * y[1]);
+    x[2] = segment_energy(curve, i, t) + excess * (y[0] + 0.5 * excess * y[1]);
     y[0] += excess * y[1];
     for (int k = 2; k <= order && excess > 0.0; k++)
         y[k] = 0.0;

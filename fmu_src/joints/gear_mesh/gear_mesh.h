@@ -7,9 +7,8 @@
 typedef struct {
     SpotDistribution spots;
     ApproachTable approach;
-    Curve flanks;       /* pressure over approach of the flanks; the curve of the pair is computed from it */
+    Curve flanks;       /* pressure over approach of the flanks, while the curve of the pair is computed from it */
     double closing_end; /* deflection of a pair [m] at which the closing of its contact ends */
-    CurveEnergy energy; /* of a pair [J] */
 } JointModel;
 
 #endif

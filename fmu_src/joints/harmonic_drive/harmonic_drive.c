@@ -12,9 +12,10 @@
 #if defined MIDLINE_NODES || defined MIDLINE_IS_DATA
 /* Tabulate given nodes: wind-up, torque, stiffness, derivative of the stiffness before and after the node. Each segment
  * is a piece of its own, because this derivative may jump at the nodes. */
-static bool tabulate_nodes(Joint *joint, const double (*nodes)[5], int n_nodes)
+static bool tabulate_nodes(Joint *joint, const double (*nodes)[5], int n_nodes, Text *reason)
 {
-    curve_begin(&joint->curve, 0.0);
+    if (!curve_begin(&joint->curve, n_nodes, 0, 0.0, reason))
+        return false;
     for (int k = 0; k + 1 < n_nodes; k++) {
         const double *left = nodes[k], *right = nodes[k + 1];
         curve_begin_piece(&joint->curve,
@@ -33,8 +34,7 @@ _Static_assert((int)CURVE_NODES >= (int)MAX_MIDLINE, "room for all nodes");
 
 static bool tabulate_midline(Joint *joint, Text *reason)
 {
-    (void)reason;
-    return tabulate_nodes(joint, data.midline, (int)data.n_midline);
+    return tabulate_nodes(joint, data.midline, (int)data.n_midline, reason);
 }
 #elif defined MIDLINE_NODES
 enum { N_MIDLINE_NODES = (int)MIDLINE_NODES };
@@ -43,9 +43,8 @@ _Static_assert(CURVE_NODES >= N_MIDLINE_NODES, "room for all nodes");
 static bool tabulate_midline(Joint *joint, Text *reason)
 {
     double nodes[N_MIDLINE_NODES][5];
-    (void)reason;
     midline_nodes(0, joint->constants, nodes[0]);
-    return tabulate_nodes(joint, (const double (*)[5])nodes, N_MIDLINE_NODES);
+    return tabulate_nodes(joint, (const double (*)[5])nodes, N_MIDLINE_NODES, reason);
 }
 #else
 enum { SMOOTHING, MAX_TORQUE, K_FTS0, N_PAIR_CONSTANTS }; /* results of `pair_constants` */
@@ -58,7 +57,8 @@ static bool tabulate_pair(Joint *joint, int steps, Text *reason)
     pair_constants(0, joint->constants, constants);
     const double smoothing = constants[SMOOTHING];
     const double step = portable_asinh(constants[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
-    curve_begin(&joint->curve, 0.0);
+    if (!curve_begin(&joint->curve, steps + 1, 0, 0.0, reason))
+        return false;
     for (int k = 0; k <= steps; k++) {
         const double xi = k * step, torque = smoothing * portable_sinh(xi);
         stiffness_with_play(&torque, joint->constants, K);

@@ -20,7 +20,15 @@ from .model import SystemComponent, SystemModel
 _COMMON_FILES = list_runtime_files(("elementary",))
 _SHARED_STEMS = {path.stem for path in _COMMON_FILES} - {"joint", "variables"} | {"elementary_tables"}
 """File names, without suffix, of the C files that all components share."""
-_JOINT_FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "find_warnings", "describe_warning")
+_JOINT_FUNCTIONS = (
+    "size",
+    "free_tables",
+    "tabulate",
+    "evaluate",
+    "derivative",
+    "find_warnings",
+    "describe_warning",
+)
 _DEFINITION_PATTERN = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
 )

@@ -17,6 +17,13 @@ size_t joint_size(void)
     return sizeof(Joint) + doubles * sizeof(double);
 }
 
+void joint_free_tables(Joint *joint)
+{
+    for (size_t i = 0; i < N_COMPONENTS; i++)
+        if (joint->component[i])
+            components[i].free_tables(joint->component[i]);
+}
+
 /* Append a message with the name of the component before it. */
 static void append_with_name(const Component *c, const Text *component_reason, Text *reason)
 {

@@ -11,6 +11,7 @@
 typedef struct {
     const char *name;
     size_t (*size)(void);
+    void (*free_tables)(Joint *joint);
     bool (*tabulate)(Joint *joint, const double *parameters, Text *reason);
     bool (*evaluate)(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
                      Text *reason);

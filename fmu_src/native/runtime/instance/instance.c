@@ -142,12 +142,15 @@ Instance *instance_create(const char *function, unsigned fmi_version, unsigned i
     const size_t name_size = strlen(name) + 1;
     Instance *m = calloc(1, sizeof *m + name_size);
     Joint *joint = calloc(1, joint_size());
-    if (!m || !joint) {
+    InstanceState *backup = IS_TIME_DEPENDENT ? calloc(1, sizeof *backup) : NULL; /* others seldom need it */
+    if (!m || !joint || (IS_TIME_DEPENDENT && !backup)) {
         free(m);
         free(joint);
+        free(backup);
         return instance_refuse_creation(function, name, logger, "no memory is left; expected some for a new instance");
     }
     m->joint = joint;
+    m->backup = backup;
     m->fmi_version = fmi_version;
     m->state.interface_type = interface_type;
     m->logging_on = logging_on;
@@ -159,9 +162,22 @@ Instance *instance_create(const char *function, unsigned fmi_version, unsigned i
 
 void instance_free(Instance *m)
 {
-    if (m)
-        free(m->joint);
+    if (!m)
+        return;
+    joint_free_tables(m->joint);
+    free(m->joint);
+    free(m->backup);
     free(m);
+}
+
+bool instance_back_up_state(Instance *m, const char *function)
+{
+    if (!m->backup)
+        m->backup = calloc(1, sizeof *m->backup);
+    if (!m->backup)
+        return instance_log_error(m, function, "no memory is left; expected some for the state before the step") == OK;
+    *m->backup = m->state;
+    return true;
 }
 
 void instance_reset(Instance *m)

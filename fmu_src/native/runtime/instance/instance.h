@@ -72,11 +72,11 @@ typedef struct {
 
 typedef struct {
     InstanceState state;
-    InstanceState backup;                /* state before a step, restored if the step fails; also read from bytes */
     double trial_history[N_HISTORY + 1]; /* history variables at the end of the last evaluation */
     double tabulated_parameters[N_PARAMETERS];                /* parameters for which the tables hold */
     double seed[N_INPUTS + N_STATES], sensitivity[N_OUTPUTS]; /* of a directional derivative */
     Joint *joint;
+    InstanceState *backup; /* state before a step, restored if the step fails; NULL until a step changes the state */
     bool outputs_outdated;   /* an input, state or parameter changed since the last evaluation */
     bool parameters_changed; /* a parameter was set since the last evaluation, perhaps to the same value */
     bool tables_are_valid;   /* the tables are those of `tabulated_parameters` */
@@ -94,6 +94,8 @@ Instance *instance_create(const char *function, unsigned fmi_version, unsigned i
 /* Log why no instance was created; returns NULL. */
 Instance *instance_refuse_creation(const char *function, const char *name, Logger logger, const char *problem);
 void instance_free(Instance *m);
+/* Copy the state to `backup`; false: no memory is left for it, which is logged. */
+bool instance_back_up_state(Instance *m, const char *function);
 /* Set the state after instantiation: checks the mode first, or does not. */
 Status instance_reset_if_allowed(Instance *m, const char *function);
 void instance_reset(Instance *m);

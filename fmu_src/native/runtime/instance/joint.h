@@ -17,7 +17,10 @@ typedef struct Joint Joint;
 /* Size of a Joint [bytes]; its memory is zero before the first call of `joint_tabulate`. */
 size_t joint_size(void);
 
-/* Compute the tables for parameters, each of which is inside its own interval.
+/* Free the memory that `joint_tabulate` allocated for tables, if any. */
+void joint_free_tables(Joint *joint);
+
+/* Compute the tables for parameters, each of which is inside its own interval. Only this function allocates memory.
  * false: refused; `reason` has name, value and allowed values. */
 bool joint_tabulate(Joint *joint, const double *parameters, Text *reason);
 

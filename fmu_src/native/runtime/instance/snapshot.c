@@ -245,17 +245,28 @@ static bool check_interface_type(const Instance *m, const char *function, const 
            instance_log_error(m, function, "the state is one of %s; expected one of %s", other, own) == OK;
 }
 
+/* New FMU state; NULL, with an error, if no memory is left. */
+static SavedState *new_saved_state(const Instance *m, const char *function)
+{
+    SavedState *saved = calloc(1, sizeof *saved);
+    if (!saved) {
+        instance_log_error(m, function, "out of memory; expected free memory for a state");
+        return NULL;
+    }
+    memcpy(saved->magic, magic, sizeof magic);
+    saved->fmi_version = m->fmi_version;
+    memcpy(saved->token, data.token, sizeof data.token);
+    return saved;
+}
+
 /* Copy a state for the host: into the FMU state that it passes, or into a new one if that is NULL. */
 static Status copy_to_host(const Instance *m, const char *function, const InstanceState *state, void **saved)
 {
     if (*saved && !check_saved_state(m, function, *saved))
         return ERROR;
-    SavedState *to = *saved ? *saved : calloc(1, sizeof *to);
+    SavedState *to = *saved ? *saved : new_saved_state(m, function);
     if (!to)
-        return instance_log_error(m, function, "out of memory; expected free memory for a state");
-    memcpy(to->magic, magic, sizeof magic);
-    to->fmi_version = m->fmi_version;
-    memcpy(to->token, data.token, sizeof data.token);
+        return ERROR;
     to->state = *state;
     *saved = to;
     return OK;
@@ -335,14 +346,17 @@ Status state_deserialize(Instance *m, const char *function, const void *bytes, s
     transfer_bytes(&end, &written, 8);
     if (written != checksum(bytes, size - 8))
         return refuse_bytes(m, function, "corrupt: their checksum is wrong");
-    InstanceState *new_state = &m->backup; /* not in use between two calls */
     Header header = {.fmi_version = 0};
-    memset(new_state, 0, sizeof *new_state);
+    SavedState *new_saved = new_saved_state(m, function); /* of its own: a refusal leaves that of the host as it is */
+    if (!new_saved)
+        return ERROR;
     transfer_header(&from, &header);
-    transfer_state(&from, new_state);
-    return check_values(m, function, new_state) && check_interface_type(m, function, new_state)
-               ? copy_to_host(m, function, new_state, saved)
-               : ERROR;
+    transfer_state(&from, &new_saved->state);
+    const InstanceState *state = &new_saved->state;
+    const bool is_accepted = check_values(m, function, state) && check_interface_type(m, function, state);
+    const Status status = is_accepted ? copy_to_host(m, function, state, saved) : ERROR;
+    free(new_saved);
+    return status;
 }
 
 END_OPTIMIZE_FOR_SIZE

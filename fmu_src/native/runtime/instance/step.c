@@ -95,11 +95,11 @@ Status instance_do_step(Instance *m, const char *function, double time, double s
         return log_step_error(m, function, "the step ends after the stop time", time, size, "an end until ",
                               state->stop_time);
     const bool inputs_move = has_input_derivatives(state), state_changes = IS_TIME_DEPENDENT || inputs_move;
-    if (state_changes)
-        m->backup = *state;
+    if (state_changes && !instance_back_up_state(m, function))
+        return ERROR;
     if (advance(m, size, end, inputs_move) != OK) {
         if (state_changes) {
-            *state = m->backup; /* an error leaves the state unchanged */
+            *state = *m->backup; /* an error leaves the state unchanged */
             m->outputs_outdated = true;
         }
         return ERROR;

@@ -12,6 +12,8 @@ enum {
     LAW_STATE_RESULTS = 3 * N_LAW_STATE + 1
 }; /* law state, its first and second derivatives with respect to u, F'' - m F' */
 
+enum { LAW_STATE_SIZE = N_LAW_STATE > 0 ? N_LAW_STATE : 1 }; /* C has no empty arrays */
+
 /* Node of the table: pressure and law state over the approach. */
 typedef struct {
     Node curve, state[LAW_STATE_SIZE];
@@ -19,7 +21,7 @@ typedef struct {
 
 /* Add the closing of the contact, from first contact to the node at zero approach, see `closing_pressure` in curve.py:
  * without it the approach would start at minus infinity. The law state is constant there. */
-static bool tabulate_closing(ApproachTable *approach, Curve *curve, const TableNode *end)
+static bool tabulate_closing(Curve *curve, const TableNode *end)
 {
     for (int i = 0; i <= CLOSING_STEPS; i++) {
         const double arguments[4] = {end->curve.y, end->curve.stiffness, end->curve.stiffness_slope,
@@ -31,9 +33,10 @@ static bool tabulate_closing(ApproachTable *approach, Curve *curve, const TableN
             curve_begin_piece(curve, node);
         else if (!curve_add_node(curve, node))
             return false;
-        memset(approach->state_polynomial[i], 0, sizeof approach->state_polynomial[i]);
-        for (int q = 0; q < N_LAW_STATE; q++)
-            approach->state_polynomial[i][q][0] = end->state[q].y;
+        for (int q = 0; q < N_LAW_STATE; q++) {
+            memset(state_polynomial(curve, i, q), 0, 6 * sizeof(double));
+            state_polynomial(curve, i, q)[0] = end->state[q].y;
+        }
     }
     return true;
 }
@@ -81,20 +84,24 @@ static double approach_increment(const SpotDistribution *spots, const double *c,
     return half * sum;
 }
 
+/* Number of segments of one regime of the stiffness; CURVE_NODES stands for all larger numbers. */
+static int count_segments(double regime_start, double regime_end, int steps)
+{
+    const double pairs = ceil(0.5 * steps * (regime_end - regime_start));
+    return pairs < (double)CURVE_NODES ? 2 * (int)fmax(pairs, 1.0) : CURVE_NODES;
+}
+
 /* Add the nodes of one regime of the stiffness; x is the approach at its start, and at its end after the call.
  * false: the table is full. */
 static bool add_piece(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c,
                       double regime_start, double regime_end, int steps, double *x)
 {
-    const double pairs = ceil(0.5 * steps * (regime_end - regime_start));
-    if (!(pairs < (double)CURVE_NODES))
-        return false;
-    const int n = 2 * (int)fmax(pairs, 1.0);
+    const int n = count_segments(regime_start, regime_end, steps);
     const double step = (regime_end - regime_start) / n;
     TableNode from = table_node(spots, c, regime_start, regime_start, regime_end, *x);
     if (curve->n == 0) {
         approach->closing_end_pressure = from.curve.y;
-        if (!tabulate_closing(approach, curve, &from))
+        if (!tabulate_closing(curve, &from))
             return false;
     }
     curve_begin_piece(curve, from.curve);
@@ -105,7 +112,7 @@ static bool add_piece(ApproachTable *approach, Curve *curve, const SpotDistribut
         if (!curve_add_node(curve, to.curve))
             return false;
         for (int q = 0; q < N_LAW_STATE; q++)
-            hermite_polynomial(&from.state[q], &to.state[q], approach->state_polynomial[curve->n - 2][q]);
+            hermite_polynomial(&from.state[q], &to.state[q], state_polynomial(curve, curve->n - 2, q));
         from = to;
     }
     return true;
@@ -128,13 +135,16 @@ bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribu
     }
     approach->first_log_area = first;
     approach->last_log_area = last;
-    int pieces = 0;
+    int pieces = 0, n_nodes = CLOSING_STEPS + 1;
     ends[0] = first;
     for (int i = 0; i < spots->n_regime_ends; i++)
         if (spots->regime_ends[i] > first && spots->regime_ends[i] < last)
             ends[++pieces] = spots->regime_ends[i];
     ends[++pieces] = last;
-    curve_begin(curve, 0.0);
+    for (int i = 0; i < pieces; i++)
+        n_nodes += count_segments(ends[i], ends[i + 1], steps);
+    if (!curve_begin(curve, n_nodes, N_LAW_STATE, 0.0, reason))
+        return false;
     for (int i = 0; i < pieces; i++)
         if (!add_piece(approach, curve, spots, c, ends[i], ends[i + 1], steps, &x))
             return false;

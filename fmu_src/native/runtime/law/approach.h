@@ -6,14 +6,10 @@
 #include "curve.h"
 #include "spot_distribution.h"
 
-enum { LAW_STATE_SIZE = N_LAW_STATE > 0 ? N_LAW_STATE : 1 }; /* C has no empty arrays */
-
 typedef struct {
     double closing_end_pressure; /* pressure [Pa] at zero approach, where the closing of the contact ends */
     double first_log_area,
         last_log_area; /* log-area of the largest spot at zero approach and at the end of the table */
-    double state_polynomial[CURVE_NODES][LAW_STATE_SIZE]
-                           [6]; /* coefficients of 1, t, ... t^5 on each segment; constant in the closing */
 } ApproachTable;
 
 /* Tabulate with `steps` steps per unit of log-area. false: refused, with a reason, or without one if the table is
@@ -21,14 +17,19 @@ typedef struct {
 bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c, int steps,
                        Text *reason);
 
+/* Coefficients of number q of the law state on a segment, of 1, t, ... t^5; constant in the closing. */
+static inline double *state_polynomial(const Curve *curve, int segment, int q)
+{
+    return curve->further_coefficients[segment * N_LAW_STATE + q];
+}
+
 /* Law state and its derivative with respect to the approach, at t of a segment of the table. */
-static inline void interpolate_law_state(const ApproachTable *approach, const Curve *curve, int segment, double t,
-                                         double *value, double *slope)
+static inline void interpolate_law_state(const Curve *curve, int segment, double t, double *value, double *slope)
 {
     for (int q = 0; q < N_LAW_STATE; q++) {
-        const double *a = approach->state_polynomial[segment][q];
+        const double *a = state_polynomial(curve, segment, q);
         value[q] = polynomial_value(a, t);
-        slope[q] = polynomial_slope(a, t) * curve->inverse_length[segment];
+        slope[q] = polynomial_slope(a, t) * curve->segments[segment].inverse_length;
     }
 }
 

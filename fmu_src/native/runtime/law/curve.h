@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "law.h"
+#include "text.h"
 
 enum { CURVE_BUCKETS = 1024 }; /* equal ranges of displacement, or of load, that narrow the search for a segment */
 _Static_assert(CURVE_NODES <= USHRT_MAX, "a bucket holds the number of a segment");
@@ -27,19 +28,30 @@ typedef struct {
     double stiffness_slope; /* derivative of the stiffness, d2y/dx2 */
 } Node;
 
+/* Segment from a node to the next one. The last node has a segment of which only x is used. */
 typedef struct {
-    int n;        /* number of nodes; there are n - 1 segments */
-    double error; /* largest relative interpolation error of load and stiffness, see `assemble_curve` in curve.py */
-    double x[CURVE_NODES];               /* displacement of the nodes */
-    double coefficients[CURVE_NODES][6]; /* of 1, t, ... t^5 on each segment */
-    double inverse_length[CURVE_NODES];  /* 1 over the length of each segment, dt/dx */
-    struct {
-        double inverse_load_rise;      /* 1 over the increase of the load in the segment */
-        double start_slope, end_slope; /* derivative of t with respect to the fraction of this increase, at both ends */
-    } inverse[CURVE_NODES];            /* cubic estimate of t at a load */
-    Node start, end;                   /* ends of the table, computed from the polynomials */
-    Node recent_nodes[3];              /* while the table is built: last three nodes of the piece */
-    int piece_nodes;                   /* while the table is built: nodes of the piece so far */
+    double x;               /* displacement of its first node */
+    double inverse_length;  /* 1 over its length, dt/dx */
+    double coefficients[6]; /* of 1, t, ... t^5 */
+} Segment;
+
+/* Cubic estimate of t at a load of a segment. */
+typedef struct {
+    double inverse_load_rise;      /* 1 over the increase of the load in the segment */
+    double start_slope, end_slope; /* derivative of t with respect to the fraction of this increase, at both ends */
+} SegmentInverse;
+
+typedef struct {
+    int n;         /* number of nodes; there are n - 1 segments */
+    int max_nodes; /* number of nodes for which there is memory: one block, which starts at `segments` */
+    double error;  /* largest relative interpolation error of load and stiffness, see `assemble_curve` in curve.py */
+    Segment *segments;
+    SegmentInverse *inverse;           /* of each segment */
+    double *node_energy;               /* integral of the load from the first node to each node, by `tabulate_energy` */
+    double (*further_coefficients)[6]; /* of further quantities on each segment, as in `Segment` */
+    Node start, end;      /* ends of the table, computed from the polynomials */
+    Node recent_nodes[3]; /* while the table is built: last three nodes of the piece */
+    int piece_nodes;      /* while the table is built: nodes of the piece so far */
     double buckets_per_displacement;
     unsigned short displacement_bucket[CURVE_BUCKETS + 1]; /* segment that contains the start of each bucket */
     unsigned bucket_shift;                         /* number of low bits of a load that may differ inside a bucket */
@@ -61,14 +73,26 @@ static inline double polynomial_slope(const double *a, double t)
     return (a[1] + t * (2.0 * a[2])) + t2 * ((3.0 * a[3] + t * (4.0 * a[4])) + t2 * (5.0 * a[5]));
 }
 
+/* t of a segment at a displacement x. */
+static inline double segment_parameter(const Curve *curve, int segment, double x)
+{
+    return (x - curve->segments[segment].x) * curve->segments[segment].inverse_length;
+}
+
 /* Building a table: `curve_begin`; for each piece `curve_begin_piece` with its first node, then `curve_add_node` for an
  * even number of further nodes; `curve_finish`. A piece starts at the last node of the one before; the derivative of
- * the stiffness may jump between them. `error` is the relative error of the data themselves. `curve_add_node` returns
- * false if the table is full. */
-void curve_begin(Curve *curve, double error);
+ * the stiffness may jump between them. */
+
+/* Memory for at least `n_nodes` nodes, with `n_quantities` further quantities on each segment: that of the table
+ * before, if it suffices. `error` is the relative error of the data themselves. false: no memory is left, with the
+ * reason; or, without a reason, more than CURVE_NODES nodes. */
+bool curve_begin(Curve *curve, int n_nodes, int n_quantities, double error, Text *reason);
 void curve_begin_piece(Curve *curve, Node node);
+/* false: the table has no memory for a further node. */
 bool curve_add_node(Curve *curve, Node node);
 void curve_finish(Curve *curve);
+/* Free the memory of a table. */
+void curve_free(Curve *curve);
 
 /* Coefficients a of the polynomial between two nodes. */
 void hermite_polynomial(const Node *p, const Node *q, double *a);
@@ -76,18 +100,18 @@ void hermite_polynomial(const Node *p, const Node *q, double *a);
 /* Segment that contains a displacement x inside the table. */
 static inline int curve_find_segment(const Curve *curve, double x)
 {
-    const double position = (x - curve->x[0]) * curve->buckets_per_displacement;
+    const double position = (x - curve->segments[0].x) * curve->buckets_per_displacement;
     const int k = position < (double)CURVE_BUCKETS ? (int)position : CURVE_BUCKETS - 1;
     int low = curve->displacement_bucket[k], high = curve->displacement_bucket[k + 1];
     const int next_segment =
-        low + ((low < high) & (x >= curve->x[low + 1])); /* in most buckets at most one segment starts */
-    if (x >= curve->x[next_segment] && x < curve->x[next_segment + 1])
+        low + ((low < high) & (x >= curve->segments[low + 1].x)); /* in most buckets at most one segment starts */
+    if (x >= curve->segments[next_segment].x && x < curve->segments[next_segment + 1].x)
         return next_segment;
-    while (low > 0 && x < curve->x[low]) /* round-off at the start of a bucket */
+    while (low > 0 && x < curve->segments[low].x) /* round-off at the start of a bucket */
         low--;
     while (low < high) {
         const int middle = (low + high + 1) / 2;
-        if (x < curve->x[middle])
+        if (x < curve->segments[middle].x)
             high = middle - 1;
         else
             low = middle;
@@ -98,8 +122,8 @@ static inline int curve_find_segment(const Curve *curve, double x)
 /* Load y[0] and its derivatives y[1], ... y[order] with respect to x, at t of a segment; order 1 to 4. */
 static inline void segment_derivatives(const Curve *curve, int segment, double t, int order, double *y)
 {
-    const double *a = curve->coefficients[segment];
-    const double inverse_length = curve->inverse_length[segment];
+    const double *a = curve->segments[segment].coefficients;
+    const double inverse_length = curve->segments[segment].inverse_length;
     y[0] = polynomial_value(a, t);
     y[1] = polynomial_slope(a, t) * inverse_length;
     if (order >= 2)
@@ -125,13 +149,13 @@ static inline uint64_t curve_bucket_of_load(const Curve *curve, double load)
 /* Segment that contains a load inside the table. */
 static inline int curve_find_segment_of_load(const Curve *curve, double load)
 {
-    if (!(curve->n > 2 && load >= curve->coefficients[1][0]))
+    if (!(curve->n > 2 && load >= curve->segments[1].coefficients[0]))
         return 0;
     const uint64_t k = curve_bucket_of_load(curve, load);
     int low = curve->load_bucket[k], high = curve->load_bucket[k + 1];
     while (low < high) {
         const int middle = (low + high + 1) / 2;
-        if (load < curve->coefficients[middle][0])
+        if (load < curve->segments[middle].coefficients[0])
             high = middle - 1;
         else
             low = middle;
@@ -142,7 +166,7 @@ static inline int curve_find_segment_of_load(const Curve *curve, double load)
 /* Estimate of t at which segment i has a load, by a cubic. */
 static inline double curve_estimate_inverse(const Curve *curve, int i, double load)
 {
-    const double load_fraction = (load - curve->coefficients[i][0]) * curve->inverse[i].inverse_load_rise;
+    const double load_fraction = (load - curve->segments[i].coefficients[0]) * curve->inverse[i].inverse_load_rise;
     const double start_slope = curve->inverse[i].start_slope, end_slope = curve->inverse[i].end_slope;
     const double t = load_fraction * (start_slope + load_fraction * ((3.0 - 2.0 * start_slope - end_slope) +
                                                                      load_fraction * (start_slope + end_slope - 2.0)));
@@ -160,9 +184,9 @@ static inline double curve_inverse(const Curve *curve, double load, int *segment
 {
     if (load > curve->start.y && load < curve->end.y) {
         int i = *segment;
-        if (!(load >= curve->coefficients[i][0] && load < curve->coefficients[i + 1][0]))
+        if (!(load >= curve->segments[i].coefficients[0] && load < curve->segments[i + 1].coefficients[0]))
             *segment = i = curve_find_segment_of_load(curve, load);
-        const double *a = curve->coefficients[i];
+        const double *a = curve->segments[i].coefficients;
         double t = curve_estimate_inverse(curve, i, load);
         for (int n = 0; n < 2; n++) {
             const double slope = polynomial_slope(a, t);
@@ -172,8 +196,8 @@ static inline double curve_inverse(const Curve *curve, double load, int *segment
             if (!(fabs(half_curvature) <= 0.25 * slope && next >= 0.0 && next <= 1.0))
                 break;
             if (fabs(step) <= MAX_FINAL_NEWTON_STEP) {
-                const double x = curve->x[i] + next * (curve->x[i + 1] - curve->x[i]);
-                *load_at_result = load + slope * ((x - curve->x[i]) * curve->inverse_length[i] - next);
+                const double x = curve->segments[i].x + next * (curve->segments[i + 1].x - curve->segments[i].x);
+                *load_at_result = load + slope * (segment_parameter(curve, i, x) - next);
                 return x;
             }
             t = next;
@@ -186,21 +210,17 @@ static inline double curve_inverse(const Curve *curve, double load, int *segment
     return x;
 }
 
-/* Energy of a curve: integral of its load over the displacement, from the first node. */
-typedef struct {
-    double node_energy[CURVE_NODES];
-} CurveEnergy;
-
-void tabulate_energy(CurveEnergy *energy, const Curve *curve);
+/* Energy at all nodes: integral of the load over the displacement, from the first node. */
+void tabulate_energy(Curve *curve);
 
 /* Energy at t of a segment. */
-static inline double segment_energy(const CurveEnergy *energy, const Curve *curve, int segment, double t)
+static inline double segment_energy(const Curve *curve, int segment, double t)
 {
-    const double *a = curve->coefficients[segment];
+    const double *a = curve->segments[segment].coefficients;
     const double t2 = t * t; /* in pairs, as in `polynomial_value` */
     const double mean = (a[0] + t * (a[1] * 0.5)) +
                         t2 * ((a[2] * (1.0 / 3.0) + t * (a[3] * 0.25)) + t2 * (a[4] * 0.2 + t * (a[5] * (1.0 / 6.0))));
-    return energy->node_energy[segment] + (curve->x[segment + 1] - curve->x[segment]) * t * mean;
+    return curve->node_energy[segment] + (curve->segments[segment + 1].x - curve->segments[segment].x) * t * mean;
 }
 
 #endif

@@ -10,6 +10,11 @@ size_t joint_size(void)
     return sizeof(Joint);
 }
 
+void joint_free_tables(Joint *joint)
+{
+    curve_free(&joint->curve);
+}
+
 static void append_interval(Text *text, double low, double high, bool low_open, bool high_open)
 {
     text_append_format(text, "%s%g, %g%s", low_open ? "(" : "[", low, high, high_open ? ")" : "]");

@@ -13,6 +13,11 @@ size_t joint_size(void)
     return sizeof(Joint);
 }
 
+void joint_free_tables(Joint *joint)
+{
+    (void)joint;
+}
+
 bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 {
     joint->k = NAN; /* nothing is right until all is */
