@@ -112,9 +112,7 @@ def single_drives():
             freed = file.with_values(friction_and_ratio(other), "user", "without efficiency")
             free = file.with_values({"load_loss": 0.0}, "user", "guess")
             values = [n["efficiency"].value, drive.efficiency(CATALOGUE_SPEED, rated)]
-            values += [
-                make_test_rig(MODEL, f).efficiency(CATALOGUE_SPEED, rated) for f in (freed, free)
-            ]
+            values += [make_test_rig(MODEL, f).efficiency(CATALOGUE_SPEED, rated) for f in (freed, free)]
             cells += [f"{100.0 * value:.1f}" for value in values]
         else:
             cells += ["-"] * 4

@@ -91,21 +91,23 @@ class CellLoads:
         loads = sp.vstack(
             [*(means @ joint.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
         ).tocsr()
-        first, second = joint.bodies
+        count = joint.bodies[0].unknown_count
         displacement = np.zeros(loads.shape[::-1])
-        displacement1, displacement2 = np.split(displacement, [first.unknown_count])
-        _solve_body(joint, 0, loads[:, : first.unknown_count], displacement1)
+        displacement1, displacement2 = displacement[:count], displacement[count:]
+        _solve_body(joint, 0, loads[:, :count], displacement1)
         if joint.is_mirrored:
             sign = np.repeat([1.0, -1.0, 1.0], (means.shape[0], 2 * means.shape[0], stretch.shape[0]))
             np.multiply(displacement1, sign, out=displacement2)
             for axis, mirror_sign in enumerate(MIRROR_SIGNS):
                 displacement2[axis::3] *= mirror_sign
         else:
-            _solve_body(joint, 1, loads[:, first.unknown_count :], displacement2)
+            _solve_body(joint, 1, loads[:, count:], displacement2)
         return cls(joint, spring, normal_stiffness, loads, displacement)
 
 
-def _solve_body(joint: JointFiniteElements, body: int, unit_loads: sp.csr_matrix, displacement: Array) -> None:
+def _solve_body(
+    joint: JointFiniteElements, body: int, unit_loads: sp.csr_matrix, displacement: Array
+) -> None:
     """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed.
 
     body         : index of the body

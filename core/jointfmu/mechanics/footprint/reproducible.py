@@ -94,7 +94,7 @@ def matrix_product(a: Array, b: Array) -> Array:
 
 
 def gram_matrix(rows: Array) -> Array:
-    """Symmetric matrix product a a^T (m, m) of rows a (m, n); each sum is added in the order of the columns."""
+    """Symmetric matrix product a a^T (m, m) of rows a (m, n); sums are added in the order of the columns."""
     columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
     for first in range(0, len(rows), GRAM_BLOCK_SIZE):
         last = min(first + GRAM_BLOCK_SIZE, len(rows))

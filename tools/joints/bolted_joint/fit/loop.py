@@ -35,8 +35,8 @@ from ....inputs.fitting.hysteresis import HysteresisLaw
 from ....inputs.fitting.least_squares import Unknown, UnknownExchange
 from ....inputs.fitting.measurement import ColumnNames, Measurement, read_measurement
 from ....inputs.fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
-from .preload import FITTED_PARAMETERS as INTERFACE
 from .preload import COMPLETE_JOINT, SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
+from .preload import FITTED_PARAMETERS as INTERFACE
 
 COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
 FITTED_PARAMETERS = {law: ("mu", *names) for law, names in INTERFACE.items()}
@@ -131,7 +131,8 @@ def _first_loading_of_elastic_sides(
 
 def _follow_path(joint: Bolted, preload: float, displacement: Array) -> tuple[Array, Array]:
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], from the virgin state."""
-    columns = COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload, "s_rel_x": displacement}).columns
+    inputs = {"preload": preload, "s_rel_x": displacement}
+    columns = COMPLETE_JOINT.with_parameters(joint).follow(inputs).columns
     return -columns["f_x"], columns["K_xx"]
 
 

@@ -75,7 +75,8 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     direction : "normal" (K_zz) or "tangential" (K_xx)
     """
     if joint.elastic:
-        columns = COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload}, each_from_rest=True).columns
+        complete = COMPLETE_JOINT.with_parameters(joint)
+        columns = complete.follow({"preload": preload}, each_from_rest=True).columns
         return columns["K_zz" if direction == "normal" else "K_xx"]
     shape = merged_pressure_shape(joint.pattern)
     p = preload_pressure(joint, shape, preload, 0.0)
