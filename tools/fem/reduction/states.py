@@ -178,7 +178,7 @@ class CellJoint:
     @cached_property
     def _body_stiffness(self) -> Array:
         """Inverse (3 n + b, 3 n + b) [N/m] of the compliance of the bodies."""
-        return np.linalg.inv(self.compliance)
+        return np.asarray(np.linalg.inv(self.compliance))
 
     @cached_property
     def _preload_pressure(self) -> Array:
