@@ -6,8 +6,9 @@ import tempfile
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.run import engine
-from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, open_joint
+from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, TrialJoint, open_joint
 
 import jointfmu
 from jointfmu.joints import KINDS
@@ -87,6 +88,29 @@ def test_a_warning_is_given_by_each_path_that_exceeds_the_law():
         (text,) = plate.evaluate(preload=[9e3, end, 2.0 * end]).messages
         assert "is outside" in text
     assert not plate.evaluate(preload=9e3).messages
+
+
+@needs("gmsh")
+def test_a_plot_leaves_the_library_of_the_joint_as_it_is(elastic_joint):
+    """The bolt forces of elastic sides are outputs once, however often the model gets the parameters."""
+    plate = jointfmu.load(elastic_joint / "joint.toml")
+    before = plate.follow(s_rel_x=[0.0, 1e-6])
+    plate.plot()
+    again = jointfmu.load(elastic_joint / "joint.toml")
+    model = again.model()
+    assert model.with_parameters("bolted_joint", again.file.values).outputs == model.outputs
+    np.testing.assert_array_equal(again.follow(s_rel_x=[0.0, 1e-6])["F_bolt[4]"], before["F_bolt[4]"])
+
+
+def test_trial_parameters_give_the_joint_that_has_them():
+    file = load_default("bolted_joint")
+    trial, path = TrialJoint(KINDS["bolted_joint"].models[0]), {"preload": 9e3, "s_rel_x": [0.0, 5e-6, 0.0]}
+    not_exposed = {"pattern.decay_length": 1.1 * file.values_by_name["pattern.decay_length"]}
+    for values in ({"mu": 0.1}, {"mu": 0.3, "H": 2e9}, not_exposed, {"mu": 0.1}):
+        parameters = file.with_values(values, "user", "test").values
+        expected = jointfmu.load("BoltedJoint").with_values(values).follow(**path)
+        found = trial.with_parameters(parameters).follow(path).columns
+        np.testing.assert_array_equal(found["f_x"], expected["f_x"], str(values))
 
 
 def test_without_a_compiler_the_python_law_answers_and_says_so(monkeypatch, capsys):

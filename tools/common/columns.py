@@ -60,7 +60,8 @@ class Columns:
         """Return a column. Raises ValueError if the file does not have the column."""
         if column_name not in self.columns:
             raise ValueError(
-                f"{self.path}: has no column {column_name!r}; expected {format_heading({column_name: allowed_units[column_name]})}"
+                f"{self.path}: has no column {column_name!r}; expected "
+                f"{format_heading({column_name: allowed_units[column_name]})}"
             )
         return self.columns[column_name]
 
@@ -307,7 +308,8 @@ def _parse_column(path: Path, column_name: str, line_numbers: Sequence[int], cel
     if np.any(wrong := ~np.isfinite(values)):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{path}: line {line_numbers[first]}: {column_name} = {cells[first].strip()!r} is not a finite number "
+            f"{path}: line {line_numbers[first]}: {column_name} = {cells[first].strip()!r} is not a "
+            "finite number "
             "with a "
             "decimal point"
         )

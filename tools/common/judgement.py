@@ -123,7 +123,8 @@ def assess_law(
     if rms_height is not None and rms_height > 2.0 * MAX_HEIGHT:
         warnings.insert(
             0,
-            f"h = {rms_height:.3g} m is not a roughness: faces that are joined have up to {MAX_HEIGHT:g} m each",
+            f"h = {rms_height:.3g} m is not a roughness: faces that are joined have up to "
+            f"{MAX_HEIGHT:g} m each",
         )
     if comparison is not None and comparison.is_doubtful:
         warnings.append(

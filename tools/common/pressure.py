@@ -97,7 +97,8 @@ def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
     if not getattr(parameter_file.values, "elastic", False):
         return []
     return [
-        f"{parameter_file.name!r} is a complete joint (sides = elastic), but this file has the interface only: between "
+        f"{parameter_file.name!r} is a complete joint (sides = elastic), but this file has the "
+        "interface only: between "
         "rigid bodies it is far too stiff, because the members are missing; the FMU has them"
     ]
 

@@ -159,7 +159,7 @@ class JointFiniteElements:
 
         Raises RuntimeError if a body can move freely.
         """
-        bodies = sp.block_diag(self.stiffness_matrices, format="csr")
+        bodies = _block_diagonal(*self.stiffness_matrices)
         opening = [self.relative_displacement_matrix(axis) for axis in COORDINATE_AXES]
         weights = [
             sp.diags(self.contact_interface.quadrature_area * interface_stiffness[:, axis])
@@ -206,6 +206,15 @@ class JointFiniteElements:
             factor = Cholesky(free_stiffness)
         displacement[free] = -factor.solve(stiffness[free][:, prescribed] @ rigid[prescribed])
         return displacement, rigid, free, factor
+
+
+def _block_diagonal(first: sp.csr_matrix, second: sp.csr_matrix) -> sp.csr_matrix:
+    """Block diagonal matrix of two square matrices."""
+    size = first.shape[0]
+    indices = np.concatenate([first.indices, second.indices + size])
+    starts = np.concatenate([first.indptr, second.indptr[1:] + first.nnz])
+    data = np.concatenate([first.data, second.data])
+    return sp.csr_matrix((data, indices, starts), shape=(size + second.shape[0],) * 2)
 
 
 class MirrorFactorisation:

@@ -125,7 +125,8 @@ def check_output(path: str | Path, file_kind: FileKind, force: bool = False) -> 
                 raise ValueError(f"{path}: is write-protected; expected another file")
             if not force and target.stat().st_size and not file_kind.is_program_file(target):
                 raise InputRefusal(
-                    f"{path}: exists, and is not a {file_kind.name_in_messages} written by jointfmu, or was edited; "
+                    f"{path}: exists, and is not a {file_kind.name_in_messages} written by jointfmu, "
+                    "or was edited; "
                     "state another file, or force to replace it",
                     "force",
                 )

@@ -211,9 +211,9 @@ class Model:
                 f"{self.name}: the parameter file is of a {joint_name!r}, expected a {self.joint!r}"
             )
         model = replace(self, parameters=type(parameters))
-        return (
-            replace(self.make_variant(model, parameters), make_variant=None) if self.make_variant else model
-        )
+        if self.make_variant:
+            model = replace(self.make_variant(model, parameters), make_variant=None)
+        return model
 
     def with_load_range(self, tabulated_joint: TabulatedJoint, start_values: VariableValues) -> "Model":
         """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""

@@ -152,7 +152,10 @@ def compile_model(
 def compiled_model_name(model: Model, parameter_split: ParameterSplit) -> str:
     """File name of a compiled model, with a digest of structure and sources."""
     law = model.parameters
-    text = f"{model.name} {law.__module__}.{law.__qualname__} {parameter_split.structure_key} {_digest_sources(model)}"
+    text = (
+        f"{model.name} {law.__module__}.{law.__qualname__} {parameter_split.structure_key} "
+        f"{_digest_sources(model)}"
+    )
     return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_MODEL_FILE_SUFFIX}"
 
 

@@ -147,6 +147,7 @@ def _run_cache(args: argparse.Namespace) -> CommandResult:
     return CommandResult(
         document={"folder": folder, "files": files, "bytes": size},
         lines=[
-            f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE_ENVIRONMENT_VARIABLE})"
+            f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: "
+            f"{cache.CACHE_ENVIRONMENT_VARIABLE})"
         ],
     )

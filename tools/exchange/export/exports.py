@@ -101,6 +101,7 @@ def require_content(joint_name: str, content: str) -> Any:
         )
     if not getattr(exports, content):
         raise ValueError(
-            f"{content} of a {joint_name} cannot be written; allowed is a {', '.join(joints_with_content(content))}"
+            f"{content} of a {joint_name} cannot be written; allowed is a "
+            f"{', '.join(joints_with_content(content))}"
         )
     return getattr(exports, content)

@@ -61,7 +61,8 @@ def reduce_bodies(
     interface = joint.contact_interface
     bolts = joint.bolt_positions - interface.centroid
     motions, deformed = compute_states(linear_joint, reduced_joint, normal_stiffness, preload)
-    fields = _energy_modes(linear_joint, deformed, motions)
+    body_forces = linear_joint.body_matrix @ deformed
+    fields = _energy_modes(linear_joint, deformed, body_forces, motions)
     stretch = joint.elongation_matrix.T @ fields
     patches = reduced_joint.patches
     start = reduced_joint.preloaded_approach(preload, 0.0)
@@ -81,10 +82,7 @@ def reduce_bodies(
         springs,
     )
     combinations = shear_combinations(motions)
-    deformation = -(deformed @ combinations.T)
-    shears = ShearStates(
-        (combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear_joint.body_matrix @ deformation)).T
-    )
+    shears = ShearStates((combinations @ motions)[:, (0, 1, 5)], -(fields.T @ body_forces @ combinations.T).T)
     law, approach = (
         reduced_joint.friction_law.foundation(),
         approach_at_stiffness(reduced_joint, normal_stiffness),
@@ -156,50 +154,48 @@ def _to_tuple(values: Array) -> tuple[float, ...]:
     return tuple((values + 0.0).tolist())
 
 
-def _energy_modes(linear_joint: LinearJoint, state_deformations: Array, motions: Array) -> Array:
+def _energy_modes(
+    linear_joint: LinearJoint, state_deformations: Array, state_forces: Array, motions: Array
+) -> Array:
     """Compute modes (n, k) of the bodies that are orthonormal in the energy norm.
 
     The first modes span the response of the linear joint to unit motions; the others come from the proper
     orthogonal decomposition of the remaining deformation.
 
     state_deformations : (n, s) [m] deformation of the bodies
+    state_forces       : (n, s) [N] their stiffness times this deformation
     motions            : (s, 6) [m, rad] of side 2 in these states
     """
-    linear_modes = _decompose_orthogonally(
-        _scale_to_unit_energy(
-            linear_joint.unit_motion_displacement - linear_joint.rigid_displacement, linear_joint
-        ),
-        linear_joint,
+    linear_deformations = linear_joint.unit_motion_displacement - linear_joint.rigid_displacement
+    linear_modes, linear_forces = _decompose_orthogonally(
+        *_scale_to_unit_energy(linear_deformations, linear_joint.body_matrix @ linear_deformations)
     )
-    state_deformations = _scale_to_unit_energy(state_deformations, linear_joint)
+    states, forces = _scale_to_unit_energy(state_deformations, state_forces)
     for _ in range(2):  # repeated Gram-Schmidt: two passes are enough
-        state_deformations = state_deformations - linear_modes @ (
-            linear_modes.T @ (linear_joint.body_matrix @ state_deformations)
-        )
+        shares = linear_modes.T @ forces
+        states, forces = states - linear_modes @ shares, forces - linear_forces @ shares
     weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING_STATE_WEIGHT, 1.0)
-    other_modes = _decompose_orthogonally(weight * state_deformations, linear_joint)[
-        :, : MAX_MODES - linear_modes.shape[1]
-    ]
-    return np.concatenate([linear_modes, other_modes], axis=1)
+    other_modes, _ = _decompose_orthogonally(weight * states, weight * forces)
+    return np.concatenate([linear_modes, other_modes[:, : MAX_MODES - linear_modes.shape[1]]], axis=1)
 
 
-def _scale_to_unit_energy(displacements: Array, linear_joint: LinearJoint) -> Array:
-    """Scale displacements (n, s) [m] to unit energy norm, u K u = 1."""
-    return np.asarray(
-        displacements / np.sqrt(np.sum(displacements * (linear_joint.body_matrix @ displacements), axis=0))
-    )
+def _scale_to_unit_energy(displacements: Array, forces: Array) -> tuple[Array, Array]:
+    """Scale displacements u (n, s) [m] and their forces K u (n, s) [N] to unit energy norm, u K u = 1."""
+    norm = np.sqrt(np.sum(displacements * forces, axis=0))
+    return displacements / norm, forces / norm
 
 
-def _decompose_orthogonally(displacements: Array, linear_joint: LinearJoint) -> Array:
-    """Proper orthogonal decomposition of fields (n, s) in the energy norm.
+def _decompose_orthogonally(displacements: Array, forces: Array) -> tuple[Array, Array]:
+    """Proper orthogonal decomposition in the energy norm of fields u (n, s) with forces K u (n, s).
 
     Returns orthonormal modes (n, k), the largest singular value first, without those below
-    MIN_SINGULAR_VALUE_RATIO.
+    MIN_SINGULAR_VALUE_RATIO, and their forces (n, k).
     """
-    energy, vectors = np.linalg.eigh(displacements.T @ (linear_joint.body_matrix @ displacements))
+    energy, vectors = np.linalg.eigh(displacements.T @ forces)
     energy, vectors = energy[::-1], vectors[:, ::-1]
     count = int(np.sum(energy > MIN_SINGULAR_VALUE_RATIO**2 * energy[0]))
-    return np.asarray(displacements @ (vectors[:, :count] / np.sqrt(energy[:count])))
+    factors = vectors[:, :count] / np.sqrt(energy[:count])
+    return displacements @ factors, forces @ factors
 
 
 def _rigid_opening(position: Array) -> Array:

@@ -229,10 +229,15 @@ class PatchFit:
         work_residual = self._work_residual(patch_displacement, weight * (patch_displacement - initial))
         stiffness_residual = self._stiffness_residual(patch_displacement)
         for _ in range(MAX_FIT_STEPS):
-            work_jacobian = np.concatenate([self._work_jacobian(patch_displacement), np.diag(weight.ravel())])
+            work_jacobian = self._work_jacobian(patch_displacement)  # without the rows of the regularisation
             stiffness_jacobian = self._stiffness_jacobian(patch_displacement)
-            hessian = work_jacobian.T @ work_jacobian
-            gradient = work_jacobian.T @ work_residual + stiffness_jacobian.T @ stiffness_residual
+            hessian = work_jacobian.T @ work_jacobian + np.diag(weight.ravel() ** 2)
+            errors, changes = np.split(work_residual, [len(work_jacobian)])
+            gradient = (
+                work_jacobian.T @ errors
+                + weight.ravel() * changes
+                + stiffness_jacobian.T @ stiffness_residual
+            )
             objective = work_residual @ work_residual + stiffness_residual @ stiffness_residual
             while damping < MAX_DAMPING:
                 damped = hessian + stiffness_jacobian.T @ stiffness_jacobian

@@ -9,8 +9,10 @@ it part of the loss.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
@@ -93,17 +95,17 @@ class UnitLoadResponse:
         loads = sp.vstack(
             [*(means @ joint_model.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
         ).tocsr()
-        first, _ = joint_model.bodies
+        count = joint_model.bodies[0].unknown_count
         displacement = np.zeros(loads.shape[::-1])
-        displacement1, displacement2 = np.split(displacement, [first.unknown_count])
-        _solve_body(joint_model, 0, loads[:, : first.unknown_count], displacement1)
+        displacement1, displacement2 = displacement[:count], displacement[count:]
+        _solve_body(joint_model, 0, loads[:, :count], displacement1)
         if joint_model.is_mirrored:
             sign = np.repeat([1.0, -1.0, 1.0], (means.shape[0], 2 * means.shape[0], stretch.shape[0]))
             np.multiply(displacement1, sign, out=displacement2)
             for axis, mirror_sign in enumerate(MIRROR_SIGNS):
                 displacement2[axis::3] *= mirror_sign
         else:
-            _solve_body(joint_model, 1, loads[:, first.unknown_count :], displacement2)
+            _solve_body(joint_model, 1, loads[:, count:], displacement2)
         return cls(joint_model, reduced_joint, normal_stiffness, loads, displacement)
 
 
@@ -179,6 +181,16 @@ class CellwiseJoint:
         start = spring.preloaded_approach(preload, 0.0)
         return cls(spring, 0.5 * (compliance + compliance.T), rigid, start, preload)
 
+    @cached_property
+    def _body_stiffness(self) -> Array:
+        """Inverse (3 n + b, 3 n + b) [N/m] of the compliance of the bodies."""
+        return np.asarray(np.linalg.inv(self.compliance))
+
+    @cached_property
+    def _preload_pressure(self) -> Array:
+        """Pressure (n) [Pa] of the cells in the preloaded joint."""
+        return self.reduced_joint.curve.derivatives(self.preload_approach, 0)[0]
+
     def cell_forces(self, displacements: Array) -> tuple[Array, "CellTangent"]:
         """Forces (3 n + b) [N] at displacements (3 n + b) [m] of cells and bolts, and their tangent.
 
@@ -192,7 +204,6 @@ class CellwiseJoint:
         slip_ratio = foundation.friction_coefficient / foundation.stiffness_ratio
         approach = self.preload_approach - displacements[:n]
         p, k = spring.curve.derivatives(approach, 1)
-        p_preload = spring.curve.derivatives(self.preload_approach, 0)[0]
         u, v = displacements[n : 2 * n], displacements[2 * n : 3 * n]
         size = np.maximum(np.hypot(u, v), 1e-30)
         secant = foundation.virgin_traction(approach, size) / size
@@ -203,7 +214,9 @@ class CellwiseJoint:
         bolts, elongation = spring.bolts, displacements[3 * n :]
         bolt = bolts.tangent_stiffness(preload, elongation)
         pull = bolts.stiffness * (elongation + bolts.head_gap(preload, elongation))
-        force = np.concatenate([-area * (p - p_preload), area * secant * u, area * secant * v, pull])
+        force = np.concatenate(
+            [-area * (p - self._preload_pressure), area * secant * u, area * secant * v, pull]
+        )
         diagonal = [area * k, area * (secant + softening * u * u), area * (secant + softening * v * v), bolt]
         return force, CellTangent(np.concatenate(diagonal), area * softening * u * v)
 
@@ -218,14 +231,16 @@ class CellwiseJoint:
     def solve_forces(self, motion: Array) -> Array:
         """Solve for the forces (3 n + b) [N] at a motion (6) [m, rad] of side 2's attachment.
 
-        Newton's method may stop before it has converged: a state needs no exact equilibrium.
+        Newton's method may stop before it has converged: a state needs no exact equilibrium. Its matrix
+        (identity + compliance tangent), multiplied by the inverse of the compliance, is symmetric.
         """
         prescribed = self.rigid_displacement @ motion
         g = np.zeros_like(prescribed)
         force, tangent = self.cell_forces(g)
         residual = g + self.compliance @ force - prescribed
         for _ in range(MAX_NEWTON_STEPS):
-            step = -np.linalg.solve(np.eye(g.size) + tangent.multiply(self.compliance).T, residual)
+            factor = la.cho_factor(tangent.add_to(self._body_stiffness), overwrite_a=True, check_finite=False)
+            step = -la.cho_solve(factor, self._body_stiffness @ residual, check_finite=False)
             for halvings in range(5):
                 g_trial = g + 0.5**halvings * step
                 force, tangent = self.cell_forces(g_trial)
@@ -263,6 +278,15 @@ class CellTangent:
 
     diagonal: Array
     cross: Array
+
+    def add_to(self, matrix: Array) -> Array:
+        """Sum with a matrix (3 n + b, 3 n + b)."""
+        total, index, n = matrix.copy(), np.arange(self.diagonal.size), self.cross.size
+        along_x, along_y = index[n : 2 * n], index[2 * n : 3 * n]
+        total[index, index] += self.diagonal
+        total[along_x, along_y] += self.cross
+        total[along_y, along_x] += self.cross
+        return total
 
     def multiply(self, matrix: Array) -> Array:
         """Product with a matrix (3 n + b, k)."""

@@ -48,13 +48,15 @@ def parse_temperature(option: str, temperature_text: str) -> float:
     match = _TEMPERATURE_PATTERN.fullmatch(temperature_text.strip())
     if not match:
         raise ValueError(
-            f"{option_flag(option)} = {temperature_text!r} is not a temperature; expected 45, 45degC or 318.15K"
+            f"{option_flag(option)} = {temperature_text!r} is not a temperature; expected 45, 45degC "
+            "or 318.15K"
         )
     kelvin = float(match[1]) + (0.0 if match[2] == "K" else CELSIUS_ZERO_IN_KELVIN)
     if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
         low, high = (end - CELSIUS_ZERO_IN_KELVIN for end in LUBRICANT_TEMPERATURES)
         raise ValueError(
-            f"{option_flag(option)} = {temperature_text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; write "
+            f"{option_flag(option)} = {temperature_text!r} is {kelvin:g} K, outside [{low:g}, "
+            f"{high:g}] degC; write "
             "kelvin as 318.15K"
         )
     return kelvin
@@ -78,7 +80,8 @@ def parse_numbers(
     if len(words) != count:
         example = separator.join(["200", "100"][:count])
         raise ValueError(
-            f"{option_flag(option)} = {numbers_text!r} has {len(words)} numbers, expected {count}, as in {example}"
+            f"{option_flag(option)} = {numbers_text!r} has {len(words)} numbers, expected {count}, as "
+            f"in {example}"
         )
     return [parse_number(option, word, unit, target_unit, lower_bound) for word in words]
 

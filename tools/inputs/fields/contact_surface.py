@@ -121,8 +121,10 @@ def _check_surface(contact_surface: ContactSurface) -> None:
     if coincident:
         first, second = min(coincident)
         raise ValueError(
-            f"{contact_surface.describe_node(second)}: is at the same place as {contact_surface.source_result.node_label} "
-            f"{contact_surface.source_result.node_numbers[contact_surface.node_indices[first]]}; give each position once"
+            f"{contact_surface.describe_node(second)}: is at the same place as "
+            f"{contact_surface.source_result.node_label} "
+            f"{contact_surface.source_result.node_numbers[contact_surface.node_indices[first]]}; give "
+            "each position once"
         )
 
 

@@ -184,7 +184,8 @@ def _check_same_nodes(contact_field: ContactField, moment_field: ContactField) -
         i = int(np.argmax(differs))
         raise ValueError(
             f"node {i + 1} of the field with a moment is at {moment_field.position[i].tolist()} m with "
-            f"{moment_field.area[i]:g} m2, expected {contact_field.position[i].tolist()} m with {contact_field.area[i]:g} m2"
+            f"{moment_field.area[i]:g} m2, expected {contact_field.position[i].tolist()} m with "
+            f"{contact_field.area[i]:g} m2"
         )
 
 

@@ -141,7 +141,8 @@ def _check_no_open_nodes(contact_surface: ContactSurface) -> None:
     open_nodes = np.flatnonzero(contact_surface.pressure == 0.0)
     if open_nodes.size:
         raise InputRefusal(
-            f"{contact_surface.describe_node(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
+            f"{contact_surface.describe_node(int(open_nodes[0]))}: is open (no pressure), with "
+            f"{open_nodes.size} of "
             f"{contact_surface.area.size} nodes; state keep (they just touch) or drop (they never touch)",
             "open",
         )

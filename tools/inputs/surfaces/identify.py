@@ -111,7 +111,8 @@ def add_series(first_series: ScaleSeries, second_series: ScaleSeries) -> ScaleSe
     )
     if common.sum() < 4:
         raise ValueError(
-            f"the two surfaces share no scales: {first_series.scale[0]:.3g} to {first_series.scale[-1]:.3g} m and "
+            f"the two surfaces share no scales: {first_series.scale[0]:.3g} to "
+            f"{first_series.scale[-1]:.3g} m and "
             f"{second_series.scale[0]:.3g} to {second_series.scale[-1]:.3g} m"
         )
     first_series = first_series.select(common)

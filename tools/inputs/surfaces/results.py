@@ -206,7 +206,8 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
             lines.append(
                 f"{label}: not self-affine over {result.fit.min_scale:.3g} to "
                 f"{result.fit.max_scale:.3g} m: D drifts by "
-                f"{result.fit.dimension_drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
+                f"{result.fit.dimension_drift:+.2f}, deviation from the law "
+                f"{100.0 * result.fit.deviation:.0f} %"
             )
         if result.fit.decades < 1.0:
             lines.append(f"{label}: the range spans {result.fit.decades:.2f} decades, less than one")

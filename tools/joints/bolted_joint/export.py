@@ -76,7 +76,8 @@ def springs_on_mesh(
     if np.any(distance > allowed):
         worst = int(np.argmax(distance))
         raise ValueError(
-            f"{node_pairs.path}: node {node_pairs.node_labels[worst, 0]} is {distance[worst]:.3g} m off the joint, allowed are "
+            f"{node_pairs.path}: node {node_pairs.node_labels[worst, 0]} is {distance[worst]:.3g} m "
+            "off the joint, allowed are "
             f"{allowed:.3g} m; place and size must be the joint's"
         )
     values = np.stack([shape.preload_pressure_ratio, shape.moment_pressure_ratio], axis=1)
@@ -85,7 +86,8 @@ def springs_on_mesh(
     force = float(share @ equal)
     if abs(force - 1.0) > FORCE_TOLERANCE:
         raise ValueError(
-            f"{node_pairs.path}: the pressures at its nodes carry {force:.3g} times the joint's force, allowed is "
+            f"{node_pairs.path}: the pressures at its nodes carry {force:.3g} times the joint's force, "
+            "allowed is "
             f"within {FORCE_TOLERANCE:.0%}; refine the mesh, or give the pressure at its nodes"
         )
     equal /= force

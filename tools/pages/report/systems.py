@@ -53,7 +53,8 @@ def _resonance_figure(
     body, moving = vibrating_joint.test, vibrating_joint.moving_body.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load_axis.name}",
-        f"The {moving} vibrates freely about a working point, {body.support_description}. First chart: resonance frequency; "
+        f"The {moving} vibrates freely about a working point, {body.support_description}. First chart: "
+        "resonance frequency; "
         "circles are peaks of the spectrum of the simulated signal, the line is the square root of "
         f"{body.stiffness_output} over the inertia of the {moving}. Second chart: free decay at the first "
         f"{body.load_axis.name}, with the envelopes of the stated damping. Friction is left out.",
@@ -81,7 +82,8 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
         f"In a system: free decay of the {name.replace('_', ' ')}",
         f"The {moving}, {body.support_description}, is released from a deflection of {deflection} "
         f"({body.slip_deflection.doc}) at "
-        f"{body.load_axis.display_factor * point.load:g} {body.load_axis.unit}. Circles: frequency and damping "
+        f"{body.load_axis.display_factor * point.load:g} {body.load_axis.unit}. Circles: frequency and "
+        "damping "
         "ratio of the "
         "simulated signal in windows of two to five periods, over the mean amplitude. Line: values from the "
         "energy loss of the joint's hysteresis loops of the same amplitude, with viscous damping"

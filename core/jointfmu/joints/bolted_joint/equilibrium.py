@@ -315,7 +315,10 @@ def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
             H[6:, 6:], H[6:, :6] @ (load_step.end_displacement - load_step.start_displacement)
         )
     except np.linalg.LinAlgError:
-        reason = f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction of 0 of the way"
+        reason = (
+            f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction of 0 of "
+            "the way"
+        )
         raise ValueError(f"{reason}, the tangent stiffness is singular there") from None
     return ModalPredictor(np.asarray(a - change), H[6:, 6:])
 

@@ -173,7 +173,8 @@ class BoltedJointSpring:
         if not (np.isfinite(preload + moment) and low < np.max(approach) < high):
             raise ValueError(
                 f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
-                f"contact after embedding ({self.joint.embedding:g} N), and at most {self.curve.end_point[1]:g} Pa"
+                f"contact after embedding ({self.joint.embedding:g} N), and at most "
+                f"{self.curve.end_point[1]:g} Pa"
             )
         return approach
 

@@ -19,6 +19,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure
@@ -138,9 +139,8 @@ def _first_loading_of_elastic_sides(
 
 def _follow_path(joint: AnyBoltedJoint, preload: float, displacement: Array) -> tuple[Array, Array]:
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], from the virgin state."""
-    columns = (
-        COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload, "s_rel_x": displacement}).columns
-    )
+    inputs: dict[str, ArrayLike] = {"preload": preload, "s_rel_x": displacement}
+    columns = COMPLETE_JOINT.with_parameters(joint).follow(inputs).columns
     return -columns["f_x"], columns["K_xx"]
 
 

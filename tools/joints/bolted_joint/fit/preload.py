@@ -75,9 +75,8 @@ def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "nor
     direction : "normal" (K_zz) or "tangential" (K_xx)
     """
     if joint.has_elastic_members:
-        columns = (
-            COMPLETE_JOINT.with_parameters(joint).follow({"preload": preload}, each_from_rest=True).columns
-        )
+        complete = COMPLETE_JOINT.with_parameters(joint)
+        columns = complete.follow({"preload": preload}, each_from_rest=True).columns
         return columns["K_zz" if direction == "normal" else "K_xx"]
     shape = merged_normalised_pressure(joint.pattern)
     p = preload_pressure(joint, shape, preload, 0.0)

@@ -177,8 +177,10 @@ def _solve_weighted(
             "start",
         )
     raise RuntimeError(
-        f"no law with {', '.join(unknown_sets[-1])} free keeps the angle of {catalogue_row} at T1, T2 and rated torque "
-        f"{catalogue_row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by {100 * best:.2g} %"
+        f"no law with {', '.join(unknown_sets[-1])} free keeps the angle of {catalogue_row} at T1, T2 "
+        "and rated torque "
+        f"{catalogue_row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by "
+        f"{100 * best:.2g} %"
     )
 
 

@@ -296,7 +296,8 @@ def _read_dynamic(
     width = window_size(step)
     if even.size < 2 * width:
         raise ValueError(
-            f"{log_columns.path}: takes {time[-1] - time[0]:.4g} s, expected at least {2 * width * step:.3g} s"
+            f"{log_columns.path}: takes {time[-1] - time[0]:.4g} s, expected at least "
+            f"{2 * width * step:.3g} s"
         )
     samples = dynamic_samples(even, step, columns_by_name, drive)
     if "dq" in columns_by_name and "q" in columns_by_name:
@@ -315,14 +316,16 @@ def _time_step(log_columns: columns.Columns) -> tuple[Array, float]:
     if np.any(wrong := steps <= 0.0):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: time = {time[first + 1]:.9g} s after "
+            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: time = "
+            f"{time[first + 1]:.9g} s after "
             f"{time[first]:.9g} s runs back; expected rising times"
         )
     step = float(np.median(steps))
     if np.any(wrong := steps > GAP_RATIO * step):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
+            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: a gap of "
+            f"{steps[first]:.4g} s, allowed is "
             f"{GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
         )
     if np.max(np.abs(steps - step)) < STEP_TOLERANCE * step:

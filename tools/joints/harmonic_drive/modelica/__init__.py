@@ -80,7 +80,8 @@ MODELICA_COMPONENT = ModelicaComponent(
         "reference": format_number(REFERENCE_TEMPERATURE),
         "width": format_number(PLAY_WIDTH_RATIO),
     },
-    package_note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "
+    package_note="For the drive with a locked wave generator (the FMU "
+    "<code>HarmonicDriveCompliance</code>) fix "
     '<code>flange_a</code> of <a href="modelica://JointStiffness.Components.HarmonicDriveSpring">'
     "HarmonicDriveSpring</a>: an acausal component is its own inverse. With <code>d</code> = 0 and no "
     "inertia set <code>use_damping=false</code>.",

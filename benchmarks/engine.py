@@ -1,0 +1,124 @@
+"""Times of what evaluates a joint at many points: by the library of its FMU, and by the Python law.
+
+    python benchmarks/engine.py [--library-alone]
+
+The joint is the plate of the README. The path of POINTS points is followed in one process, also with the FMU
+step by step in fmpy; the shortest of ROUNDS times counts. Each command is a process of its own, from start to
+end; one run before it compiles what is missing. Seconds of the clock, then of the processors in brackets.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+from jointfmu_tools.run.engine import JointEngine, PythonJoint, open_joint
+from jointfmu_tools.run.ramps.ramp import run_path
+
+import jointfmu
+
+PLATE = ("--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "40", "--material", "steel")
+POINTS, ROUNDS = 200, 3
+MAX_SHEAR_MOTION = 6e-6
+"""Largest displacement along x [m]: the interface slips."""
+MEASURED = {"mu": 0.2, "h": 1.2e-6}
+"""Parameters of the loops that are fitted: {name: value [SI]}."""
+TARGETS = {"follow": 0.1, "plot": 2.0, "report": 3.0, "new": 6.0}
+"""Seconds of the clock on two cores without other work."""
+PYTHON_LAW = "from jointfmu_tools.run import engine; engine.CompiledJoint = engine.PythonJoint; "
+PLOT = "import sys, jointfmu; jointfmu.load(sys.argv[1]).plot().savefig(sys.argv[2])"
+COMMAND = "from jointfmu_tools.cli import main; main()"
+
+Seconds = tuple[float, float]
+"""Seconds of the clock, and of the processors."""
+
+
+def measure(action: Callable[[], object]) -> Seconds:
+    """Time of an action and of the processes that it waits for."""
+    clock, before = perf_counter(), os.times()
+    action()
+    return perf_counter() - clock, sum(os.times()[:4]) - sum(before[:4])
+
+
+def shortest(action: Callable[[], object]) -> Seconds:
+    """Shortest time of an action that runs ROUNDS times."""
+    return min(measure(action) for _ in range(ROUNDS))
+
+
+def run(code: str, *arguments: object) -> None:
+    """Run Python code in a process of its own."""
+    subprocess.run([sys.executable, "-c", code, *map(str, arguments)], check=True, capture_output=True)
+
+
+def shear_cycles() -> np.ndarray:
+    """Displacement (POINTS) [m]: first loading, then whole cycles."""
+    return MAX_SHEAR_MOTION * np.sin(np.linspace(0.0, 4.5 * np.pi, POINTS))
+
+
+def write_loops(joint: jointfmu.Joint, path: Path) -> None:
+    """Write loops of force over displacement as a file of measurements."""
+    columns = joint.with_values(MEASURED).follow(s_rel_x=shear_cycles())
+    table = np.column_stack([columns["s_rel_x"], -columns["f_x"]])
+    np.savetxt(path, table, delimiter=",", header="displacement [m],force [N]", comments="", fmt="%.17g")
+
+
+def compare_paths(file: Path, folder: Path) -> dict[str, Seconds]:
+    """Times of the path: the library, the FMU in fmpy, the Python law."""
+    joint = jointfmu.load(file)
+    model = joint.model()
+    fmu = joint.build(folder, "fmi3")[0]
+    preload = joint.file.start_value("preload")
+
+    def follow(engine: JointEngine) -> Callable[[], object]:
+        return lambda: engine.follow({"s_rel_x": shear_cycles()})
+
+    return {
+        "library": shortest(follow(open_joint(model, joint.file))),
+        "FMU in fmpy": shortest(lambda: run_path(fmu, "s_rel_x", shear_cycles(), {"preload": preload})),
+        "Python law": measure(follow(PythonJoint(model, joint.file))),
+    }
+
+
+def format_seconds(seconds: Seconds | None) -> str:
+    """Seconds of the clock and, in brackets, of the processors."""
+    return "" if seconds is None else f"{seconds[0]:8.2f} ({seconds[1]:.2f})"
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--library-alone", action="store_true", help="omit the commands with the Python law")
+    law_is_measured = not parser.parse_args().library_alone
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        plate, loops, out = folder / "plate.toml", folder / "loops.csv", folder / "out"
+        new = measure(lambda: run(COMMAND, "new", "bolted-joint", *PLATE, "--Ra", "0.8", "--out", plate))
+        write_loops(jointfmu.load(plate), loops)
+        print(f"path of {POINTS} points [s]")
+        for label, seconds in compare_paths(plate, folder).items():
+            print(f"{label:12} {format_seconds((round(seconds[0], 4), seconds[1]))}")
+        fit = ("fit", "loop", loops, "--params", plate, "--out", f"{out}.toml", "--force")
+        commands: dict[str, tuple[object, ...]] = {
+            "plot": (PLOT, plate, f"{out}.png"),
+            "report": (COMMAND, "report", plate, "--out", f"{out}.html", "--force"),
+            "fit loop": (COMMAND, *fit),
+        }
+        print(f"\n{'command [s]':12} {'library':>16} {'Python law':>16} {'ratio':>7} {'target':>7}")
+        print(f"{'new':12} {format_seconds(new):>16} {'':16} {'':7} {TARGETS['new']:7.1f}")
+        for label, (code, *arguments) in commands.items():
+            run(str(code), *arguments)
+            library = measure(lambda c=code, a=arguments: run(c, *a))
+            law = measure(lambda c=code, a=arguments: run(PYTHON_LAW + c, *a)) if law_is_measured else None
+            ratio = f"{law[1] / library[1]:.1f}" if law else ""
+            target = f"{TARGETS[label]:.1f}" if label in TARGETS else ""
+            row = f"{format_seconds(library):>16} {format_seconds(law):>16}"
+            print(f"{label:12} {row} {ratio:>7} {target:>7}")
+
+
+if __name__ == "__main__":
+    main()
