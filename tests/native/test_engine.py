@@ -25,7 +25,7 @@ def a_path(python, seed, count=25):
     ramp, start = model.ramp, {v.name: 0.0 for v in model.inputs}
     inputs = start | {ramp.input_name: ramp.end_value * random.uniform(0.1, 0.9)}
     if model.load_cycle:
-        inputs |= {n: float(v) for n, v in model.load_cycle.settings.items() if n in inputs}
+        inputs |= {n: float(v) for n, v in model.load_cycle.variable_values.items() if n in inputs}
         name, amplitude = model.load_cycle.input_name, model.load_cycle.amplitude
         inputs[name] = amplitude * random.uniform(-1.0, 1.0, count)
     else:
