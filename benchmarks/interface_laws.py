@@ -23,7 +23,7 @@ def solve_by_brentq(law, pressures):
     spots = law.spots()
 
     def residual(u, target):
-        return float(spots.log_total("load", u)[0]) - target
+        return float(spots.log_sum_over_spots("load", u)[0]) - target
 
     return np.array(
         [brentq(residual, -60.0, 60.0, args=(np.log(p * law.A_0),), xtol=1e-12) for p in pressures]

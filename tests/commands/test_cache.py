@@ -50,7 +50,7 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
     monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
-    monkeypatch.setattr(compiled_models, "SHIPPED_FOLDER", tmp_path / "none")
+    monkeypatch.setattr(compiled_models, "SHIPPED_MODEL_FOLDER", tmp_path / "none")
     place = compiled_models._candidate_paths(
         compiled_models.compiled_model_name(model, split_parameters(model, file))
     )[-1]
@@ -122,7 +122,7 @@ def test_what_the_compiler_keeps_is_checked_too(
 
 def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "none"))
-    monkeypatch.setattr(compiled_models, "SHIPPED_FOLDER", tmp_path / "none")
+    monkeypatch.setattr(compiled_models, "SHIPPED_MODEL_FOLDER", tmp_path / "none")
     monkeypatch.setattr(compiled_models, "compile_model", lambda *_: part())
     assert cache.count_cached_files() == (0, 0)
     assert found() == part()

@@ -118,7 +118,7 @@ def test_an_example_runs(
     monkeypatch.setenv(CACHE_ENVIRONMENT_VARIABLE, str(folder / "parts"))  # a user's may be large
     if line.startswith("robot"):
         monkeypatch.setattr(
-            "jointfmu_tools.exchange.robots.pictures.GRID_ANGLES", 7
+            "jointfmu_tools.exchange.robots.pictures.ANGLES_PER_GRID_AXIS", 7
         )  # few poses are drawn as many are
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out

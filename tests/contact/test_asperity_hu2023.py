@@ -111,10 +111,10 @@ def test_totals_are_sums_over_spots(case):
     }
     assert set(s.regime_terms) == set(expected)
     for name, value in expected.items():
-        assert s.total(name, u) == pytest.approx(value, rel=QUAD), name
-    state = law.state(u)
+        assert s.sum_over_spots(name, u) == pytest.approx(value, rel=QUAD), name
+    state = law.contact_quantities(u)
     for symbol, name in {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}.items():
-        assert state[symbol] == s.total(name, u)
+        assert state[symbol] == s.sum_over_spots(name, u)
 
 
 def sheared(law, traction):
@@ -154,7 +154,7 @@ def test_shear_traction(case, tau):
 
         expected += quad(cubed, 0, log(high / start) ** (1 / 3), epsabs=0, epsrel=1e-10, limit=200)[0]
     total = sheared(law, strength).total("tangential", u)
-    full = law.spots().total("tangential", u) / (1 - law.traction_ratio) ** (1 / 3)
+    full = law.spots().sum_over_spots("tangential", u) / (1 - law.traction_ratio) ** (1 / 3)
     # 1 - x cancels at the onset, and a regime may end within round-off of it: 1e-7 of full stick
     assert total == pytest.approx(expected, rel=1e-8, abs=1e-7 * full)
     assert 0 <= total <= full

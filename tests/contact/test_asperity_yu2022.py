@@ -120,10 +120,10 @@ def test_totals_are_sums_over_spots(law, u):
     }
     assert set(s.regime_terms) == set(expected)
     for name, value in expected.items():
-        assert s.total(name, u) == pytest.approx(value, rel=QUAD), name
-    state = law.state(u)
+        assert s.sum_over_spots(name, u) == pytest.approx(value, rel=QUAD), name
+    state = law.contact_quantities(u)
     for symbol, name in {"F": "load", "K_N": "normal", "A_r": "area"}.items():
-        assert state[symbol] == s.total(name, u)
+        assert state[symbol] == s.sum_over_spots(name, u)
     assert state["elastic_fraction"] == pytest.approx(expected["elastic_area"] / expected["area"], rel=QUAD)
 
 
@@ -220,7 +220,7 @@ def test_contact_coefficient_scales_everything():
 @given(law=yu_laws, u=st.floats(0.1, 20.0))
 def test_area(law, u):
     """Eqs. 45, 54 and the elastic part Eq. 59."""
-    paper, state = Paper(law), law.state(u)
+    paper, state = Paper(law), law.contact_quantities(u)
     z, a_l = paper.zeta * (paper.D1 + paper.D2), paper.a_nec * exp(u)
     # a_nec: brentq's 1e-13 in ln a
     assert state["A_r"] == pytest.approx(law.lambda_ * z / (2 - z) * a_l, rel=1e-11)

@@ -101,13 +101,13 @@ def test_totals_are_sums_over_spots(law, u):
         expected = paper.elastic(elastic[name], largest) if name in elastic else 0.0
         if name in plastic:
             expected += paper.plastic(plastic[name][0], largest, plastic[name][1])
-        assert s.total(name, u) == pytest.approx(expected, rel=QUAD), name
+        assert s.sum_over_spots(name, u) == pytest.approx(expected, rel=QUAD), name
 
 
 @given(law=zhao_laws, u=st.floats(0.1, 20.0))
 def test_state_is_made_of_the_sums(law, u):
     paper, s = Paper(law), law.spots()
-    state = law.state(u)
+    state = law.contact_quantities(u)
     largest = paper.ac * np.exp(u)
     for symbol, name in {
         "F": "load",
@@ -117,7 +117,7 @@ def test_state_is_made_of_the_sums(law, u):
         "W_NP": "plastic_work",
         "W_NE": "elastic_work",
     }.items():
-        assert state[symbol] == s.total(name, u)
+        assert state[symbol] == s.sum_over_spots(name, u)
     pressure = law.mu * state["F"] / state["A_r"]  # mu P / A_r
     w_d = paper.elastic(  # Eq. 23 with a = a'/2
         lambda a: 9 * sqrt(pi) * (a / 2) ** 1.5 * pressure**2 / (10 * paper.Gs) * paper.H1, largest
@@ -127,7 +127,7 @@ def test_state_is_made_of_the_sums(law, u):
         largest,
     )
     # the paper's H1 and H2 lose 5 eps/x^3 and eps/x^2 to cancellation; scale: full slip
-    cancelled = 10 * EPS * pressure**2 / paper.Gs * s.total("loop_area", u)
+    cancelled = 10 * EPS * pressure**2 / paper.Gs * s.sum_over_spots("loop_area", u)
     assert state["W_d"] == pytest.approx(w_d, rel=QUAD, abs=cancelled)
     assert state["W"] == pytest.approx(w, rel=QUAD, abs=cancelled)
     assert state["W_e"] == state["W"] - state["W_d"]  # Eq. 27

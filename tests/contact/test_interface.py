@@ -30,7 +30,7 @@ log_pressures = st.floats(np.log(1e-9), np.log(1e13))  # Pa: far beyond any join
 
 
 def load(law, pressure):
-    return law.spots().total("load", solve_largest_spot(law, pressure))
+    return law.spots().sum_over_spots("load", solve_largest_spot(law, pressure))
 
 
 @each_kind
@@ -48,7 +48,7 @@ def test_newton_step(kind, data, v):
     spots = data.draw(RANDOM[kind]).spots()
 
     def log_load(v):
-        return spots.log_total("load", v)[0]
+        return spots.log_sum_over_spots("load", v)[0]
 
     h = 1e-4
     ends = {end for term in spots.regime_terms["load"] for end in (term.lower, term.upper)} - {None}
@@ -88,12 +88,12 @@ def test_shapes(law):
 
 @each_law
 def test_more_points_than_a_block(law, monkeypatch):
-    monkeypatch.setattr(interface, "_BLOCK_SIZE", 150)
+    monkeypatch.setattr(interface, "_INVERSION_BLOCK_SIZE", 150)
     pressure = np.geomspace(1.0, 1e9, 400).reshape(20, 20)
     u = solve_largest_spot(law, pressure)
     assert u.shape == pressure.shape
     assert np.all(np.diff(u.ravel()) > 0)
-    assert law.spots().total("load", u) == pytest.approx(pressure * law.A_0, rel=RESIDUAL)
+    assert law.spots().sum_over_spots("load", u) == pytest.approx(pressure * law.A_0, rel=RESIDUAL)
 
 
 # One parameter of every group that the load depends on, over the decades of its use.
@@ -138,12 +138,12 @@ def test_array_parameters_with_one_pressure(kind, name):
     law = changed(LAWS[kind], {name: values})
     u = solve_largest_spot(law, 1e6)
     assert u.shape == (7,)
-    assert law.spots().total("load", u) == pytest.approx(1e6 * law.A_0 * np.ones(7), rel=RESIDUAL)
+    assert law.spots().sum_over_spots("load", u) == pytest.approx(1e6 * law.A_0 * np.ones(7), rel=RESIDUAL)
 
 
 @array_cases
 def test_array_parameters_with_more_points_than_a_block(kind, name, monkeypatch):
-    monkeypatch.setattr(interface, "_BLOCK_SIZE", 150)
+    monkeypatch.setattr(interface, "_INVERSION_BLOCK_SIZE", 150)
     n = 200
     law = changed(LAWS[kind], {name: np.geomspace(*ARRAYS[kind][name], n)})
     pressure = np.full(n, 1e6)
@@ -265,9 +265,9 @@ def test_no_jump_across_the_regimes(law):
     assert edges.size
     h = 1e-9
     for name in ("load", "normal", "area"):
-        below, above = s.total(name, edges - h), s.total(name, edges + h)
+        below, above = s.sum_over_spots(name, edges - h), s.sum_over_spots(name, edges + h)
         # the slope d ln/du is at most 2.5, where there is something to jump
-        assert np.all(above - below <= 5 * h * np.maximum(above, s.total(name, edges + 1.0)))
+        assert np.all(above - below <= 5 * h * np.maximum(above, s.sum_over_spots(name, edges + 1.0)))
         assert np.all(above >= below)
 
 
@@ -302,7 +302,7 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
         for name, value in flatten_parameters(law).items()
     }
     u = np.array([-20.0, -5.0, -0.5, 0.5, 3.0, 8.0, 20.0])
-    pressure = law.spots().total("load", u) / law.A_0
+    pressure = law.spots().sum_over_spots("load", u) / law.A_0
     before = evaluate_at_pressure(law, pressure)
     after = evaluate_at_pressure(changed(law, scaled), pressure * stress)
     assert before.keys() <= UNITS.keys()
@@ -336,14 +336,14 @@ def test_slope_of_the_stiffness_curve(law, name):
     s = law.spots()
     # away from the edges of the regimes, where the slope jumps; stiff for every law
     u = np.array([0.5, 1.7, 4.1, 9.3, 13.7]) + (5.0 if law is HU else 0.0)
-    pressure = s.total("load", u) / law.A_0
+    pressure = s.sum_over_spots("load", u) / law.A_0
     h = 1e-4
     up, down = (stiffness_curve(law, pressure * np.exp(sign * h), name)[0] for sign in (1, -1))
     k, slope = stiffness_curve(law, pressure, name)
     finite = (up - down) / (2 * np.sinh(h) * pressure)
     # residual 1e-12/h = 1e-8, truncation h^2 = 1e-8 times the third derivative of the logarithms, up to 30
     assert slope == pytest.approx(finite, rel=3e-7)
-    assert k == pytest.approx(s.total(name, u) / law.A_0, rel=10 * RESIDUAL)
+    assert k == pytest.approx(s.sum_over_spots(name, u) / law.A_0, rel=10 * RESIDUAL)
     assert np.all(slope > 0)
 
 
@@ -390,13 +390,13 @@ def test_laws_take_symbols(variant, name):
     law = changed(*VARIANTS[variant])
     clone, symbols = symbolic(law)
     u = casadi.SX.sym("u")
-    total = clone.spots().total(name, u)
-    function = casadi.Function("total", [u, *(symbol for symbol, _ in symbols.values())], [total])
+    total = clone.spots().sum_over_spots(name, u)
+    function = casadi.CFunction("total", [u, *(symbol for symbol, _ in symbols.values())], [total])
     values = [value for _, value in symbols.values()]
     s = law.spots()
     for point in (-12.0, -3.0, -0.4, 0.3, 2.5, 9.0, 15.0, 40.0):
         # two libraries' exp and log, and their order of operations: eps times logarithms of 50 and 1/(D - 1)
-        assert float(function(point, *values)) == pytest.approx(s.total(name, point), rel=1e-12)
+        assert float(function(point, *values)) == pytest.approx(s.sum_over_spots(name, point), rel=1e-12)
 
 
 @pytest.mark.usefixtures("casadi_numpy")
@@ -412,9 +412,9 @@ def test_derivatives_with_respect_to_parameters(kind):
         # at one largest spot, not at one ratio to a reference area that moves with the parameter
         area = reference * np.exp(u)
         spots = clone.spots()
-        total = spots.total("load", np.log(area / spots.reference_area))
+        total = spots.sum_over_spots("load", np.log(area / spots.reference_area))
         inputs = [s for s, _ in symbols.values()]
-        slope = casadi.Function("slope", inputs, [casadi.gradient(total, symbol)])
+        slope = casadi.CFunction("slope", inputs, [casadi.gradient(total, symbol)])
         exact = float(slope(*(v for _, v in symbols.values())))
         h = 1e-5
         up, down = (

@@ -21,7 +21,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import load_parameter_file
 
 NEW = {
-    kind.name.replace("_", "-"): found.NEW
+    kind.name.replace("_", "-"): found.NEW_JOINT_COMMAND
     for kind in KINDS.values()
     if (found := load_tool_module(kind, "new"))
 }

@@ -54,7 +54,7 @@ def test_law_table_keeps_to_the_law(joint, error, request):
     assert p[-1] == pytest.approx(law.hardness, rel=1e-9)
     state = evaluate_at_pressure(law, p[1:])
     np.testing.assert_allclose(k[1:], state["K_N"] / law.A_0, rtol=1e-7)  # the curve is within 1e-8
-    some = np.geomspace(curve.closing_end_load, 0.999 * curve.end[1], 20001)
+    some = np.geomspace(curve.closing_end_load, 0.999 * curve.end_point[1], 20001)
     at = curve.inverse(some) - curve.displacement[0]
     straight = np.max(np.abs(np.interp(at, x, p) / some - 1.0))
     # between the points at which the table was measured the error hardly grows

@@ -89,7 +89,7 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
     """A thin lap under an even pressure: its linear stiffness, then Coulomb's force, over any mesh."""
     lap = Lap.of(0.5)
     _, spring, _ = lap.linear(4.0)
-    bodies = replace(lap.bodies, interface=patches(lap.bodies.contact_interface))
+    bodies = replace(lap.bodies, contact_interface=patches(lap.bodies.contact_interface))
     area = bodies.contact_interface.quadrature_area
     friction = lap.values.mu * LAP_LOAD
     elements = FrictionElements.of(

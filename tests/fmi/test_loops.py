@@ -36,7 +36,7 @@ def test_first_loading_then_whole_cycles(shape):
 @pytest.mark.parametrize("amplitude", range(2))
 def test_hysteresis_appears(drive, amplitude):
     """Area by Masing's rule, from the law and not from the FMU; trapezoids of 400 points, and the sliders."""
-    row = drive.compute_rows()[amplitude]
+    row = drive.compute_loop_results()[amplitude]
     law = hysteresis.make_law(load_default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
     u = np.array([AMPLITUDES[amplitude]])
     assert row["loss"] == pytest.approx(float(law.loop_area(u)[0]), rel=1e-3)

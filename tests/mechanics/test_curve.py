@@ -138,16 +138,16 @@ def test_load_and_stiffness_have_no_jump_at_nodes(curves):
 
 def test_inverse_round_trip(curves):
     for name, curve in curves.items():
-        y = np.concatenate([np.linspace(0.0, 1.5 * curve.end[1], 501), np.geomspace(1e-9, 1.0, 501)])
-        y[501:] *= curve.end[1]
+        y = np.concatenate([np.linspace(0.0, 1.5 * curve.end_point[1], 501), np.geomspace(1e-9, 1.0, 501)])
+        y[501:] *= curve.end_point[1]
         x = curve.inverse(y)
         load, stiffness = curve.derivatives(x, 1)
         # round-off of x moves the load by k eps |x|; the polynomial sums 15 times the load
         segment = np.searchsorted(curve.displacement, x, side="right").clip(1, curve.load.size - 1)
         tolerance = 4.0 * EPS * stiffness * np.abs(x) + 60.0 * EPS * np.maximum(curve.load[segment], y)
         # and the tangent beyond the end has the polynomial's round-off over the last segment
-        beyond = np.maximum(x - curve.end[0], 0.0) / (curve.end[0] - curve.displacement[-2])
-        tolerance += 60.0 * EPS * curve.end[1] * beyond
+        beyond = np.maximum(x - curve.end_point[0], 0.0) / (curve.end_point[0] - curve.displacement[-2])
+        tolerance += 60.0 * EPS * curve.end_point[1] * beyond
         assert np.all(np.abs(load - y) <= tolerance), name
         assert np.all(np.diff(x[501:]) > 0.0)
 
@@ -289,7 +289,7 @@ def test_approach_is_the_integral_of_dp_over_k(law):
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     pressures = np.geomspace(start, 0.999 * law.hardness, 7)
     ends = [end for end in spots.sorted_regime_end_log_areas if end > spots.stiffness_onset_log_area]
-    breaks = [float(spots.total("load", end)) / law.A_0 for end in ends]
+    breaks = [float(spots.sum_over_spots("load", end)) / law.A_0 for end in ends]
 
     def per_decade(t):
         p = np.exp(t)

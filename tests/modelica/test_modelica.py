@@ -192,7 +192,7 @@ def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.Fix
     curve = request.getfixturevalue(kind).curve
     table = records.decimate_curve(curve)
     assert table.rows.shape[0] < curve.displacement.size / 3
-    x = np.linspace(curve.displacement[0], 1.1 * curve.end[0], 20001)[1:]
+    x = np.linspace(curve.displacement[0], 1.1 * curve.end_point[0], 20001)[1:]
     for exact, rough in zip(curve.derivatives(x), records.to_curve(table).derivatives(x), strict=True):
         assert np.all(np.abs(rough - exact) <= EXACT * np.abs(exact))
 

@@ -43,7 +43,7 @@ EVERY = {
 
 def c_of(name: str) -> dict[str, str]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(generate, "_law_texts", {})  # what is kept is of other numbers
+        patch.setattr(generate, "_cached_law_texts", {})  # what is kept is of other numbers
         return generate.generate_sources(name, load_default(MODELS[name].joint))
 
 

@@ -121,9 +121,9 @@ def law_state(case, side):
     if "elastic_fraction" in state:
         elastic = state["elastic_fraction"]
     elif "elastic_area" in s.regime_terms:
-        elastic = s.total("elastic_area", u) / s.total("area", u)
+        elastic = s.sum_over_spots("elastic_area", u) / s.sum_over_spots("area", u)
     else:  # Zhao: the second term of the area is that of the elastic spots
-        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).total("area", u) / s.total(
+        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).total("area", u) / s.sum_over_spots(
             "area", u
         )
     return {

@@ -140,7 +140,7 @@ class PlateJoint:
         ) -> plate_finite_elements.ComputedJoint:
             joint = JointFiniteElements.from_assembly(plates.make_assembly(file), to, refinement)
             if elements:
-                joint = replace(joint, interface=patches(joint.contact_interface))
+                joint = replace(joint, contact_interface=patches(joint.contact_interface))
             springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, shape)
             linear = joint.linearize(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)

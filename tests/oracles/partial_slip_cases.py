@@ -137,7 +137,7 @@ def convex_curve(approach, load):
 def slider_loop_areas(curve, ratio, amplitudes):
     """Loop areas (amplitudes) of the package's sliders at the end of a normal curve."""
     foundation = sliders_at_levels(curve, ratio, 1.0, HEIGHTS)
-    delta, areas = curve.end[0], []
+    delta, areas = curve.end_point[0], []
     for u in amplitudes:
         there = foundation.advance(foundation.virgin_forces(), delta, delta, [u, 0.0])
         back = foundation.advance(there.force, delta, delta, [-2.0 * u, 0.0])

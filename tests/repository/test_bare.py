@@ -28,8 +28,8 @@ EXTRAS = (
 )
 PROGRAM = f"import sys; sys.modules.update(dict.fromkeys({EXTRAS}));"
 FEW = (
-    "from jointfmu_tools.pages.report import course; course._RAMP_POINTS = 11;"
-    "course._LOAD_CYCLE = course.CyclicPath(points=8);"
+    "from jointfmu_tools.pages.report import load_history; load_history._RAMP_POINTS = 11;"
+    "load_history._LOAD_CYCLE = load_history.CyclicPath(points=8);"
 )
 """A page's ramp and loops of few points are drawn as those of many are."""
 MAIN = "from jointfmu_tools.cli import main; sys.exit(main(sys.argv[1:]))"

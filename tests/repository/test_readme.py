@@ -85,7 +85,7 @@ def folder(tmp_path_factory, native):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(bolts, "CELLS_ACROSS_FLANGE", 3)  # few nodes are read as many are
         shape, mean = joint.pattern.pressure_distribution(), 9e3 * joint.n_bolts / joint.A_0
-    field = ContactField(joint.A_0 * shape.area_share, shape.position, mean * shape.preload_shape)
+    field = ContactField(joint.A_0 * shape.area_share, shape.position, mean * shape.preload_pressure_ratio)
     (place / "my_field.csv").write_text(nodal_result.csv_text(field))
     (place / "models/robots").mkdir()
     shutil.copy(ROOT / "models/robots/six_axis.xml", place / "models/robots")

@@ -152,7 +152,7 @@ def create_joint_function(
     doctest_example : call of the function and its result, as in a doctest
     first_option    : option that may be passed as the first positional argument
     """
-    drawing: NewJointCommand = load_tool_module(kind, "new").NEW  # type: ignore[union-attr]
+    drawing: NewJointCommand = load_tool_module(kind, "new").NEW_JOINT_COMMAND  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
     def make_joint(*args: object, **options: object) -> Joint:

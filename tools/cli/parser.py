@@ -121,5 +121,5 @@ def build_parser(words: Sequence[str] = ()) -> CommandLine:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
         module = import_module(f"jointfmu_tools.cli.commands.{COMMAND_MODULES.get(name, name)}")
-        (getattr(module, f"add_{name}") if name in COMMAND_MODULES else module.add)(commands)
+        (getattr(module, f"add_{name}") if name in COMMAND_MODULES else module.add_command)(commands)
     return top

@@ -54,7 +54,7 @@ FLANK_PRESSURE = NominalPressure(
 def nominal_pressure(kind: JointKind) -> NominalPressure | None:
     """Nominal pressure that the joint's folder defines; None if it defines none."""
     module = load_tool_module(kind, "pressure")
-    return module.PRESSURE if module else None
+    return module.NOMINAL_PRESSURE if module else None
 
 
 def judge_joint_stiffness(

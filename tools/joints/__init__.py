@@ -5,6 +5,6 @@ from importlib import import_module
 from ..common.joint_parts import PARTS
 
 _FOLDERS = ("harmonic_drive", "bolted_joint", "gear_contact", "gear_mesh")
-PARTS |= {name: import_module(f".{name}", __name__).PARTS for name in _FOLDERS}
+PARTS |= {name: import_module(f".{name}", __name__).TOOL_PARTS for name in _FOLDERS}
 
 __all__ = ["PARTS"]

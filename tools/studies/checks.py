@@ -68,8 +68,8 @@ def check_ramp(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> lis
         Check(fmu_name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
     ]
     module = load_tool_module(KINDS[MODELS[fmu_name].joint], "checks")
-    if module and fmu_name in module.RAMPS:
-        compared, largest = module.RAMPS[fmu_name](folder, ramp_result)
+    if module and fmu_name in module.RAMP_CHECKS:
+        compared, largest = module.RAMP_CHECKS[fmu_name](folder, ramp_result)
         checks.append(Check(fmu_name, compared, largest, INTEGRATION_TOLERANCE))
     return checks
 

@@ -163,7 +163,7 @@ def load_vibration_test(joint: str) -> VibrationTest:
         raise ValueError(
             f"joint {joint!r} has no free vibration that can be simulated; allowed are {', '.join(joints)}"
         )
-    body: VibrationTest = tool_module.RINGING
+    body: VibrationTest = tool_module.VIBRATION_TEST
     return body
 
 

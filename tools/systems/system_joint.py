@@ -36,7 +36,7 @@ def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, A
 def _load_catalogue_item(name: str, joint: str, item: str) -> ParameterFile:
     """Load a catalogue item for the section `name`, as `jointfmu new` does; raises ValueError."""
     tool_module = load_tool_module(KINDS[joint], "new")
-    if tool_module is None or "catalogue" not in {option.name for option in tool_module.NEW.options}:
+    if tool_module is None or "catalogue" not in {option.name for option in tool_module.NEW_JOINT_COMMAND.options}:
         raise ValueError(f"{name}.catalogue = {item!r}, expected none of a {joint}: it has no catalogue")
     try:
         return _make_catalogue_file(joint, item)
@@ -49,7 +49,7 @@ def _make_catalogue_file(joint: str, item: str) -> ParameterFile:
     """Make the parameter file of a catalogue item; cached, as an arm needs it twice (first for its ratio)."""
     tool_module = load_tool_module(KINDS[joint], "new")
     assert tool_module is not None
-    options = {option.name: None for option in tool_module.NEW.options}
-    file = tool_module.NEW.make_joint(options | {"catalogue": item}).file
+    options = {option.name: None for option in tool_module.NEW_JOINT_COMMAND.options}
+    file = tool_module.NEW_JOINT_COMMAND.make_joint(options | {"catalogue": item}).file
     assert isinstance(file, ParameterFile)
     return file

@@ -27,7 +27,7 @@ class HistoryLayout:
     def __post_init__(self) -> None:
         ends = [*accumulate(map(prod, self.shapes.values()))]
         places = zip(self.shapes, [0, *ends], ends, self.shapes.values(), strict=False)
-        object.__setattr__(self, "_places", tuple(places))
+        object.__setattr__(self, "_variable_slices", tuple(places))
 
     def __or__(self, other_layout: "HistoryLayout") -> "HistoryLayout":
         return HistoryLayout({**self.shapes, **other_layout.shapes})

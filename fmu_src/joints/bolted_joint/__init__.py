@@ -140,7 +140,7 @@ def _draw_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
     left = spring.joint.embedding
     preload = left + LOOP_PRELOAD_RATIO * (ramp_end_preload - left)
     approach = spring.preloaded_approach(preload, 0.0)
-    foundation, share = spring.friction.foundation(), spring.points.area_share
+    foundation, share = spring.friction_law.foundation(), spring.points.area_share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
     slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 

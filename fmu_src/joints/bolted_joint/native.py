@@ -19,7 +19,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         function_graph,
         joint,
         ("normal",),
-        lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)],
+        lambda s, u: [s.sum_over_spots("plastic_work", u), s.sum_over_spots("elastic_work", u)],
     )
     add_closing_function(function_graph)
     head = [
@@ -142,7 +142,7 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
     counts |= {"SLIP_1D": friction.SLIP_1D, "SLIP_2D": friction.SLIP_2D}
     counts |= {
         "MODES": law.MAX_MODES,
-        "ELASTIC": int(function_graph.joint.elastic),
+        "ELASTIC": int(function_graph.joint.has_elastic_members),
         "MAX_NEWTON_ITERATIONS": equilibrium.MAX_NEWTON_ITERATIONS,
         "MAX_LINE_SEARCH": equilibrium.MAX_LINE_SEARCH,
     }

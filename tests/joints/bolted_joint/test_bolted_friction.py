@@ -84,9 +84,9 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     part = force_transfer(points, patches)
     np.testing.assert_allclose(part.sum(axis=0), 1.0, rtol=1e-3)
     assert np.all(part.max(axis=1) > 0.0)
-    force = part @ (points.area_share * points.preload_shape)
+    force = part @ (points.area_share * points.preload_pressure_ratio)
     np.testing.assert_allclose(
-        force, patches.area_share * patches.preload_shape, atol=0.02 / patches.area_share.size
+        force, patches.area_share * patches.preload_pressure_ratio, atol=0.02 / patches.area_share.size
     )
     distance = np.hypot(*(patches.position[:, None] - points.position).transpose(2, 0, 1))
     reach = np.sqrt(points.area_share @ np.min(distance, axis=0) ** 2)
@@ -190,7 +190,7 @@ def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
         place = 1e-12 * (preload > 1e3) * rng.normal(size=6) * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
         _, memory = MODEL.advance(spring, at(place, preload=preload), memory)
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 3e4, 0.0))
-    law = spring.friction.foundation()
+    law = spring.friction_law.foundation()
     compression = float(spring.patches.area_share @ (approach - spring.curve.displacement[0]))
     gross = law.friction_coefficient / law.stiffness_ratio * compression
     amplitude, losses = part * gross, []
@@ -234,7 +234,7 @@ def test_no_closed_path_creates_energy(spring):
 def stored(spring, memory):
     """Elastic energy of the sliders [J]."""
     it = spring.history_layout.split(memory)
-    sliders = spring.friction.foundation(it["onset_approach"], it["min_approach"])
+    sliders = spring.friction_law.foundation(it["onset_approach"], it["min_approach"])
     stiff = sliders.slider_properties(it["approach"]).stiffness[:, None, :]
     each = np.divide(it["force"] ** 2, 2.0 * stiff, out=np.zeros_like(it["force"]), where=stiff > 0.0)
     return JOINT.A_0 * float(spring.patches.area_share @ np.sum(each, axis=(1, 2)))

@@ -56,7 +56,7 @@ def even(spring):
     position = np.array([[0.1, 0.02], [-0.05, 0.1], [-0.025, -0.2]])
     share = np.array([0.4, 0.4, 0.2])
     shape = PressureDistribution(share, position, np.ones(3), np.zeros(3))
-    return replace(spring.on_nodes(shape), joint=replace(JOINT, plastic_damping=True))
+    return replace(spring.with_nodes(shape), joint=replace(JOINT, plastic_damping=True))
 
 
 def total(preload):
@@ -392,7 +392,7 @@ def test_the_sign_of_a_moment_does_not_matter_to_a_symmetric_frame(spring):
 
 def test_beyond_the_table_the_tangent_continues(even):
     """Pressed to more than the hardness: linear from there."""
-    end = even.curve.end[0] - float(even.preloaded_approach(9e3, 0.0)[0])
+    end = even.curve.end_point[0] - float(even.preloaded_approach(9e3, 0.0)[0])
     one, two, three = (even.evaluate(9e3, 0.0, (0.0, 0.0, -end - d), STILL) for d in (1e-6, 2e-6, 3e-6))
     rise = two["f_z"] - one["f_z"]
     assert three["f_z"] - two["f_z"] == pytest.approx(rise, rel=1e-9)  # differences of 1e8 N

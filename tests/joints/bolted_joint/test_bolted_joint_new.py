@@ -433,9 +433,9 @@ def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, m
     for values in files.values():
         bolts = np.array([[-0.03, -0.02], [0.025, -0.01], [0.003, 0.018]])
         shape = values.pattern.pressure_distribution()
-        centre = bolts.mean(axis=0) - (shape.area_share * shape.preload_shape) @ shape.position
+        centre = bolts.mean(axis=0) - (shape.area_share * shape.preload_pressure_ratio) @ shape.position
         near = np.min(np.hypot(*np.moveaxis(shape.position[:, None] + centre - bolts, -1, 0)), axis=1)
-        sums.append(np.sqrt((shape.area_share * shape.preload_shape) @ near**2))
+        sums.append(np.sqrt((shape.area_share * shape.preload_pressure_ratio) @ near**2))
     assert sums[1] == pytest.approx(sums[0], rel=0.12)
 
 

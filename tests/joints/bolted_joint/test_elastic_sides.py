@@ -588,7 +588,7 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     corners = 0.03 * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
     even = ContactField(np.full(4, 1e-3), corners, np.full(4, 15e6))
     alone, _ = insert_field(load_parameter_file(out), even, 15e3, "four nodes")
-    assert not alone.values.elastic
+    assert not alone.values.has_elastic_members
     # its field brought back, with plates of the rectangle around it: on a finer mesh the same joint
     again = ["footprint", "import", str(field), "--open", "keep", *words[3:]]
     assert cli.main([*again, "--thickness", "10", "10", "--out", str(back)]) == 0
@@ -626,7 +626,7 @@ def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path)
     np.savetxt(path, rows, delimiter=",", header="preload [N], stiffness [N/m]", comments="")
     start, true = joint.file.with_values({"h": 4e-6}, "user", "test"), joint.file.values.h
     found = over_preload.fit(path, start)
-    assert found.parameters.values.elastic
+    assert found.parameters.values.has_elastic_members
     assert abs(np.log(found.solution.values["h"] / true)) < 3.0 * found.solution.relative_deviations["h"]
     assert found.solution.relative_deviations["h"] < 0.01
     assert not found.warnings()
@@ -661,7 +661,7 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
     monkeypatch.setattr(loop, "START_VALUES", {})
     start = joint.file.with_values({"h": 1.6e-6, "mu": 0.17}, "user", "test")
     found = loop.fit(path, start, preload=15e3)
-    assert found.parameters.values.elastic
+    assert found.parameters.values.has_elastic_members
     for name, deviation in found.solution.relative_deviations.items():
         assert deviation < 0.03
         ratio = found.solution.values[name] / joint.file.values_by_name[name]

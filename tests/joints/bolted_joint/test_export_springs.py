@@ -147,7 +147,7 @@ def test_meshes_that_do_not_fit_are_refused(joint):
         springs_on_mesh(joint, NodePairs("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
     with pytest.raises(ValueError, match=r"m.csv: node \d+ is .* m off the joint"):
         springs_on_mesh(joint, NodePairs("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
-    peaks = np.argsort(joint.points.preload_shape)[-3:]  # beside bolts only
+    peaks = np.argsort(joint.points.preload_pressure_ratio)[-3:]  # beside bolts only
     coarse = NodePairs("m.csv", labels[:3], joint.points.position[peaks], np.full(3, 0.0382 / 3), None)
     with pytest.raises(
         ValueError, match=r"m.csv: the pressures at its nodes carry .* times the joint's force"

@@ -92,7 +92,7 @@ def test_points_keep_the_sums(reduced):
         start, _, peak = direct(joint, shape, load)
         apart = rng.choice([0.0, rng.uniform(-MAX_COMPRESSION_RATIO, 1.0)]) * (start.max() - lowest)
         _, full, _ = direct(joint, shape, load._replace(opening_ratio=apart))
-        _, few, same = direct(joint, found.reduced_shape, load._replace(opening_ratio=apart))
+        _, few, same = direct(joint, found.reduced_distribution, load._replace(opening_ratio=apart))
         np.testing.assert_array_less(
             np.abs(few[0] - full[0]), RELATIVE_TOLERANCE * np.maximum(full[0], full[1])
         )
@@ -101,15 +101,15 @@ def test_points_keep_the_sums(reduced):
 
 def test_points_balance(reduced):
     _, shape, found = reduced
-    points = found.reduced_shape
+    points = found.reduced_distribution
     assert np.all(points.area_share > 0.0)
     for one in (shape, points):
         assert one.area_share.sum() == pytest.approx(1.0, rel=1e-12)
-        assert one.area_share @ one.preload_shape == pytest.approx(1.0, rel=1e-12)
-        assert one.area_share @ one.moment_shape == pytest.approx(0.0, abs=1e-12)
+        assert one.area_share @ one.preload_pressure_ratio == pytest.approx(1.0, rel=1e-12)
+        assert one.area_share @ one.moment_pressure_ratio == pytest.approx(0.0, abs=1e-12)
         np.testing.assert_allclose(one.area_share @ one.position, 0.0, atol=1e-14)
         # a moment M shifts M/L_a from row to row: the pressures balance it if this is L_a
-        assert one.area_share @ (one.moment_shape * one.position[:, 1]) == pytest.approx(
+        assert one.area_share @ (one.moment_pressure_ratio * one.position[:, 1]) == pytest.approx(
             JOINT.row_distance, rel=1e-6
         )
 

@@ -60,7 +60,7 @@ def test_approach_is_the_integral_of_df_over_K(spring):
 
     spots = spring.joint.spots()
     breaks = [
-        float(spots.total("load", u))
+        float(spots.sum_over_spots("load", u))
         for u in spots.sorted_regime_end_log_areas
         if u > spots.stiffness_onset_log_area
     ]

@@ -154,7 +154,7 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
 
     spots = mesh.spots()
     breaks = [
-        float(spots.total("load", u))
+        float(spots.sum_over_spots("load", u))
         for u in spots.sorted_regime_end_log_areas
         if u > spots.stiffness_onset_log_area
     ]
@@ -207,7 +207,7 @@ def test_the_closing_is_in_series_too(spring):
 @each
 def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
     assert (spring.curve.displacement[0], spring.curve.load[0], spring.curve.stiffness[0]) == (0.0, 0.0, 0.0)
-    assert spring.curve.end[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
+    assert spring.curve.end_point[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
     assert spring.curve.interpolation_error <= MAX_ERROR
     assert np.all(np.diff(spring.curve.load) > 0.0)
 

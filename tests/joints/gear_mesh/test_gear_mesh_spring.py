@@ -45,7 +45,7 @@ def motion(spring, s, roll, rate=0.0):
 @each
 def test_stiffness_is_the_slope_of_the_force(spring):
     """Along the line of action at a fixed phase, from first touch to beyond the table."""
-    s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end[0]
+    s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end_point[0]
     h = 1e-3 * s
     kinks = spring.curve.displacement[1:-1][
         spring.curve.stiffness_slope_end[:-1] != spring.curve.stiffness_slope_start[1:]
@@ -65,7 +65,7 @@ def test_torques_are_the_gradient_of_the_energy(spring):
     """dE/dphi of both wheels by differences, all over the mesh cycle and on both flanks."""
     pitch = base_pitch(spring.joint)
     generator = np.random.default_rng(3)
-    s = generator.choice([-1.0, 1.0], 400) * spring.curve.end[0] * 10.0 ** generator.uniform(-2.0, 0.0, 400)
+    s = generator.choice([-1.0, 1.0], 400) * spring.curve.end_point[0] * 10.0 ** generator.uniform(-2.0, 0.0, 400)
     roll = pitch * generator.uniform(-2.0, 2.0, 400)
     phi = np.array(at(spring, s, roll))
     out = spring.evaluate(phi[0], 0.0, phi[1], 0.0)
@@ -87,7 +87,7 @@ def closed_path(spring, seed, t):
     n = np.array([1, 3, 5, 7])  # the second half of the period is the first one, reversed
     size, shift = generator.normal(size=(2, 4)) / n**2, generator.uniform(0.0, 2.0 * np.pi, (2, 4))
     angle = 2.0 * np.pi * n * t[:, None]
-    largest = (0.5 * spring.joint.backlash + 0.5 * spring.curve.end[0], 1.5 * base_pitch(spring.joint))
+    largest = (0.5 * spring.joint.backlash + 0.5 * spring.curve.end_point[0], 1.5 * base_pitch(spring.joint))
     values, rates = [], []
     for part, move, most in zip(size, shift, largest, strict=True):
         value = np.sin(angle + move) @ part
@@ -272,7 +272,7 @@ def test_symbols(name):
     casadi.GlobalOptions.setNumpyMode(1)
     try:
         out = mesh_outputs(mesh, x[:4], x[5], x[6], x[7], spring.closing_end)
-        function = casadi.Function("f", [symbols], [casadi.vertcat(*out.values())])
+        function = casadi.CFunction("f", [symbols], [casadi.vertcat(*out.values())])
     finally:
         casadi.GlobalOptions.setNumpyMode(before)
     for roll in np.linspace(-1.0, 1.0, 21) * base_pitch(mesh):

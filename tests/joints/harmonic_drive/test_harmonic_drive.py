@@ -208,7 +208,7 @@ def test_table_follows_the_law_between_its_nodes(it, springs):
     T, K = curve.derivatives((x[:-1] + np.linspace(0.0, 1.0, 8)[:, None] * np.diff(x)).ravel(), 1)
     np.testing.assert_allclose(K, drive_stiffness(it, T)[0], rtol=MAX_ERROR)
     assert np.all(np.diff(curve.load) > 0.0)
-    assert curve.end[1] == pytest.approx(it.max_torque, rel=1e-12)  # sinh of asinh
+    assert curve.end_point[1] == pytest.approx(it.max_torque, rel=1e-12)  # sinh of asinh
     assert (x[0], curve.load[0]) == (0.0, 0.0)
 
 
@@ -300,7 +300,7 @@ def test_inverse_is_consistent(springs, name):
 @pytest.mark.parametrize("name", SETS)
 def test_stiffness_is_the_exact_derivative(springs, name):
     spring = springs[name]
-    end = spring.curve.end[0]
+    end = spring.curve.end_point[0]
     for phi in np.geomspace(1e-3, 0.99, 25) * end:
         left = int(np.searchsorted(spring.curve.displacement, phi)) - 1
         a, b = spring.curve.displacement[left : left + 2]
@@ -384,7 +384,7 @@ def test_damping_dissipates(spring):
 
 
 def test_beyond_the_table_the_tangent_continues(spring):
-    end, torque = spring.curve.end
+    end, torque = spring.curve.end_point
     out = still(spring, np.array([end, 1.1 * end, 3.0 * end, -3.0 * end]))
     K = out["K_WTS"][0]
     np.testing.assert_allclose(out["K_WTS"], K, rtol=1e-12)  # round-off

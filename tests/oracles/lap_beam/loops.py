@@ -25,7 +25,7 @@ MOST, SHORT = 200, 1e-4
 
 def foundation(curve, ratio, friction):
     """Sliders of a curve of pressure over approach, K_T/K_N [1] and friction [1]."""
-    end = curve.end[1]
+    end = curve.end_point[1]
     return sliders_at_levels(
         curve, ratio, friction, load_levels(LOWEST, (WORKING[0] / end, WORKING[1] / end), STEP)
     )

@@ -34,7 +34,7 @@ def add_command(command_parsers: SubParsers) -> None:
     things = top.add_subparsers(dest="thing", required=True, metavar="JOINT", parser_class=Parser)
     for kind in KINDS.values():
         if module := load_tool_module(kind, "new"):
-            _declare_joint(things, kind.name.replace("_", "-"), module.NEW)
+            _declare_joint(things, kind.name.replace("_", "-"), module.NEW_JOINT_COMMAND)
     for name, rows in PRINTED_TABLES.items():
         declare_command(things, name, partial(_run_table, rows), f"print the table of known {name}")
 

@@ -99,7 +99,7 @@ def export_contact(
         "stiffness within "
         f"{table.linear_errors[1]:.2g},",
         f"from {curve.closing_end_load:.4g} Pa (below, one line leads to first touch) to "
-        f"{curve.end[1]:.4g} Pa",
+        f"{curve.end_point[1]:.4g} Pa",
         *more,
     ]
     write, notes = _CONTACT_WRITERS[file_format]

@@ -162,7 +162,7 @@ def _default_records(
     joint: str, module: ModuleType, working_points: tuple[WorkingPoint, ...]
 ) -> tuple[ModelicaRecord, ...]:
     """Records of a joint's default parameters; a library written for another joint contains them, too."""
-    component: ModelicaComponent = module.COMPONENT
+    component: ModelicaComponent = module.MODELICA_COMPONENT
     return tuple(component.make_records(load_default(joint), working_points))
 
 

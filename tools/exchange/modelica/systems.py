@@ -126,12 +126,12 @@ def _flange_name(end: ConnectionEnd) -> str | None:
 def _modelica_component(system_component: Part) -> ModelicaComponent:
     """Modelica component of a joint in a system. Raises ValueError if the library has none."""
     module = joint_part(KINDS[system_component.joint_kind], "modelica")
-    if module is None or module.COMPONENT.name != system_component.model_name:
+    if module is None or module.MODELICA_COMPONENT.name != system_component.model_name:
         raise ValueError(
             f"{system_component.name}: the Modelica library has no component of a "
             f"{system_component.model_name}"
         )
-    component: ModelicaComponent = module.COMPONENT
+    component: ModelicaComponent = module.MODELICA_COMPONENT
     return component
 
 

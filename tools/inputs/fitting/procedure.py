@@ -55,7 +55,7 @@ def fit_procedures() -> dict[str, dict[str, Procedure]]:
     result: dict[str, dict[str, Procedure]] = {}
     for kind in KINDS.values():
         module = load_tool_module(kind, "fit")
-        for procedure in module.FITS if module else ():
+        for procedure in module.FIT_PROCEDURES if module else ():
             result.setdefault(procedure.name, {})[kind.name] = procedure
     return result
 

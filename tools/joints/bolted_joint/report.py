@@ -47,7 +47,7 @@ def picture_figure(load_history: LoadHistory) -> Figure:
     preload, moment = _working_point(load_history)
     bodies, bolts = joint.bodies, PlaneLayout.from_joint(joint).bolt_positions
     pictures = [draw_plan(joint, preload, moment)]
-    if joint.elastic and isinstance(bodies, ElasticBodies) and bodies.thickness:
+    if joint.has_elastic_members and isinstance(bodies, ElasticBodies) and bodies.thickness:
         pictures.append(draw_section(joint))
     text = "The tightened interface, seen from side 2; open areas are grey. "
     if isinstance(joint.pattern, NodalField):
@@ -61,7 +61,7 @@ def picture_figure(load_history: LoadHistory) -> Figure:
     )
     text += (
         "Hatched surfaces move rigidly with the connected bodies; the section is schematic."
-        if joint.elastic
+        if joint.has_elastic_members
         else "The sides are rigid: the FMU contains the interface"
         + (" and its bolts." if joint.bolt_stiffness else " only.")
         + " The members, usually much softer, are not included; jointfmu new makes the complete joint from a "
@@ -155,7 +155,7 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     Empty for rigid sides.
     """
     joint, spring = load_history.file.values, load_history.spring
-    if not joint.elastic:
+    if not joint.has_elastic_members:
         return []
     assert isinstance(spring, BoltedJointSpring)
     preload, moment = _working_point(load_history)

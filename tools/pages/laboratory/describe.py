@@ -188,7 +188,7 @@ def pair_conjugate_variables(model: Model) -> dict[str, str]:
 def _laboratory_model(model: Model) -> LaboratoryModel:
     """Additions to the page of a model, from the joint's module `laboratory`; empty if it defines none."""
     module = load_tool_module(KINDS[model.joint], "laboratory")
-    benches: dict[str, LaboratoryModel] = module.LABORATORY if module else {}
+    benches: dict[str, LaboratoryModel] = module.LABORATORY_MODELS if module else {}
     return benches.get(model.name, LaboratoryModel())
 
 

@@ -157,8 +157,8 @@ def _render_page(model: Model, file: ParameterFile) -> str:
     set_status_text("loops")
     loops = course.compute_loops() if model.load_cycle else None
     figures = [ramp_figure(course), *([loop_figure(course, loops)] if loops else [])]
-    if module and model.name in module.FIGURES:
-        figures += module.FIGURES[model.name](course)
+    if module and model.name in module.REPORT_FIGURES:
+        figures += module.REPORT_FIGURES[model.name](course)
     compared = (
         module.CATALOGUE_COMPARISONS[model.name](model, file)
         if module and model.name in module.CATALOGUE_COMPARISONS

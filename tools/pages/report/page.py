@@ -71,7 +71,7 @@ def _tab_template_variables(joint_kind: JointKind, build_result: Any) -> dict[st
 
 def _joint_figures(joint_kind: JointKind, build_result: Any) -> list[Figure]:
     module = load_tool_module(joint_kind, "figures")
-    figures: list[Figure] = module.figures(build_result) if module else []
+    figures: list[Figure] = module.make_figures(build_result) if module else []
     figures += [
         *resonance_figures(build_result.free_vibrations, joint_kind.name, build_result.fmi2_folder),
         *ring_down_figures(build_result.decays, joint_kind.name),

@@ -64,7 +64,7 @@ class ExperimentPlan:
                 "settings": {
                     n: convert_setting(variables[n], value) for n, value in experiment.settings.items()
                 },
-                "kinds": {n: variable_kind(variables[n]) for n in (*inputs, *outputs)},
+                "variable_kinds": {n: variable_kind(variables[n]) for n in (*inputs, *outputs)},
             }
             if stimuli:
                 for key, left_limit in (("inputs", False), ("inputs_before", True)):

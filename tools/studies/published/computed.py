@@ -40,6 +40,6 @@ class PublishedNumbers:
 def load_published_numbers(joint_kind: JointKind) -> PublishedNumbers:
     """Published numbers that a joint defines; without papers if it defines none."""
     own: PublishedNumbers = getattr(
-        load_tool_module(joint_kind, "published"), "PUBLISHED", PublishedNumbers()
+        load_tool_module(joint_kind, "published"), "PUBLISHED_NUMBERS", PublishedNumbers()
     )
     return own

@@ -36,7 +36,7 @@ MODELS = (
             10.0,
             find_range=lambda s, v: (
                 0.0,
-                max(2.0 * v["f"], _RAMP_PRESSURE_RATIO * s.joint.A_0 * s.curve.end[1]),
+                max(2.0 * v["f"], _RAMP_PRESSURE_RATIO * s.joint.A_0 * s.curve.end_point[1]),
             ),
         ),
         dependencies={},

@@ -2,4 +2,4 @@
 
 from jointfmu_tools.common.joint_parts import ToolParts
 
-PARTS = ToolParts(__name__, ("export", "uncertainty"))
+TOOL_PARTS = ToolParts(__name__, ("export", "uncertainty"))

@@ -283,7 +283,7 @@ def fit(
         SERIES_STIFFNESS: [times * measured_rest for times in SERIES_STIFFNESS_START_RATIOS[1:]],
     }
     is_joint_alone = series_stiffness is None and SERIES_STIFFNESS not in names
-    is_corrected = data.kind == "loops" and file.values.elastic and is_joint_alone
+    is_corrected = data.kind == "loops" and file.values.has_elastic_members and is_joint_alone
 
     def correct_measurement(parameter_values: Mapping[str, float]) -> Measurement:
         assert isinstance(data.data, Loops)

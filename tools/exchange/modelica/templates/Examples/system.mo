@@ -11,7 +11,7 @@
 <% endfor %>
 <%- for part in parts %>
   << part.type >> << part.name >><% if part.modifications %>(<< part.modifications >>)<% endif %>
-    annotation (Placement(transformation(extent={{<< part.x - 10 >>,<< part.y - 10 >>},{<< part.x + 10 >>,<< part.y + 10 >>}})));
+    annotation (Placement(transformation(extent={{<< part.diagram_x - 10 >>,<< part.diagram_y - 10 >>},{<< part.diagram_x + 10 >>,<< part.diagram_y + 10 >>}})));
 <%- endfor %>
 equation
 <%- for one, other, line in lines %>

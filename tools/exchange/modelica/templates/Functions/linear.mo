@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function linear "Linear interpolation; beyond its ends the last value"
-  extends Modelica.Icons.Function;
+  extends Modelica.Icons.CFunction;
   input Real x "Argument";
   input Real table[:, 2] "Argument, value";
   output Real y "Value";
