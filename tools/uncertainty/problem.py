@@ -115,7 +115,10 @@ def state_problem(
         "to": float(loads[-1]),
         "points": loads.size,
     }
-    ramp = JointRamp(nominal, loads, relative)
+    model = KINDS[file.joint].find_model(curves.model).with_parameters(file.joint, file.values)
+    exposed = {*model.parameter_fields(), curves.load.name}
+    reopens = any(parameter.name not in exposed for parameter in order)
+    ramp = JointRamp(nominal, loads, relative, reopens)
     return Problem(file.joint, curves.load, loads, curves.units, order, {}, ramp, record)
 
 

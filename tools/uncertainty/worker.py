@@ -151,22 +151,30 @@ class JointRamp:
 
     loads            : load ramp (m), ascending
     load_is_relative : whether a sample of the load is a factor on the ramp; else it replaces the last load
+    reopens          : whether each sample opens the joint, for parameters that the FMU does not expose; this
+        takes seconds
     rows             : indices of the loads that are evaluated; None: all
     key              : identifies the study
     """
 
-    runs_per_job: ClassVar[int] = 32
-
     file: ParameterFile
     loads: Array
     load_is_relative: bool = False
+    reopens: bool = False
     rows: Array | None = None
     key: str = field(default_factory=lambda: str(uuid4()))
 
     @property
+    def runs_per_job(self) -> int:
+        """See `RampEvaluator`."""
+        return 1 if self.reopens else 32
+
+    @property
     def runs_per_process(self) -> int:
         """See `RampEvaluator`: no processes for a joint that only this process has registered."""
-        return 512 if KINDS[self.file.joint].package.startswith("jointfmu.") else sys.maxsize
+        if not KINDS[self.file.joint].package.startswith("jointfmu."):
+            return sys.maxsize
+        return 4 if self.reopens else 512
 
     def __getstate__(self) -> dict[str, Any]:
         """State for pickle: a parameter set may hold functions in its cached properties."""
