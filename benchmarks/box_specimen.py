@@ -13,8 +13,8 @@ from pathlib import Path
 
 import box_specimen_lengths as box
 import numpy as np
-from jointfmu_tools import plots
-from jointfmu_tools.published.reference import read_points
+from jointfmu_tools.common import plots
+from jointfmu_tools.studies.published.reference import read_points
 from numpy.typing import NDArray
 from published_marks import published_mark
 

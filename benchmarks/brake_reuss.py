@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 from brake_reuss_cases import Curves, beam, data, form, laws, published, solid_bar
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from lap_beam_loops import Joint, damping, foundation, frequency, masing
 from lap_beam_plan import Fineness
 from lap_beam_reduction import Structure, reduced, spectrum

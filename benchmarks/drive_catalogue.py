@@ -9,7 +9,7 @@ import csv
 import math
 from importlib.resources import files
 
-from jointfmu_tools.catalogue import CatalogueEntry
+from jointfmu_tools.inputs.catalogue import CatalogueEntry
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.efficiency import (
     drives_with_friction,

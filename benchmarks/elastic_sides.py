@@ -25,8 +25,8 @@ from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.fem.reduction.states import CellJoint, CellLoads
 from jointfmu_tools.fem.whole_joint import JointFiniteElements, LinearJoint
-from jointfmu_tools.host import Instance, open_instance, unpack_fmu
 from jointfmu_tools.joints.bolted_joint.new import NEW, plate_finite_elements
+from jointfmu_tools.run.host import Instance, open_instance, unpack_fmu
 from lap_beam_reduction import patches as one_each
 from numpy.typing import NDArray
 from patch_reduction import gross_slip, poles_inside

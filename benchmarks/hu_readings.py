@@ -8,7 +8,7 @@ corrected law for the reading P = F_r/A_0, and the drives at the end.
 from dataclasses import replace
 
 import numpy as np
-from jointfmu_tools.published.reference import read_points
+from jointfmu_tools.studies.published.reference import read_points
 from scipy.optimize import brentq
 
 from jointfmu.contact.interface import evaluate_at_pressure

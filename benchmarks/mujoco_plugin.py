@@ -15,8 +15,8 @@ import fmpy
 import mujoco
 import numpy as np
 from jointfmu_fmu_src.building import build
-from jointfmu_tools.host import Instance
-from jointfmu_tools.mujoco import plugin
+from jointfmu_tools.exchange.mujoco import plugin
+from jointfmu_tools.run.host import Instance
 
 NAME = "HarmonicDriveSpring"
 JOINTS, STEPS, REPEATS, PYTHON_STEPS = 6, 2000, 21, 200

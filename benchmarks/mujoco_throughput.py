@@ -17,9 +17,9 @@ from time import process_time
 
 import mujoco
 import numpy as np
-from jointfmu_tools.interface import drive
-from jointfmu_tools.robots import elastic, plugged
-from jointfmu_tools.robots.transmission import make_transmission
+from jointfmu_tools.api import drive
+from jointfmu_tools.exchange.robots import elastic, plugged
+from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from mujoco import rollout
 
 ROBOT = Path(__file__).parents[1] / "models/robots/six_axis.xml"

@@ -7,7 +7,7 @@ inversion alone, the inversion with all quantities, brentq, and the ratio of the
 from time import perf_counter
 
 import numpy as np
-from jointfmu_tools.laws import LAWS, build_law_parameters
+from jointfmu_tools.inputs.laws import LAWS, build_law_parameters
 from scipy.optimize import brentq
 
 from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot

@@ -1,6 +1,6 @@
 """How published numbers are drawn."""
 
-from jointfmu_tools.published.reference import ROLES
+from jointfmu_tools.studies.published.reference import ROLES
 
 _MARKERS = {
     "calibration": {"marker": "o", "mfc": "white"},

@@ -17,8 +17,8 @@ from elastic_ring.forms import (
     opposite_forces_in_elements,
 )
 from elastic_ring.ring import Ring
-from jointfmu_tools import plots
-from jointfmu_tools.published.reference import read_points
+from jointfmu_tools.common import plots
+from jointfmu_tools.studies.published.reference import read_points
 
 from jointfmu.joints.harmonic_drive.law import pair_stiffness, peak_pressure
 from jointfmu.parameters import load_default

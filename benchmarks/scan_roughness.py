@@ -5,9 +5,9 @@ Gaussian self-affine surfaces that go on beyond the scan, read as `jointfmu surf
 
 import band_of_waves
 import numpy as np
-from jointfmu_tools import fractal
-from jointfmu_tools.surfaces import form
-from jointfmu_tools.surfaces.form import remove_form
+from jointfmu_tools.inputs import fractal
+from jointfmu_tools.inputs.surfaces import form
+from jointfmu_tools.inputs.surfaces.form import remove_form
 from surface_round_trip import FRESH, gaussian
 
 SHARES = (1.0, 0.5, 0.25)

@@ -3,7 +3,7 @@
 import numpy as np
 import slip_cases as cases
 import slip_theory as theory
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from validity_pictures import IMAGES
 
 STATIONS = np.polynomial.legendre.leggauss(12)

@@ -8,10 +8,10 @@ import sys
 from time import perf_counter
 
 import numpy as np
-from jointfmu_tools import fractal
-from jointfmu_tools.surfaces import synthesis
-from jointfmu_tools.surfaces.heights import ArealMap, Profile
-from jointfmu_tools.surfaces.identify import identify
+from jointfmu_tools.inputs import fractal
+from jointfmu_tools.inputs.surfaces import synthesis
+from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
+from jointfmu_tools.inputs.surfaces.identify import identify
 
 DIMENSIONS = (1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8)
 ROUGHNESSES = (1e-12, 1e-9, 1e-7)

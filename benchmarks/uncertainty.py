@@ -5,8 +5,8 @@ One process, one core: set OPENBLAS_NUM_THREADS=1.
 
 from time import process_time
 
-from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty import propagate
+from jointfmu_tools.studies.uncertainty.problem import state_problem
 
 from jointfmu.parameters import load_default
 

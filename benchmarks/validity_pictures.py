@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import interface_laws as compare
 import numpy as np
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from measured_joints import measured
 from validity_tables import IMAGES
 

@@ -3,10 +3,10 @@
 import band_of_waves
 import numpy as np
 import pytest
-from jointfmu_tools import fractal
-from jointfmu_tools.surfaces import form, synthesis
-from jointfmu_tools.surfaces.form import remove_form
-from jointfmu_tools.surfaces.heights import ArealMap, Profile
+from jointfmu_tools.inputs import fractal
+from jointfmu_tools.inputs.surfaces import form, synthesis
+from jointfmu_tools.inputs.surfaces.form import remove_form
+from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
 
 SIZE, POINTS, G = 1e-3, 256, 1e-9
 

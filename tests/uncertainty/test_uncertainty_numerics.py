@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools.uncertainty import propagate, study, worker
-from jointfmu_tools.uncertainty.curves import spline_weights
-from jointfmu_tools.uncertainty.problem import state_problem
-from jointfmu_tools.uncertainty.runs import evaluate_runs
-from jointfmu_tools.uncertainty.study import parse_distribution
+from jointfmu_tools.studies.uncertainty import propagate, study, worker
+from jointfmu_tools.studies.uncertainty.curves import spline_weights
+from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.runs import evaluate_runs
+from jointfmu_tools.studies.uncertainty.study import parse_distribution
 from scipy import stats
 from scipy.interpolate import CubicSpline
 

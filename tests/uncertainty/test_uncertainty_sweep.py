@@ -18,13 +18,13 @@ import pytest
 from clients import needs
 from conftest import refused_line, run_host
 from jointfmu_tools import cli
-from jointfmu_tools.ramps import ramp
-from jointfmu_tools.uncertainty import journal
-from jointfmu_tools.uncertainty.problem import state_problem
-from jointfmu_tools.uncertainty.runs import Execution, evaluate_runs
-from jointfmu_tools.uncertainty.study import unit_cube_points
-from jointfmu_tools.uncertainty.sweep import state_fmu_problem
-from jointfmu_tools.uncertainty.worker import FmuRamp, LoadRamp
+from jointfmu_tools.run.ramps import ramp
+from jointfmu_tools.studies.uncertainty import journal
+from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.runs import Execution, evaluate_runs
+from jointfmu_tools.studies.uncertainty.study import unit_cube_points
+from jointfmu_tools.studies.uncertainty.sweep import state_fmu_problem
+from jointfmu_tools.studies.uncertainty.worker import FmuRamp, LoadRamp
 
 from jointfmu.parameters import format_parameter_file, load_default
 
@@ -47,7 +47,9 @@ def cluster():
     import dask
     from distributed import LocalCluster
 
-    multiprocessing.set_forkserver_preload(["distributed", "fmpy", "jointfmu_tools.uncertainty.worker"])
+    multiprocessing.set_forkserver_preload(
+        ["distributed", "fmpy", "jointfmu_tools.studies.uncertainty.worker"]
+    )
     how = "spawn" if sys.platform == "win32" else "forkserver"
     with (
         dask.config.set({"distributed.worker.multiprocessing-method": how}),

@@ -9,7 +9,7 @@ from jointfmu.joints.bolted_joint.law import slip_force
 from jointfmu.joints.model import Variable
 from jointfmu.quantity import Array
 
-from ...uncertainty.curves import DerivedOutput, JointSample, LoadCurves, spline_weights
+from ...studies.uncertainty.curves import DerivedOutput, JointSample, LoadCurves, spline_weights
 
 INTERFACE = {"sides": "rigid", "bolt_stiffness": 0.0, "memory": True}
 """Parameters of the interface alone: rigid members, no bolts in parallel, friction with slip."""

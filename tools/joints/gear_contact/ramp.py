@@ -10,9 +10,9 @@ from jointfmu.joints.gear_contact.spring import GearContact
 from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
-from ...job.checks import integrate_logarithmically, relative_deviation
-from ...ramps.ramp import RampResult
-from ...report.figure import Figure, Panel, Series
+from ...pages.report.figure import Figure, Panel, Series
+from ...run.ramps.ramp import RampResult
+from ...studies.checks import integrate_logarithmically, relative_deviation
 
 
 def _check_approach(folder: Path, result: RampResult) -> tuple[str, float]:

@@ -2,7 +2,7 @@
 
 from jointfmu.joints.gear_contact import KIND
 
-from ...uncertainty.curves import LoadCurves
+from ...studies.uncertainty.curves import LoadCurves
 
 CURVES = LoadCurves(
     model="GearContact",

@@ -11,9 +11,9 @@ from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs_in_
 from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
-from ...job.checks import integrate_logarithmically, relative_deviation
-from ...ramps.ramp import RampResult
-from ...report.figure import Figure, Panel, Series
+from ...pages.report.figure import Figure, Panel, Series
+from ...run.ramps.ramp import RampResult
+from ...studies.checks import integrate_logarithmically, relative_deviation
 
 _CLOSED_FORCE = 10.0
 """Force [N] of a tooth pair above which its contact is closed, with the default parameters."""

@@ -6,7 +6,7 @@ Wheel 2 is fixed where the flanks touch at phi1 = 0: s_rel = r_b1 phi1, and no a
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import MeshParameters
 
-from ...uncertainty.curves import LoadCurves
+from ...studies.uncertainty.curves import LoadCurves
 
 RAMP_END_RATIO = 0.05
 """Default end of the ramp over `largest_table_angle` [1]."""

@@ -2,7 +2,7 @@
 
 from jointfmu.joints.harmonic_drive import KIND
 
-from ...uncertainty.curves import LoadCurves
+from ...studies.uncertainty.curves import LoadCurves
 
 CURVES = LoadCurves(
     model="HarmonicDriveCompliance",

@@ -1,7 +1,7 @@
 """Force of the spring over its elongation."""
 
 import numpy as np
-from jointfmu_tools.uncertainty.curves import LoadCurves
+from jointfmu_tools.studies.uncertainty.curves import LoadCurves
 
 from .. import KIND
 

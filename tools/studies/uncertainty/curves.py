@@ -1,0 +1,108 @@
+"""Quantities of a joint along a load ramp. Its tool module `uncertainty` states them."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from jointfmu.joints.kind import JointKind
+from jointfmu.joints.model import Variable
+from jointfmu.quantity import Array
+
+from ...common.joint_parts import load_tool_module
+
+
+class JointSample(Protocol):
+    """Joint with the parameters of one sample."""
+
+    @property
+    def parameters(self) -> Any:
+        """Parameter set, without checks."""
+
+    def follow(
+        self, inputs: Mapping[str, Array], settings: Mapping[str, Any] | None = None
+    ) -> Mapping[str, Array]:
+        """Evaluate the joint at inputs (n), each reached from the virgin state: all outputs (n) [SI].
+
+        settings : {parameter: value} in place of its value in the sample
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class DerivedOutput:
+    """Quantity that is computed from several evaluations of the joint. Without load it is 0.
+
+    variable : its name, unit and meaning
+    compute  : function (sample, loads (m) above zero, ascending) -> values (m); the last load is the end of
+        the ramp
+    """
+
+    variable: Variable
+    compute: Callable[[JointSample, Array], Array]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadCurves:
+    """Quantities of a joint along a load ramp.
+
+    model    : name of the FMU that is evaluated
+    load     : the ramped input
+    outputs  : outputs of the FMU
+    knots    : number of loads at which the FMU is evaluated if the ramp has more loads; between them the
+        outputs are interpolated by cubic splines. None: at all loads
+    derived  : further quantities
+    default_end  : function, parameter set -> default end of the ramp
+    max_load     : function, parameter set -> largest load of the tabulated law
+    settings     : {parameter: value} during the ramp, in place of its value in the sample
+    other_inputs : function, parameter set -> {input: value}
+    """
+
+    model: str
+    load: Variable
+    outputs: Sequence[Variable]
+    knots: int | None = None
+    derived: Sequence[DerivedOutput] = ()
+    default_end: Callable[[Any], float]
+    max_load: Callable[[Any], float]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    other_inputs: Callable[[Any], Mapping[str, float]] = lambda parameters: {}
+
+    @property
+    def units(self) -> dict[str, str]:
+        """{quantity: unit}."""
+        return {v.name: v.unit for v in (*self.outputs, *(quantity.variable for quantity in self.derived))}
+
+
+def load_curves(kind: JointKind) -> LoadCurves:
+    """Load the quantities along a ramp of a kind of joint, from its module `uncertainty`.
+
+    Raises ValueError if the joint has none.
+    """
+    module = load_tool_module(kind, "uncertainty")
+    if module is None:
+        raise ValueError(f"joint = {kind.name!r} states no quantities along a load ramp")
+    curves: LoadCurves = module.CURVES
+    return curves
+
+
+def spline_weights(knots: Array, points: Array, derivative: int = 0) -> Array:
+    """Weights (points, knots) of the values of a cubic spline at its knots, for its values at points.
+
+    derivative : order of the derivative; -1: integral from the first knot
+
+    The samples of a study have the same knots and points but for round-off: both are rounded to 1e-12.
+    """
+    return _spline_weights(np.round(knots, 12).tobytes(), np.round(points, 12).tobytes(), derivative)
+
+
+@lru_cache(maxsize=16)
+def _spline_weights(knots: bytes, points: bytes, derivative: int) -> Array:
+    x = np.frombuffer(knots)
+    spline = CubicSpline(x, np.eye(x.size))
+    spline = (
+        spline.antiderivative() if derivative < 0 else spline.derivative(derivative) if derivative else spline
+    )
+    return np.asarray(spline(np.frombuffer(points)))

@@ -1,0 +1,100 @@
+"""Uncertainty study of an FMU: a load ramp in the importer for each sample."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from fnmatch import fnmatch
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
+
+from jointfmu.files import archives
+from jointfmu.files.reading import read_bytes
+from jointfmu.joints.model import Variable
+from jointfmu.parameters import ParameterFile, load_parameter_file
+from jointfmu.quantity import Array
+from jointfmu.quantity.refusal import InputRefusal
+
+from ...common import columns
+from ...run.host import unpack_fmu
+from ...run.ramps import ramp
+from . import journal
+from .problem import INTERVAL_SETTING, Problem, resolve_interval
+from .propagate import QUANTILES
+from .study import split_settings
+from .worker import FmuRamp, LoadRamp
+
+
+def state_fmu_problem(fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object]) -> Problem:
+    """State the problem of an FMU and settings.
+
+    settings : {name: value or text of a distribution} of parameters and inputs
+
+    Raises ValueError for a file that is not an FMU, an unknown name, a wrong distribution or ramp.
+    """
+    loads = ramp.ramp_points(load_ramp.to, load_ramp.step)
+    with unpack_fmu(fmu) as (_, description):
+        variables = {v.name: v for v in description.modelVariables}
+    inputs = [v.name for v in variables.values() if v.causality == "input"]
+    settable = [v.name for v in variables.values() if v.causality in ("input", "parameter")]
+    if load_ramp.input not in inputs:
+        raise ValueError(f"{fmu}: unknown input {load_ramp.input!r}, allowed are {', '.join(inputs)}")
+    for name in settings:
+        if name not in settable:
+            raise ValueError(f"{fmu}: unknown name {name!r}, allowed are {', '.join(settable)}")
+        if name == load_ramp.input:
+            raise ValueError(f"{fmu}: {name} is the input of the ramp; do not set it too")
+    if INTERVAL_SETTING in settings.values():
+        file = _parameter_file_of(fmu)
+        settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
+    real = [name for name in settable if variables[name].type in ("Real", "Float64")]
+    plain, uncertain = split_settings(settings, {name: float(variables[name].start or 0.0) for name in real})
+    if not uncertain:
+        raise InputRefusal(
+            "no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings"
+        )
+    if wrong := [parameter for parameter in uncertain if parameter.name not in real]:
+        raise ValueError(
+            f"{fmu}: {wrong[0].name} = {wrong[0].text}: is not a real number and cannot be uncertain"
+        )
+    record = {
+        "fmu": fmu.name,
+        "fmu_sha256": journal.sha256_text(read_bytes(fmu, "an FMU")),
+        **asdict(load_ramp),
+    }
+    driven = variables[load_ramp.input]
+    load = Variable(driven.name, driven.unit or "1", driven.description or "")
+    units = {v.name: v.unit or "1" for v in variables.values() if v.causality == "output"}
+    return Problem(fmu.name, load, loads, units, uncertain, plain, FmuRamp(fmu, load_ramp), record)
+
+
+def _parameter_file_of(fmu: Path) -> ParameterFile:
+    """Load the parameter file that an FMU contains with its experiments.
+
+    Raises ValueError if the FMU contains none.
+    """
+    with archives.open_archive(fmu) as archive, TemporaryDirectory() as folder:
+        members = [
+            name for name in archive.namelist() if fnmatch(name, f"{REFERENCE_FOLDER}/parameters/*.toml")
+        ]
+        if parameter_files := [name for name in members if Path(name).name != "study.toml"]:
+            file = Path(folder, Path(parameter_files[0]).name)
+            file.write_bytes(archives.read_member(archive, parameter_files[0]))
+            return load_parameter_file(file)
+    raise ValueError(f"{fmu}: contains no parameter file; state LOW..HIGH in place of {INTERVAL_SETTING}")
+
+
+def format_runs_csv(folder: Path, units: Mapping[str, str]) -> str:
+    """CSV text: quantiles of each output at each point of the ramp, over all runs that did not fail."""
+    runs: dict[str, list[Array]] = {}
+    for entry in journal.read_entries(folder):
+        for name, values in entry.get("columns", {}).items():
+            runs.setdefault(name, []).append(np.asarray(values, dtype=np.float64))
+    driven, *outputs = runs
+    heads: list[columns.ColumnHead] = [(driven, units[driven])]
+    table = [runs[driven][0]]
+    for name in outputs:
+        heads += [(f"{name} {100 * q:g} %", units[name]) for q in QUANTILES]
+        table += list(np.quantile(np.stack(runs[name]), QUANTILES, axis=0))
+    return columns.format_table(heads, table)

@@ -1,0 +1,336 @@
+"""Evaluation of one run of a study, in a worker process: a joint or an FMU along its load ramp."""
+
+import sys
+import tempfile
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from threading import local
+from typing import Any, ClassVar, Protocol, TypeAlias
+from uuid import uuid4
+
+import numpy as np
+
+from jointfmu.files import archives
+from jointfmu.files.text import MAX_TEXT_LENGTH, replace_unprintable
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array, Interval, assemble_parameter_set
+
+from ...run.engine import JointEngine, open_joint
+from ...run.host import is_needed_to_run
+from ...run.ramps import ramp
+from .curves import LoadCurves, load_curves, spline_weights
+
+KILLED_MESSAGE = "the process of the run died"
+"""Error message in the journal for a run whose process died."""
+LOAD_LIMIT_TEXT = "up to the end of the tabulated law"
+"""Meaning of the load interval, for error messages."""
+
+Settings: TypeAlias = Mapping[str, Any]
+"""{name: value} of a run: its sampled parameters and inputs, and others that the study sets."""
+Run: TypeAlias = tuple[int, Settings]
+"""Index of a run in its study, and its settings."""
+Entry: TypeAlias = dict[str, Any]
+"""Journal entry of a run: `run`, `parameters`, and `columns` {variable: values (m)} or `error`."""
+
+
+class RampEvaluator(Protocol):
+    """Evaluation of the runs of a study. It can be pickled.
+
+    runs_per_job     : number of runs that a worker process does at once
+    runs_per_process : number of runs for which a process is started. If there are fewer, the process of the
+        command does them; 0: it does none
+    """
+
+    @property
+    def runs_per_job(self) -> int: ...
+
+    @property
+    def runs_per_process(self) -> int: ...
+
+    def pack(self) -> "RampEvaluator":
+        """Evaluator with the content of its files, to be sent to another machine."""
+
+    def install(self, folder: Path) -> "RampEvaluator":
+        """Evaluator that has its files in a folder of this machine."""
+
+    def run(self, index: int, settings: Settings) -> Entry:
+        """Evaluate a run: its journal entry."""
+
+
+def run_job(job: tuple[RampEvaluator, Path, Sequence[Run]]) -> list[Entry]:
+    """Do some runs in a worker process of this machine: their journal entries.
+
+    job : evaluator, folder of temporary files, runs
+    """
+    evaluator, folder, runs = job
+    tempfile.tempdir = str(folder)
+    return [evaluator.run(index, settings) for index, settings in runs]
+
+
+def _failed_entry(index: int, settings: Settings, error: str) -> Entry:
+    return {
+        "run": index,
+        "parameters": dict(settings),
+        "error": replace_unprintable(error)[:MAX_TEXT_LENGTH],
+    }
+
+
+def killed_entry(index: int, settings: Settings) -> Entry:
+    """Journal entry of a run whose process died."""
+    return _failed_entry(index, settings, KILLED_MESSAGE)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadRamp:
+    """Load ramp of all runs of an FMU: name of the driven input, end and step [unit of the input].
+
+    See `ramp.run_ramp`.
+    """
+
+    input: str
+    to: float
+    step: float
+
+
+@dataclass(frozen=True)
+class FmuRamp:
+    """Load ramp of an FMU. See `RampEvaluator`.
+
+    content : of the FMU, if it is to be sent to another machine
+    """
+
+    runs_per_job: ClassVar[int] = 1
+    runs_per_process: ClassVar[int] = 0
+
+    fmu: Path
+    load_ramp: LoadRamp
+    content: bytes | None = None
+
+    def pack(self) -> "FmuRamp":
+        """See `RampEvaluator.pack`."""
+        return replace(self, content=self.fmu.read_bytes())
+
+    def install(self, folder: Path) -> "FmuRamp":
+        """Write a copy of the FMU without what no run needs, so that each run unpacks it faster."""
+        full, slim = self.fmu, folder / self.fmu.name
+        if self.content is not None:
+            full = folder / f"{slim.name}.full"
+            full.write_bytes(self.content)
+        write_slim_fmu(full, slim)
+        if self.content is not None:
+            full.unlink()
+        return replace(self, fmu=slim, content=None)
+
+    def run(self, index: int, settings: Settings) -> Entry:
+        """See `RampEvaluator.run`; settings are start values of parameters and inputs."""
+        drive = self.load_ramp
+        try:
+            result = ramp.run_ramp(self.fmu, drive.input, drive.to, drive.step, settings)
+        except (ValueError, RuntimeError) as error:
+            return _failed_entry(index, settings, str(error).replace(str(self.fmu), self.fmu.name))
+        if not_finite := [key for key, column in result.columns.items() if not np.all(np.isfinite(column))]:
+            return _failed_entry(index, settings, f"{not_finite[0]} is not finite")
+        columns = {key: column.tolist() for key, column in result.columns.items()}
+        return {"run": index, "parameters": dict(settings), "columns": columns}
+
+
+def write_slim_fmu(fmu: Path, slim_path: Path) -> None:
+    """Write a copy `slim_path` of an FMU without sources, documentation and binaries of other platforms."""
+    with archives.open_archive(fmu) as full, zipfile.ZipFile(slim_path, "w") as reduced:
+        for item in full.infolist():
+            if is_needed_to_run(item.filename) and not item.is_dir():
+                reduced.writestr(item, archives.read_member(full, item.filename))
+
+
+@dataclass(frozen=True)
+class JointRamp:
+    """Load ramp of the joint of a parameter file. See `RampEvaluator`.
+
+    loads            : load ramp (m), ascending
+    load_is_relative : whether a sample of the load is a factor on the ramp; else it replaces the last load
+    reopens          : whether each sample opens the joint, for parameters that the FMU does not expose; this
+        takes seconds
+    rows             : indices of the loads that are evaluated; None: all
+    key              : identifies the study
+    """
+
+    file: ParameterFile
+    loads: Array
+    load_is_relative: bool = False
+    reopens: bool = False
+    rows: Array | None = None
+    key: str = field(default_factory=lambda: str(uuid4()))
+
+    @property
+    def runs_per_job(self) -> int:
+        """See `RampEvaluator`."""
+        return 1 if self.reopens else 32
+
+    @property
+    def runs_per_process(self) -> int:
+        """See `RampEvaluator`: no processes for a joint that only this process has registered."""
+        if not KINDS[self.file.joint].package.startswith("jointfmu."):
+            return sys.maxsize
+        return 4 if self.reopens else 512
+
+    def __getstate__(self) -> dict[str, Any]:
+        """State for pickle: a parameter set may hold functions in its cached properties."""
+        stated = self.file.values_by_name
+        values = assemble_parameter_set(type(self.file.values), stated, _make_unchecked)
+        return {**self.__dict__, "file": replace(self.file, values=values)}
+
+    @property
+    def curves(self) -> LoadCurves:
+        """Quantities along the ramp."""
+        return load_curves(KINDS[self.file.joint])
+
+    def pack(self) -> "JointRamp":
+        """See `RampEvaluator.pack`."""
+        return self
+
+    def install(self, folder: Path) -> "JointRamp":
+        """See `RampEvaluator.install`."""
+        return self
+
+    def run(self, index: int, settings: Settings) -> Entry:
+        """See `RampEvaluator.run`; settings are values of parameters and of the load."""
+        try:
+            with np.errstate(all="ignore"):
+                columns = self.evaluate(settings)
+        except (ValueError, RuntimeError) as error:
+            return _failed_entry(index, settings, str(error))
+        if not all(np.all(np.isfinite(column)) for column in columns.values()):
+            return _failed_entry(index, settings, "the law gives no finite value")
+        return {"run": index, "parameters": dict(settings), "columns": columns}
+
+    def evaluate(self, settings: Settings) -> dict[str, Array]:
+        """Loads and all quantities of a sample, at the loads that are evaluated.
+
+        Raises ValueError, one line, if the law refuses the sample.
+        """
+        curves = self.curves
+        values = {name: value for name, value in settings.items() if name != curves.load.name}
+        load = settings.get(curves.load.name)
+        factor = 1.0 if load is None else load if self.load_is_relative else load / self.loads[-1]
+        loads = factor * self.loads
+        sample = _Sample(_open_joint(self), values)
+        allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(sample.parameters))
+        if not allowed.contains(loads[-1]):
+            sample.follow({curves.load.name: np.zeros(1)})  # a refused parameter is stated first
+            text = f"{curves.load.name} = {loads[-1]:g} {curves.load.unit}"
+            raise ValueError(f"{text} is outside {allowed}: {LOAD_LIMIT_TEXT}")
+        rows = np.arange(loads.size) if self.rows is None else self.rows
+        outputs = self._evaluate_outputs(sample, loads, rows)
+        columns = {curves.load.name: loads[rows], **outputs}
+        is_loaded = loads[rows] > 0.0
+        for quantity in curves.derived:
+            column = np.zeros(rows.size)
+            column[is_loaded] = quantity.compute(sample, loads[rows][is_loaded])
+            columns[quantity.variable.name] = column
+        return columns
+
+    def _evaluate_outputs(self, sample: "_Sample", loads: Array, rows: Array) -> dict[str, Array]:
+        """Outputs of the FMU at rows of the loads (m); of a long ramp by splines.
+
+        A spline goes over log(load), of log(output), or of output/load if the output has zeros.
+        """
+        name, count = self.curves.load.name, self.curves.knots
+        loaded = loads[loads > 0.0]
+        if count is None or loaded.size <= count:
+            found = sample.follow({name: loads[rows]})
+            return {v.name: found[v.name] for v in self.curves.outputs}
+        knots = np.geomspace(loaded[0], loaded[-1], count)
+        found = sample.follow({name: np.append(0.0, knots)})
+        is_loaded, columns = loads[rows] > 0.0, {}
+        weights = spline_weights(np.log(knots / knots[-1]), np.log(loads[rows][is_loaded] / knots[-1]))
+        for variable in self.curves.outputs:
+            values = found[variable.name]
+            column = np.full(rows.size, values[0])
+            if np.all(values[1:] > 0.0):
+                column[is_loaded] = np.exp(weights @ np.log(values[1:]))
+            else:
+                column[is_loaded] = loads[rows][is_loaded] * (weights @ (values[1:] / knots))
+            columns[variable.name] = column
+        return columns
+
+
+class _Sample:
+    """Joint with the parameters of one sample, see `curves.JointSample`."""
+
+    def __init__(self, joint: "_OpenJoint", values: Settings) -> None:
+        self._joint, self._values = joint, {**values, **joint.curves.settings}
+        numbers = {
+            name: np.float64(value) if type(value) is float else value for name, value in values.items()
+        }
+        base = joint.file.values
+        self.parameters: Any = assemble_parameter_set(
+            type(base), {**joint.file.values_by_name, **numbers}, _make_unchecked
+        )
+        self._other_inputs = joint.curves.other_inputs(self.parameters)
+
+    def follow(self, inputs: Mapping[str, Array], settings: Settings | None = None) -> Mapping[str, Array]:
+        """See `curves.JointSample.follow`."""
+        return self._joint.follow({**self._values, **(settings or {})}, {**self._other_inputs, **inputs})
+
+
+def _make_unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
+    """Frozen instance without its checks: the FMU makes them."""
+    instance = object.__new__(cls)
+    for name, value in arguments.items():
+        object.__setattr__(instance, name, value)
+    return instance
+
+
+class _OpenJoint:
+    """Joint that is evaluated with changing parameters.
+
+    Parameters that the FMU exposes are set. For other values of the remaining parameters the joint is opened
+    again; the last MAX_ENGINES joints stay open.
+    """
+
+    MAX_ENGINES = 4
+
+    def __init__(self, ramp: JointRamp) -> None:
+        self.file, self.curves = ramp.file, ramp.curves
+        kind = KINDS[self.file.joint]
+        self._model = kind.find_model(self.curves.model)
+        self._exposed = self._model.with_parameters(kind.name, self.file.values).parameter_fields().keys()
+        self._engines: dict[tuple[Any, ...], tuple[JointEngine, dict[str, Any]]] = {}
+
+    def follow(self, values: Settings, inputs: Mapping[str, Any]) -> Mapping[str, Array]:
+        """Outputs at inputs (n), each reached from the virgin state, with other values of parameters."""
+        stated = self.file.values_by_name
+        hidden = {k: v for k, v in values.items() if k not in self._exposed and v != stated[k]}
+        engine, current = self._find_engine(hidden)
+        needed = {k: values.get(k, stated[k]) for k in {*current, *values} if k in self._exposed}
+        if changed := {k: v for k, v in needed.items() if current.get(k, stated[k]) != v}:
+            current |= changed
+            engine.set_parameters(changed)
+        return engine.follow(inputs, each_from_rest=True).columns
+
+    def _find_engine(self, hidden: Settings) -> tuple[JointEngine, dict[str, Any]]:
+        """Engine of a joint with other values of hidden parameters, and the values set since it is open."""
+        key = tuple(sorted(hidden.items()))
+        found = self._engines.pop(key, None)
+        if found is None:
+            file = self.file.with_values(hidden, "user", "sample") if hidden else self.file
+            if len(self._engines) >= self.MAX_ENGINES:
+                del self._engines[next(iter(self._engines))]
+            found = open_joint(self._model.with_parameters(file.joint, file.values), file), {}
+        self._engines[key] = found
+        return found
+
+
+_opened = local()
+"""Joint that this thread has open: `key` of its study, and `joint`."""
+
+
+def _open_joint(ramp: JointRamp) -> _OpenJoint:
+    """Open the joint of a study, once in a thread."""
+    if getattr(_opened, "key", None) != ramp.key:
+        _opened.key, _opened.joint = ramp.key, _OpenJoint(ramp)
+    joint: _OpenJoint = _opened.joint
+    return joint
