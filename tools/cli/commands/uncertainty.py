@@ -13,6 +13,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...common import columns
+from ...common.options import option_flag
 from ...common.pressure import judge_file
 from ..command import (
     CommandResult,
@@ -21,7 +22,6 @@ from ..command import (
     declare_argument,
     declare_command,
     declare_settings,
-    option_flag,
     suggest_word,
 )
 from ..outputs import declare_output
