@@ -65,7 +65,9 @@ def print_sizes():
     zhao = compare.cases()["zhao2018"].law
     s, u = zhao.spots(), solve_largest_spot(zhao, 1e6)
     term = replace(s.regime_terms["normal"][0], upper=np.log(10.0))
-    share = float(replace(s, regime_terms={"normal": (term,)}).total("normal", u) / s.sum_over_spots("normal", u))
+    share = float(
+        replace(s, regime_terms={"normal": (term,)}).total("normal", u) / s.sum_over_spots("normal", u)
+    )
     print(f"\nzhao2018 at 1 MPa: {share:.0%} of k in spots of one to ten critical areas")
 
 

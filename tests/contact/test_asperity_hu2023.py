@@ -153,7 +153,7 @@ def test_shear_traction(case, tau):
             return 3 * y**2 * integrand(start * exp(y**3))
 
         expected += quad(cubed, 0, log(high / start) ** (1 / 3), epsabs=0, epsrel=1e-10, limit=200)[0]
-    total = sheared(law, strength).total("tangential", u)
+    total = sheared(law, strength).sum_over_spots("tangential", u)
     full = law.spots().sum_over_spots("tangential", u) / (1 - law.traction_ratio) ** (1 / 3)
     # 1 - x cancels at the onset, and a regime may end within round-off of it: 1e-7 of full stick
     assert total == pytest.approx(expected, rel=1e-8, abs=1e-7 * full)

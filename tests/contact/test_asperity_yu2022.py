@@ -132,13 +132,17 @@ def test_order_of_the_regimes(law):
     """a_npc < a_nepc < a_nec: small spots are plastic."""
     paper, s = Paper(law), law.spots()
     plastic, second, first, *elastic = s.regime_terms["load"]
-    assert plastic.upper < second.upper < 0.0
-    assert plastic.lower is None
-    assert (second.lower, first.lower, first.upper) == (plastic.upper, second.upper, 0.0)
-    assert [term.lower for term in elastic] == [0.0, 0.0]
+    assert plastic.upper_log_area < second.upper_log_area < 0.0
+    assert plastic.lower_log_area is None
+    assert (second.lower_log_area, first.lower_log_area, first.upper_log_area) == (
+        plastic.upper_log_area,
+        second.upper_log_area,
+        0.0,
+    )
+    assert [term.lower_log_area for term in elastic] == [0.0, 0.0]
     # the roots of Eqs. 28, 31, 32 to brentq's 1e-13, differences of ln a of some ten
-    assert plastic.upper == pytest.approx(log(paper.a_npc / paper.a_nec), rel=1e-11)
-    assert second.upper == pytest.approx(log(paper.a_nepc / paper.a_nec), rel=1e-11)
+    assert plastic.upper_log_area == pytest.approx(log(paper.a_npc / paper.a_nec), rel=1e-11)
+    assert second.upper_log_area == pytest.approx(log(paper.a_nepc / paper.a_nec), rel=1e-11)
 
 
 @pytest.mark.parametrize("D", [1.15, 1.46, 1.8])

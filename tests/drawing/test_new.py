@@ -134,7 +134,7 @@ def test_a_row_is_found_by_any_of_its_names():
 
 def test_bolts_grow():
     sizes = list(read_threads().values())
-    for column in ("d", "hole", "hexagon", "socket"):
+    for column in ("nominal_diameter", "hole", "hexagon", "socket"):
         values = [getattr(thread, column) for thread in sizes]
         assert values == sorted(values)
     for thread in sizes:

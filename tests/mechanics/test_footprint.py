@@ -68,7 +68,7 @@ def test_cells_fill_the_frame():
 
 
 def test_bolts_sit_on_the_frame():
-    bolts = JOINT.pattern.bolts
+    bolts = JOINT.pattern.bolts_from_middle
     assert len(bolts) == JOINT.n_bolts
     np.testing.assert_allclose(bolts.sum(axis=0), 0.0, atol=EPS)
     np.testing.assert_array_equal(bolts[:3, 1], 0.5 * JOINT.row_distance)
@@ -108,7 +108,7 @@ def test_pressure_decays_with_the_distance(pattern, r, further):
 def test_pressure_of_one_bolt_falls_outwards():
     areas, points = frame_cells(JOINT.pattern)
     for bolt, unit in zip(
-        JOINT.pattern.bolts, bolt_pressures(JOINT.pattern, areas, points, points), strict=True
+        JOINT.pattern.bolts_from_middle, bolt_pressures(JOINT.pattern, areas, points, points), strict=True
     ):
         outwards = np.argsort(np.hypot(*(points - bolt).T))
         assert np.all(np.diff(unit[outwards]) <= 0.0)
@@ -139,10 +139,10 @@ def test_published_pressures():
     shape = pressure_distribution(JOINT.pattern)
     p = preload_pressure(JOINT, shape, 9e3, 0.0)
     assert np.max(p) == pytest.approx(7.98e6, rel=FIT)
-    rim = np.min(np.hypot(*(shape.position[np.argmax(p)] - JOINT.pattern.bolts).T))
+    rim = np.min(np.hypot(*(shape.position[np.argmax(p)] - JOINT.pattern.bolts_from_middle).T))
     assert rim < 0.5 * JOINT.pattern.hole_diameter + JOINT.pattern.flange_width / 7  # within one cell
     areas, points = frame_cells(JOINT.pattern)
-    between = 0.5 * (JOINT.pattern.bolts[0] + JOINT.pattern.bolts[3])
+    between = 0.5 * (JOINT.pattern.bolts_from_middle[0] + JOINT.pattern.bolts_from_middle[3])
     unit = bolt_pressures(JOINT.pattern, areas, points, between[None, :]).sum()
     assert 9e3 * unit * areas.sum() / JOINT.A_0 == pytest.approx(0.62e6, rel=FIT)
 

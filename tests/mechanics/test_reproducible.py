@@ -19,7 +19,7 @@ from jointfmu.mechanics.footprint.reproducible import (
 TIMES = 20
 """Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
 AGREE = 1e-9
-NUMBERS = ("area_share", "position", "preload_shape", "moment_shape")
+NUMBERS = ("area_share", "position", "preload_pressure_ratio", "moment_pressure_ratio")
 
 
 def shape_of(name: str) -> PressureDistribution:

@@ -123,9 +123,9 @@ def law_state(case, side):
     elif "elastic_area" in s.regime_terms:
         elastic = s.sum_over_spots("elastic_area", u) / s.sum_over_spots("area", u)
     else:  # Zhao: the second term of the area is that of the elastic spots
-        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).total("area", u) / s.sum_over_spots(
+        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).total(
             "area", u
-        )
+        ) / s.sum_over_spots("area", u)
     return {
         "k": stiffness_curve(law, case.pressures)[0],
         "area": state["A_r"] / law.A_0,

@@ -214,7 +214,7 @@ def test_a_shipped_file_is_shown_whatever_was_shown_before(shown: Browser, stem:
 
 @needed
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.files[0].law}")
+@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.parameter_files[0].law}")
 def test_a_file_with_other_numbers_is_shown(
     shown: Browser, module: PageModule, seed: int, tmp_path: Path
 ) -> None:
@@ -424,7 +424,7 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
     assert moved.roughness == {}  # the height stands in their place
 
 
-@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.files[0].law}")
+@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.parameter_files[0].law}")
 def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: PageModule) -> None:
     """So the page may write it there."""
     file = module.parameter_files[0]

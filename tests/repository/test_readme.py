@@ -154,7 +154,6 @@ def test_every_kind_of_command_is_shown():
         "surface",
         "fit",
         "uncertainty",
-        "sweep",
         "modelica",
         "export",
         "footprint",

@@ -51,7 +51,9 @@ def six(tmp_path_factory):
     out, shown = tmp_path_factory.mktemp("six"), io.StringIO()
     words = ["robot", str(ROBOT), "--out", str(out), "--json", "--drive", *DRIVES, *POSE, "--payload", "3"]
     with redirect_stdout(shown), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pictures, "ANGLES_PER_GRID_AXIS", 7)  # a coarser grid of poses, of which nothing here is asked
+        patch.setattr(
+            pictures, "ANGLES_PER_GRID_AXIS", 7
+        )  # a coarser grid of poses, of which nothing here is asked
         assert cli.main(words) == 0
     return json.loads(shown.getvalue()), mujoco.MjModel.from_xml_path(str(out / "six_axis_elastic.xml"))
 

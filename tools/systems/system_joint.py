@@ -36,7 +36,9 @@ def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, A
 def _load_catalogue_item(name: str, joint: str, item: str) -> ParameterFile:
     """Load a catalogue item for the section `name`, as `jointfmu new` does; raises ValueError."""
     tool_module = load_tool_module(KINDS[joint], "new")
-    if tool_module is None or "catalogue" not in {option.name for option in tool_module.NEW_JOINT_COMMAND.options}:
+    if tool_module is None or "catalogue" not in {
+        option.name for option in tool_module.NEW_JOINT_COMMAND.options
+    }:
         raise ValueError(f"{name}.catalogue = {item!r}, expected none of a {joint}: it has no catalogue")
     try:
         return _make_catalogue_file(joint, item)

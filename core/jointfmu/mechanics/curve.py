@@ -83,7 +83,7 @@ class Curve:
         )
         object.__setattr__(self, "_coefficients", _HERMITE_TO_POLYNOMIAL @ data)
         areas = h * (_MONOMIAL_MEANS @ self._coefficients)
-        object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(areas)]))
+        object.__setattr__(self, "_node_energies", np.concatenate([[0.0], np.cumsum(areas)]))
 
     @property
     def closing_end_load(self) -> float:

@@ -364,7 +364,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
         np.array([float(rect.get("x")), float(rect.get("y"))]) for rect in cells if rect.get("fill") == YELLOW
     ]
     holes = {(float(c.get("cx")), float(c.get("cy"))) for c in drawn.iter(f"{SVG}circle")}
-    assert len(holes) == len(joint.pattern.bolts)
+    assert len(holes) == len(joint.pattern.bolts_from_middle)
     assert min(np.hypot(x - a, y - b) for a, b in holes) < scale * joint.pattern.hole_diameter
     told = [text.text for text in drawn.iter(f"{SVG}text")]
     assert [text for text in told if text and text.isdigit()][:8] == [str(i + 1) for i in range(8)]

@@ -22,7 +22,7 @@ def state(a, residual):
 def load_step(residual, tangent=K):
     """Load step with a residual [N] at a load factor and modal coordinates, from rest."""
     return SimpleNamespace(
-        displacement=lambda load_factor: load_factor,
+        displacement_at=lambda load_factor: load_factor,
         evaluate_trial=lambda load_factor, a: state(a, residual(load_factor, a)),
         modal_tangent=lambda trial: tangent,
         input_summary="s_rel_x = 1",
@@ -58,11 +58,15 @@ def test_a_correction_that_raises_the_energy_is_shortened(change):
 
 def test_a_singular_tangent_at_the_start_is_no_equilibrium():
     step = load_step(linear)
-    step.start, step.end, step.modal_coordinates = np.zeros(6), np.ones(6), np.zeros(2)
-    step.preload = step.bolt_force = step.friction_tangent = None
+    step.start_displacement, step.end_displacement, step.modal_coordinates = (
+        np.zeros(6),
+        np.ones(6),
+        np.zeros(2),
+    )
+    step.preload_state = step.preload_bolt_force = step.friction_tangent = None
     step.assembly = SimpleNamespace(
         evaluate_normal=lambda *arguments: SimpleNamespace(stiffness=None),
-        bolts=SimpleNamespace(tangent=lambda *arguments: None),
+        bolts=SimpleNamespace(tangent_stiffness=lambda *arguments: None),
         elongation=lambda *arguments: None,
         tangent_stiffness=lambda *arguments: np.zeros((8, 8)),
     )

@@ -65,7 +65,11 @@ def test_torques_are_the_gradient_of_the_energy(spring):
     """dE/dphi of both wheels by differences, all over the mesh cycle and on both flanks."""
     pitch = base_pitch(spring.joint)
     generator = np.random.default_rng(3)
-    s = generator.choice([-1.0, 1.0], 400) * spring.curve.end_point[0] * 10.0 ** generator.uniform(-2.0, 0.0, 400)
+    s = (
+        generator.choice([-1.0, 1.0], 400)
+        * spring.curve.end_point[0]
+        * 10.0 ** generator.uniform(-2.0, 0.0, 400)
+    )
     roll = pitch * generator.uniform(-2.0, 2.0, 400)
     phi = np.array(at(spring, s, roll))
     out = spring.evaluate(phi[0], 0.0, phi[1], 0.0)
@@ -272,7 +276,7 @@ def test_symbols(name):
     casadi.GlobalOptions.setNumpyMode(1)
     try:
         out = mesh_outputs(mesh, x[:4], x[5], x[6], x[7], spring.closing_end)
-        function = casadi.CFunction("f", [symbols], [casadi.vertcat(*out.values())])
+        function = casadi.Function("f", [symbols], [casadi.vertcat(*out.values())])
     finally:
         casadi.GlobalOptions.setNumpyMode(before)
     for roll in np.linspace(-1.0, 1.0, 21) * base_pitch(mesh):

@@ -138,7 +138,7 @@ def _collect_joint(
     working_points: Sequence[WorkingPoint] | None,
 ) -> _LibraryJoint:
     """Collect parameters, component, records and templates of a joint."""
-    component: ModelicaComponent = modelica_module.COMPONENT
+    component: ModelicaComponent = modelica_module.MODELICA_COMPONENT
     is_given = file is not None and file.joint == joint_kind.name
     joint_file = file if file and is_given else load_default(joint_kind.name)
     used_points = tuple(working_points or (*_start_working_point(joint_file), *component.working_points))
