@@ -79,7 +79,7 @@ def print_parameters():
         rms = rms_height(3.0 - case.D, case.G, *band)
 
         def stiffness(D, G, case=case, p=p):
-            return stiffness_curve(compare.rougher(case, D, G), p)[0][0]
+            return stiffness_curve(compare.law_of_surface(case, D, G), p)[0][0]
 
         over_g = [stiffness(case.D, factor * case.G) for factor in (0.9, 1.1)]
         over_d = []
@@ -206,7 +206,7 @@ def print_laws():
     results = {}
     for name, case in compare.cases().items():
         for side in track_progress(case.sides, name):
-            b, law = compare.against(case, side), compare.law_state(case, side)
+            b, law = compare.boundary_element_results(case, side), compare.law_state(case, side)
             results[name, side] = case, b, law
             title = f"{name}, side {side * 1e3:.3g} mm, h_rms {b['rms'].mean() * 1e6:.2g} µm"
             names = (
@@ -250,11 +250,14 @@ def print_grids():
     heading("k [N/m3] and real area, zhao2018", *names)
     for side in case.sides:
         for points, finest in ((128, 8), (128, 4), (256, 16), (256, 8), (256, 4)):
-            found = compare.against(case, side, range(2), points=points, finest=finest)
+            found = compare.boundary_element_results(case, side, range(2), points=points, finest=finest)
             k, area = found["k"].mean(axis=0), found["area"].mean(axis=0)
             row(f"{side * 1e3:.3g}", points, finest, f"{k[0]:.2g}", f"{k[-1]:.2g}", f"{area[-1]:.2g}")
     case = replace(case, pressures=np.array([1e6, 4e6, 16e6]))
-    found, law = compare.against(case, 1e-3, points=128)["k"], compare.law_state(case, 1e-3)["k"]
+    found, law = (
+        compare.boundary_element_results(case, 1e-3, points=128)["k"],
+        compare.law_state(case, 1e-3)["k"],
+    )
     print("\nzhao2018 on 1 mm2 at 1, 4, 16 MPa: boundary elements", *(spread(k) for k in found.T), end="")
     print(", law", *(f"{k:.2g}" for k in law))
 
