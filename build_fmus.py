@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 try:
-    from jointfmu_tools.job.pipeline import main
+    from jointfmu_tools.cli.pipeline import main
 except ImportError as error:
     sys.exit(f"build_fmus.py: {error}; install what building needs with: pip install -e '.[build]'")
 

@@ -10,10 +10,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from jointfmu_tools.host import unpack_fmu
-from jointfmu_tools.proof.manifest import RelatedFiles
-from jointfmu_tools.proof.plan import ExperimentPlan
-from jointfmu_tools.proof.run import _offered_interfaces, _run_worker, _usable_interfaces
+from jointfmu_tools.run.host import unpack_fmu
+from jointfmu_tools.run.proof.manifest import RelatedFiles
+from jointfmu_tools.run.proof.plan import ExperimentPlan
+from jointfmu_tools.run.proof.run import _offered_interfaces, _run_worker, _usable_interfaces
 
 TOLERANCE = 1e-12
 """Largest difference over the largest value of an output [1]."""

@@ -8,7 +8,7 @@ and the ratio of the first to the last.
 
 import numpy as np
 from harness import fastest, read_options
-from jointfmu_tools.laws import LAWS, build_law_parameters
+from jointfmu_tools.inputs.laws import LAWS, build_law_parameters
 from scipy.optimize import brentq
 
 from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot

@@ -18,7 +18,7 @@ from pathlib import Path
 import harness
 import numpy as np
 from browser import PROGRAM, browser
-from jointfmu_tools.laboratory.assemble import write_laboratory
+from jointfmu_tools.pages.laboratory.assemble import write_laboratory
 
 CHANGES = 60
 SCREENS = {"desktop": (1400, 1000, False, 1), "phone": (390, 800, True, 4)}

@@ -24,11 +24,11 @@ import mujoco
 import numpy as np
 from harness import ROOT, read_options, require, verdict
 from jointfmu_fmu_src.building import build
-from jointfmu_tools.host import Instance
-from jointfmu_tools.interface import drive
-from jointfmu_tools.mujoco import plugin
-from jointfmu_tools.robots import elastic, plugged
-from jointfmu_tools.robots.transmission import make_transmission
+from jointfmu_tools.api import drive
+from jointfmu_tools.exchange.mujoco import plugin
+from jointfmu_tools.exchange.robots import elastic, plugged
+from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
+from jointfmu_tools.run.host import Instance
 from mujoco import rollout
 
 # plugin

@@ -42,7 +42,7 @@ from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_fmu_src.native.compiled.binary import fill_library
 from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
-from jointfmu_tools.host import Instance
+from jointfmu_tools.run.host import Instance
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import load_default
@@ -127,7 +127,9 @@ def pass_through(name: str) -> dict[str, str]:
     """C sources of an FMU that passes its inputs on."""
     inputs, outputs = PASS_THROUGH[name]
     paths = [
-        p for p in generate.list_runtime_files() if p.parent.name != "fmi" or p.stem in (*NATIVE, "alike")
+        p
+        for p in generate.list_runtime_files()
+        if p.parent.name != "fmi" or p.stem in (*NATIVE, "fmi_common")
     ]
     files = {p.name: p.read_text(encoding="utf-8") for p in paths}
     rows = [
@@ -145,7 +147,7 @@ def pass_through(name: str) -> dict[str, str]:
         "model.h": f"enum {{ N_INPUTS = {inputs}, N_OUTPUTS = {outputs}, N_PARAMETERS = 1 }};\n",
         "variables.c": '#include "variables.h"\n\n#include <math.h>\n\n'
         f"const Variable variables[N_VALUES] = {{{', '.join(texts)}}};\n"
-        "const unsigned char depends[N_OUTPUTS][N_INPUTS] = {{1}};\n",
+        "const unsigned char output_dependencies[N_OUTPUTS][N_INPUTS] = {{1}};\n",
     }
 
 

@@ -23,7 +23,7 @@ import numpy as np
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssv
 from harness import fastest, read_options
-from jointfmu_tools.host import unpack_fmu
+from jointfmu_tools.run.host import unpack_fmu
 from jointfmu_tools.systems import ssp
 from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system

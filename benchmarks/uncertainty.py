@@ -8,8 +8,8 @@ them), their ratio, and the largest relative difference of both over those sampl
 from time import process_time
 
 import numpy as np
-from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty import propagate
+from jointfmu_tools.studies.uncertainty.problem import state_problem
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_default

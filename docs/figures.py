@@ -16,15 +16,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from jointfmu_fmu_src.python.build import collect_runtime_sources
-from jointfmu_tools import cli, plots
-from jointfmu_tools.job.checks import run_default_ramp
+from jointfmu_tools import cli
+from jointfmu_tools.common import plots
+from jointfmu_tools.common.plots import BLUE, GREY, RED
 from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
-from jointfmu_tools.plots import BLUE, GREY, RED
-from jointfmu_tools.published import validation
-from jointfmu_tools.report.figure import draw_panels
-from jointfmu_tools.report.systems import RESONANCE_SIZE, resonance_panels
+from jointfmu_tools.pages.report.figure import draw_panels
+from jointfmu_tools.pages.report.systems import RESONANCE_SIZE, resonance_panels
+from jointfmu_tools.studies.checks import run_default_ramp
+from jointfmu_tools.studies.published import validation
 from jointfmu_tools.systems import ringing, ssp
 from jointfmu_tools.systems.system import load_system
 from matplotlib.axes import Axes

@@ -69,7 +69,7 @@ def laboratory() -> str:
     made = ROOT / "dist" / "report" / "laboratory.html"
     if made.is_file():
         return made.read_text(encoding="utf-8")
-    from jointfmu_tools.laboratory.assemble import render_page
+    from jointfmu_tools.pages.laboratory.assemble import render_page
 
     return render_page()
 

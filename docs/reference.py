@@ -5,10 +5,9 @@ import re
 from functools import cached_property
 from typing import Any
 
-from jointfmu_tools.joint_parts import load_tool_module
+from jointfmu_tools.api.drive_joint import DriveJoint
 
 import jointfmu
-from jointfmu.joints import KINDS
 
 WIDTH = 90
 """Letters of a signature in one line."""
@@ -20,8 +19,7 @@ _LISTED = re.compile(r"^(\w[\w, ]*?) +: (.*)")
 def page() -> str:
     """The page (Markdown): every public name, the classes of joints, and of a class its public members."""
     items = {f"jointfmu.{name}": getattr(jointfmu, name) for name in jointfmu.__all__}
-    own = [load_tool_module(kind, "interface") for kind in KINDS.values()]
-    items |= {one.CLASS.__name__: one.CLASS for one in own if one}
+    items |= {DriveJoint.__name__: DriveJoint}
     parts = ["# Reference", "Everything that `import jointfmu` has. Numbers are in SI units, unless stated."]
     for name, item in items.items():
         parts += entry(name, item, "##")

@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import mujoco
 import numpy as np
-from jointfmu_tools.mujoco import plugin
+from jointfmu_tools.exchange.mujoco import plugin
 
 import jointfmu
 

@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 from common import heading, row, run_study
 from jointfmu_tools import cli
-from jointfmu_tools.drawing.tables import read_threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
-from jointfmu_tools.fields.joint_parameters import pressure_shape
+from jointfmu_tools.inputs.drawing.tables import read_threads
+from jointfmu_tools.inputs.fields.joint_parameters import pressure_shape
 from jointfmu_tools.joints.bolted_joint.new import NEW
 from oracles.joint_elements import EXAMPLE
 

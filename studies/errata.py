@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 from common import run_study
-from jointfmu_tools.published.reference import read_points
+from jointfmu_tools.studies.published.reference import read_points
 from scipy.optimize import brentq
 
 from jointfmu.contact.interface import evaluate_at_pressure

@@ -25,10 +25,10 @@ from pathlib import Path
 import numpy as np
 from common import heading, row, run_study
 from jointfmu_tools import cli
-from jointfmu_tools.fields import nodal_result
-from jointfmu_tools.fields.joint_parameters import pressure_shape
-from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.fields.reduction import reduce_field
+from jointfmu_tools.inputs.fields import nodal_result
+from jointfmu_tools.inputs.fields.joint_parameters import pressure_shape
+from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fields.reduction import reduce_field
 from numpy.typing import NDArray
 from oracles import contact_patches as contacts
 from oracles import sphere_friction as sphere

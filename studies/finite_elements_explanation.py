@@ -26,12 +26,12 @@ from typing import Any
 import box_specimen_search
 import numpy as np
 from common import run_study
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from jointfmu_tools.fem import convergence
 from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.bolted_contact import DEFAULT_MOMENT_RATIO, BoltedContact, JointSolution
 from jointfmu_tools.fem.geometry import Assembly, BoxSection
-from jointfmu_tools.published.reference import ROLES, read_points
+from jointfmu_tools.studies.published.reference import ROLES, read_points
 from numpy.typing import NDArray
 from oracles import box_specimen as box
 

@@ -23,7 +23,7 @@ from importlib.resources import files
 
 import numpy as np
 from common import heading, print_table, row, run_study
-from jointfmu_tools.catalogue import CatalogueEntry
+from jointfmu_tools.inputs.catalogue import CatalogueEntry
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.efficiency import (
     drives_with_friction,

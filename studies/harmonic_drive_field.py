@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 from common import run_study
-from jointfmu_tools import plots
-from jointfmu_tools.published.reference import read_points
+from jointfmu_tools.common import plots
+from jointfmu_tools.studies.published.reference import read_points
 from oracles.elastic_ring.data import SIZE_14, contact_length, tooth_traction
 from oracles.elastic_ring.drive import field, section, torsional_stiffness
 from oracles.elastic_ring.drive import ring_model_stiffness as stiffness

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 from common import IMAGES, heading, row
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from oracles.lap_beam.brake_reuss import (
     AMPLITUDES,
     FRICTION_COEFFICIENT,

@@ -19,7 +19,7 @@ import numpy as np
 from common import heading, row, run_study
 from fmpy.fmi1 import FMICallException
 from jointfmu_fmu_src.native.build import build
-from jointfmu_tools.host import Instance, open_instance, unpack_fmu
+from jointfmu_tools.run.host import Instance, open_instance, unpack_fmu
 from numpy.typing import NDArray
 from oracles.joint_elements import (
     AXES,

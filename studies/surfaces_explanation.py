@@ -13,11 +13,11 @@ from time import perf_counter
 
 import numpy as np
 from common import run_study
-from jointfmu_tools import fractal
-from jointfmu_tools.surfaces import form, synthesis
-from jointfmu_tools.surfaces.form import remove_form
-from jointfmu_tools.surfaces.heights import ArealMap, Profile
-from jointfmu_tools.surfaces.identify import identify
+from jointfmu_tools.inputs import fractal
+from jointfmu_tools.inputs.surfaces import form, synthesis
+from jointfmu_tools.inputs.surfaces.form import remove_form
+from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
+from jointfmu_tools.inputs.surfaces.identify import identify
 from oracles import rough_surfaces
 
 DIMENSIONS = (1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8)

@@ -18,11 +18,11 @@ from pathlib import Path
 import fmpy
 import numpy as np
 from common import ROOT, run_study
-from jointfmu_tools.interface import drive, load
-from jointfmu_tools.proof.manifest import RelatedFiles
-from jointfmu_tools.proof.run import prove
-from jointfmu_tools.robots import axes_system, elastic
-from jointfmu_tools.robots.transmission import make_transmission
+from jointfmu_tools.api import drive, load
+from jointfmu_tools.exchange.robots import axes_system, elastic
+from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
+from jointfmu_tools.run.proof.manifest import RelatedFiles
+from jointfmu_tools.run.proof.run import prove
 from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system
 from jointfmu_tools.systems.system import load_system, read_system

@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 from common import IMAGES, heading, row, run_study
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from oracles import partial_slip_cases as cases
 from oracles.boundary_element import press, refined
 

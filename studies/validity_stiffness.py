@@ -20,7 +20,7 @@ from dataclasses import replace
 import numpy as np
 import roughness_law
 from common import IMAGES, heading, row, run_study, spread
-from jointfmu_tools import plots
+from jointfmu_tools.common import plots
 from oracles import interface_laws as compare
 from oracles.boundary_element import hertz, westergaard
 from oracles.measured_joints import measured

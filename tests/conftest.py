@@ -27,7 +27,7 @@ from jointfmu_fmu_src.native.compiled.cache import (
     compiler_cache,
 )
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, compile_libraries
-from jointfmu_tools.host import Instance
+from jointfmu_tools.run.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=60, derandomize=True)
 settings.load_profile("jointfmu")
@@ -271,8 +271,8 @@ def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
-    from jointfmu_tools.ramps.loops import CyclicPath
-    from jointfmu_tools.report import course
+    from jointfmu_tools.pages.report import course
+    from jointfmu_tools.run.ramps.loops import CyclicPath
 
     monkeypatch.setattr(course, "_RAMP_POINTS", 11)
     monkeypatch.setattr(course, "_LOAD_CYCLE", CyclicPath(points=8))
@@ -283,7 +283,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Bodies of equal plates, of elements twice as large but with `fine_elements`, patches of equal contacts
     and experiments of equal FMUs are computed once for all processes that share the tests."""
     from jointfmu_fmu_src.proof import members
-    from jointfmu_tools.fields import joint_parameters
+    from jointfmu_tools.inputs.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
     from jointfmu.joints.bolted_joint import joint

@@ -12,7 +12,7 @@ All numbers are in SI units; arguments taken from a drawing (plate, grip, Ra, ..
 
 from typing import Any
 
-__version__ = "1.0.0"
+from .version import __version__ as __version__
 
 __all__ = [
     "Fit",
@@ -32,14 +32,19 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name of the public interface (entry point `jointfmu.interface`) on first access."""
+    """Import a name of the public interface from `jointfmu_tools.api` on first access."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-    from importlib.metadata import entry_points
-
-    (interface,) = entry_points(group="jointfmu", name="interface")
-    value = globals()[name] = getattr(import_module(interface.value), name)
+    try:
+        from jointfmu_tools import api
+    except ModuleNotFoundError as error:
+        if error.name != "jointfmu_tools":
+            raise
+        raise ImportError(
+            f"jointfmu.{name} needs the package jointfmu_tools, which is missing; "
+            "install both with: pip install jointfmu"
+        ) from None
+    value = globals()[name] = getattr(api, name)
     return value
 
 

@@ -163,15 +163,18 @@ def _add_limit_functions(function_graph: Graph, model: Model) -> None:
     """Add the functions of the parameter limits and of the limits beyond which warnings are logged."""
     ends = [end for limit in function_graph.limits for end in (limit.interval.low, limit.interval.high)]
     function_graph.add_function(
-        "parameter_limits", "-> low, high of every limit that parameters set each other", [], ends
+        "parameter_limit_bounds",
+        "-> lower, upper bound of each parameter that other parameters limit",
+        [],
+        ends,
     )
     v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
     end = make_symbols("end", 2)
     rows = [
         e for o in model.validity_limits for e in o.find_interval(function_graph.joint, (end[0], end[1]), v)
     ]
-    doc = "inputs, x and y at the end of the curve -> low, high of every warning"
-    function_graph.add_function("outside_limits", doc, [*v.values(), *end], rows)
+    doc = "inputs, x and y at the end of the curve -> lower, upper bound of each validity limit"
+    function_graph.add_function("validity_bounds", doc, [*v.values(), *end], rows)
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,35 +239,38 @@ def add_law_functions(
     """Add the functions of an interface law that its inversion, its tables and the outputs need.
 
     table_names     : names of the sums over contact spots, besides the load, that are tabulated
-    state_functions : (law between two switches, log-area) -> quantities with first and second derivatives
+    state_functions : (law in one range of log-areas, log-area) -> quantities, first and second derivatives
     """
     spots, u = law.spots(), ca.SX.sym("u")
     switches, regimes = _split_regimes(spots)
     function_graph.add_function(
-        "law_switches", "-> log-areas between which law_..._0, 1, ... are valid", [], switches
+        "law_range_bounds", "-> log-areas that separate the ranges of law_..._0, law_..._1, ...", [], switches
     )
     function_graph.add_function(
-        "law_ends", "-> log-areas where a regime of the stiffness ends", [], spots.regime_end_log_areas
+        "law_regime_ends",
+        "-> log-areas at which a regime of the stiffness ends",
+        [],
+        spots.regime_end_log_areas,
     )
     head = [law.A_0, law.hardness, spots.reference_area, spots.size_exponent, spots.stiffness_onset_log_area]
     function_graph.add_function(
-        "law_head",
-        "-> A_0 [m2], hardness [Pa], reference area [m2], m, log-area of first stiffness",
+        "law_distribution",
+        "-> A_0 [m2], hardness [Pa], reference area [m2], exponent m, log-area of the stiffness onset",
         [],
         head,
     )
     for k, regime in enumerate(regimes):
         function_graph.add_function(
-            f"law_load_{k}", "log-area -> log of load, its slope", [u], regime.log_total("load", u)
+            f"law_load_{k}", "log-area u -> ln F, d(ln F)/du", [u], regime.log_total("load", u)
         )
         rows = [
             f(name, u) for name in ("load", *table_names) for f in (regime.total, regime.total_derivative)
         ]
-        doc = f"log-area -> total and slope of load, {', '.join(table_names)}"
-        function_graph.add_function(f"law_table_{k}", doc, [u], rows)
+        doc = f"log-area u -> sums over spots, each with its derivative by u: load, {', '.join(table_names)}"
+        function_graph.add_function(f"law_totals_{k}", doc, [u], rows)
         y = ca.vertcat(*map(ca.SX, state_functions(regime, u)))
         slope = ca.jacobian(y, u)
-        doc = "log-area -> state, its slopes, theirs, slope of the load's slope less m times it"
+        doc = "log-area u -> law state, its first and second derivatives by u, F'' - m F' of the load F"
         rows = [y, slope, ca.jacobian(slope, u), _load_curvature(regime, u)]
         function_graph.add_function(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
 
@@ -281,5 +287,5 @@ def _load_curvature(spots: SpotDistribution, largest_log_area: Number) -> Number
 def add_closing_function(function_graph: Graph) -> None:
     """Add the function of contact closing, for joints with a curve of pressure against approach."""
     p, k, bend, z = make_symbols("x", 4)
-    doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, load, stiffness, its slope"
-    function_graph.add_function("closing", doc, [p, k, bend, z], closing_pressure(p, k, bend, z))
+    doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, p, k, dk/dx at z"
+    function_graph.add_function("closing_pressure", doc, [p, k, bend, z], closing_pressure(p, k, bend, z))

@@ -15,9 +15,9 @@ from jointfmu.mechanics.history_layout import HistoryLayout
 from .c_text import format_number
 from .graph import Graph
 
-CURVE_FILES = ("tabulated", "curve")
+CURVE_FILES = ("tabulated_joint", "curve")
 """Shared C files of a joint with a tabulated curve."""
-INVERSION_FILES = (*CURVE_FILES, "spots")
+INVERSION_FILES = (*CURVE_FILES, "spot_distribution")
 """Shared C files of a joint that also inverts its interface law."""
 APPROACH_FILES = (*INVERSION_FILES, "approach")
 """Shared C files of a joint that also has a curve of pressure against approach."""
@@ -96,7 +96,7 @@ class NativeDefinition:
     add_functions    : adds the functions that the C of the joint calls to a graph
     shared_files     : stems of files in `runtime/law/` that it needs, besides the files of every FMU
     make_definitions : (graph, model) -> constants of its C
-    history_layout   : layout of the history variables, of the largest size possible; C names are `AT_NAME`
+    history_layout   : layout of the history variables, of the largest size; `HISTORY_NAME` in C is an index
     """
 
     add_functions: Callable[[Graph, Model], None]
@@ -107,7 +107,7 @@ class NativeDefinition:
     @property
     def is_tabulated(self) -> bool:
         """Whether the joint has a tabulated curve."""
-        return "tabulated" in self.shared_files
+        return "tabulated_joint" in self.shared_files
 
 
 def _add_equations(function_graph: Graph, model: Model) -> None:
@@ -118,7 +118,7 @@ def _add_equations(function_graph: Graph, model: Model) -> None:
     doc = "time, inputs, states -> outputs"
     if model.find_event_times:
         function_graph.add_function(
-            "events",
+            "event_times",
             "-> times at which the course of the outputs has a corner",
             [],
             model.find_event_times(function_graph.joint),
@@ -134,7 +134,7 @@ EQUATIONS_DEFINITION = NativeDefinition(_add_equations, ("equations",))
 
 def shared_definitions(shared_files: Sequence[str]) -> Definitions:
     """Constants that the shared C files need."""
-    if "tabulated" not in shared_files:
+    if "tabulated_joint" not in shared_files:
         return Definitions()
     tables = define_constants(NUMBER_NAMES, COUNT_NAMES) | Definitions({"CURVE_NODES": curve.MAX_TABLE_NODES})
     if "approach" not in shared_files:

@@ -1,4 +1,4 @@
-"""Return mapping of one friction slider (Jenkins element) as C functions, called by `law/sliders.c`."""
+"""Return mapping of one friction slider (Jenkins element) as C functions, called by `law/jenkins.c`."""
 
 import casadi as ca
 
@@ -7,56 +7,61 @@ from jointfmu.quantity import select
 
 from .graph import Graph, make_symbols
 
-SLIDER_FILES = ("sliders", "vectors")
+SLIDER_FILES = ("jenkins", "simd")
 """Shared C files of joints with friction sliders."""
 
 
 def add_slider_functions(function_graph: Graph) -> None:
     """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
-    force, shift, before, after, stiffness, compliance = make_symbols("x", 6)
-    tried = elastic_predictor([force], 1.0, stiffness, [shift])
-    doc = "force, shift, limit, stiffness -> force if it sticks, whether that is at the limit or beyond"
+    force, displacement, limit_start, limit_end, stiffness, compliance = make_symbols("x", 6)
+    predictor = elastic_predictor([force], 1.0, stiffness, [displacement])
+    doc = "force, displacement, limit, stiffness -> elastic predictor, its limit function"
     function_graph.add_function(
-        "stick_line", doc, [force, shift, after, stiffness], [*tried, limit_function(tried, after)]
+        "elastic_predictor_1d",
+        doc,
+        [force, displacement, limit_end, stiffness],
+        [*predictor, limit_function(predictor, limit_end)],
     )
-    slid = return_map([force], 1.0, stiffness, [shift], after, after, stiffness, compliance)
+    mapping = return_map([force], 1.0, stiffness, [displacement], limit_end, limit_end, stiffness, compliance)
     results = "force, tangent along and across, loss"
-    doc = (
-        f"force, limit, stiffness, compliance, shift -> {results}, its derivative in the shift: the friction"
+    derivative = "derivative of the loss by the displacement"
+    doc = f"force, limit, stiffness, compliance, displacement -> {results}, {derivative}"
+    loss_derivative = select(mapping.slip_force > 0.0, mapping.force[0], 0.0)
+    y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy, loss_derivative]
+    x = [force, limit_end, stiffness, compliance, displacement]
+    function_graph.add_function("return_map_1d_constant_limit", doc, x, y)
+    mapping = return_map(
+        [force], 1.0, stiffness, [displacement], limit_start, limit_end, stiffness, compliance
     )
-    heat = select(slid.slip_force > 0.0, slid.force[0], 0.0)
-    y = [*slid.force, *slid.tangent, slid.dissipated_energy, heat]
-    function_graph.add_function("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
-    slid = return_map([force], 1.0, stiffness, [shift], before, after, stiffness, compliance)
-    doc = f"force, limit before, stiffness, compliance, shift, limit after -> {results}"
-    x = [force, before, stiffness, compliance, shift, after]
-    y = [*slid.force, *slid.tangent, slid.dissipated_energy]
-    function_graph.add_with_derivative("slide_line", doc, x, y, constant_count=4)
+    doc = f"force, limit at start, stiffness, compliance, displacement, limit at end -> {results}"
+    x = [force, limit_start, stiffness, compliance, displacement, limit_end]
+    y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy]
+    function_graph.add_with_derivative("return_map_1d", doc, x, y, constant_count=4)
     _add_plane_functions(function_graph)
 
 
 def _add_plane_functions(function_graph: Graph) -> None:
     """Add the functions of a slider with two tangential directions."""
-    x, (force, after, shift), slid = _slider_update()
-    tried = elastic_predictor(force, x[2], x[3], shift)
-    doc = "force, part kept, gain, shift"
-    y = [*tried, limit_function(tried, after)]
+    x, (force, limit_end, displacement), mapping = _slider_update()
+    predictor = elastic_predictor(force, x[2], x[3], displacement)
+    doc = "force, retention, secant stiffness, displacement"
+    y = [*predictor, limit_function(predictor, limit_end)]
     function_graph.add_function(
-        "stick_plane",
-        f"{doc}, limit -> force if it sticks, whether at the limit or beyond",
-        [*x[:6], after],
+        "elastic_predictor_2d",
+        f"{doc}, limit -> elastic predictor, its limit function",
+        [*x[:6], limit_end],
         y,
     )
-    doc = f"{doc}, limits before and after, stiffness, compliance"
-    y = [*slid.force, *slid.tangent, slid.dissipated_energy, slid.slip_force]
-    function_graph.add_function("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
-    function_graph.add_function("return_plane", f"{doc} -> force", x, slid.force)
-    function_graph.add_derivative("slide_plane", doc, x, y, constant_count=2)
-    x, (_, after, shift), slid = _slider_update()  # new symbols: a separate function
-    y = list(ca.densify(ca.jacobian(ca.vertcat(*slid.force), ca.vertcat(*shift, after))).T.nz)
+    doc = f"{doc}, limits at start and end, stiffness, compliance"
+    y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy, mapping.slip_force]
+    function_graph.add_function("return_map_2d", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
+    function_graph.add_function("return_map_2d_force", f"{doc} -> force", x, mapping.force)
+    function_graph.add_derivative("return_map_2d", doc, x, y, constant_count=2)
+    x, (_, limit_end, displacement), mapping = _slider_update()  # new symbols: a separate function
+    y = list(ca.densify(ca.jacobian(ca.vertcat(*mapping.force), ca.vertcat(*displacement, limit_end))).T.nz)
     function_graph.add_function(
-        "return_slopes",
-        f"{doc} -> derivatives of the force by shift and limit after",
+        "return_map_2d_derivatives",
+        f"{doc} -> derivatives of the force by displacement and limit at end",
         x,
         y,
         called_in_loops=True,
@@ -67,10 +72,17 @@ def _slider_update() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]
     """Return mapping of a slider with two tangential directions, for symbolic arguments.
 
     Returns all arguments (force, fraction of the force retained, stiffness of the increment, displacement
-    increment, limits before and after, stiffness, compliance), among them (force, limit after, increment),
+    increment, limits at start and end, stiffness, compliance), among them (force, limit at end, increment),
     and the result.
     """
-    force, shift, (keeps, carries) = make_symbols("q", 2), make_symbols("u", 2), make_symbols("k", 2)
-    before, after, stiffness, compliance = ends = make_symbols("x", 4)
-    slid = return_map(force, keeps, carries, shift, before, after, stiffness, compliance)
-    return [*force, keeps, carries, *shift, *ends], (force, after, shift), slid
+    force, displacement = make_symbols("q", 2), make_symbols("u", 2)
+    retention, secant_stiffness = make_symbols("k", 2)
+    limit_start, limit_end, stiffness, compliance = ends = make_symbols("x", 4)
+    mapping = return_map(
+        force, retention, secant_stiffness, displacement, limit_start, limit_end, stiffness, compliance
+    )
+    return (
+        [*force, retention, secant_stiffness, *displacement, *ends],
+        (force, limit_end, displacement),
+        mapping,
+    )

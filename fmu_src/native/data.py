@@ -13,10 +13,10 @@ from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
 
-from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import Array, flat_fields
+from jointfmu.version import __version__
 
 from ..folders import find_fmu_parts
 from ..joint_parts.c_text import escape_comment, format_number, format_string
@@ -77,7 +77,7 @@ class DataBlock(NamedTuple):
         ]
         counts = ", ".join(f"{name} = {value}" for name, value in self.counts.items())
         return (
-            "/* What an FMU is beside its code: name, token, start values, numbers that no tool may set. */\n"
+            "/* Data of an FMU, separate from its code: name, token, start values, hidden parameters. */\n"
             "#ifndef JOINTFMU_DATA_H\n#define JOINTFMU_DATA_H\n\n#include <stdint.h>\n\n"
             f"enum {{ {counts} }};\n\ntypedef struct {{\n{''.join(members)}}} Data;\n"
             f'_Static_assert(sizeof(Data) == {len(self.content)}, "the same bytes on every platform");\n\n'
@@ -103,13 +103,13 @@ def make_data_block(
     start_values : start values of all variables, by value reference
     fixed_values : real numbers that are not FMU variables
     """
-    counts = {"N_FIXED": len(fixed_values)}
+    counts = {"N_HIDDEN_PARAMETERS": len(fixed_values)}
     members = [
         _text_member("magic", DATA_MAGIC, len(DATA_MAGIC) + 1),
         _text_member("name", fmu_name, MAX_NAME_LENGTH + 1),
         _text_member("token", token, TOKEN_SIZE),
         _array_member("start", np.array(start_values, "<f8")),
-        _array_member("fixed", np.array([*fixed_values, 0.0], "<f8")),  # C has no empty arrays
+        _array_member("hidden_parameters", np.array([*fixed_values, 0.0], "<f8")),  # C has no empty arrays
     ]
     for table, (rows, most, digits) in tables.items():
         padded_rows = np.zeros((most, rows.shape[1]), "<i2" if digits else "<f8")
@@ -119,7 +119,7 @@ def make_data_block(
             table, padded_rows[: max(len(rows), 1)]
         ).c_text  # C fills the remaining rows with zeros
         members += [count, _array_member(table, padded_rows)._replace(c_text=c_text)]
-        counts[f"MOST_{table.upper()}"] = most
+        counts[f"MAX_{table.upper()}"] = most
     return DataBlock(token, members, counts)
 
 

@@ -6,11 +6,11 @@ Value references: 0 is the time (not listed in FMI 2.0), then follow inputs, out
 from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement
 
-from jointfmu import __version__
 from jointfmu.files.timestamp import fixed_time
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity.units import CELSIUS, UNITS
+from jointfmu.version import __version__
 
 from ..licence import find_copyright_line
 from ..xml_parts import (

@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointfmu import __version__
 from jointfmu.joints.model import Model, TabulatedJoint
 from jointfmu.mechanics.stable_steps import largest_stable_steps
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import describe_range, find_problem, flat_fields
 from jointfmu.quantity.units import UNITS, display_unit
+from jointfmu.version import __version__
 
 from ..folders import find_asset, find_fmu_parts
 from ..joint_parts import RampPanel, chart

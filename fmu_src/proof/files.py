@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
-from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import flatten_parameters
+from jointfmu.version import __version__
 
 from ..ssv import ParameterValue, format_parameter_set
 from ..xml_parts import serialize_xml

@@ -22,13 +22,13 @@ from jointfmu_fmu_src.xml_parts import (
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
-from jointfmu import __version__
 from jointfmu.files.timestamp import build_time
 from jointfmu.joints import KINDS, MODELS, register_joint
 from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import History, Model, TabulatedJoint
 from jointfmu.parameters import load_parameter_file
 from jointfmu.quantity import build_parameter_set
+from jointfmu.version import __version__
 
 T = TypeVar("T")
 

@@ -32,10 +32,11 @@ from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.python import build as python_build
 from jointfmu_tools import cli
-from jointfmu_tools.job import checks, pipeline
-from jointfmu_tools.published import validation
-from jointfmu_tools.ramps import ramp
-from jointfmu_tools.report.page import write_report
+from jointfmu_tools.cli import pipeline
+from jointfmu_tools.pages.report.page import write_report
+from jointfmu_tools.run.ramps import ramp
+from jointfmu_tools.studies import checks
+from jointfmu_tools.studies.published import validation
 from jointfmu_tools.systems import system as systems
 from natives import VERSIONS
 from proofs import BOTH, MEASURED

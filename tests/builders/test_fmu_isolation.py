@@ -15,7 +15,7 @@ from conftest import Fmu, unpack
 from fmpy import platform, sharedLibraryExtension
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.python import build as python_build
-from jointfmu_tools.ramps import ramp
+from jointfmu_tools.run.ramps import ramp
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.gear_contact.spring import GearContactSpring

@@ -11,7 +11,7 @@ from conftest import Fmu
 from fmpy import simulate_fmu
 from joint_cases import CASES, NAMES, RANGES, SAME, STATE, law, parameters, random_inputs
 from jointfmu_fmu_src.building import build
-from jointfmu_tools.ramps import ramp
+from jointfmu_tools.run.ramps import ramp
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import load_default

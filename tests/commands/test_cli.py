@@ -10,10 +10,10 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 from jointfmu_tools.cli import main
+from jointfmu_tools.inputs.laws import LAW_COLUMNS, LAWS, build_law_parameters
+from jointfmu_tools.inputs.laws import default_joint as _first
 from jointfmu_tools.joints.bolted_joint.published import PUBLISHED
-from jointfmu_tools.laws import LAW_COLUMNS, LAWS, build_law_parameters
-from jointfmu_tools.laws import default_joint as _first
-from jointfmu_tools.published import computed, reference, validation
+from jointfmu_tools.studies.published import computed, reference, validation
 
 from jointfmu import __version__
 from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure

@@ -14,8 +14,8 @@ from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.native.compiled.cache import CACHE_VARIABLE
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
-from jointfmu_tools.command_line.examples import EXAMPLES
-from jointfmu_tools.parser import build_parser
+from jointfmu_tools.cli.examples import EXAMPLES
+from jointfmu_tools.cli.parser import build_parser
 from test_readme import commands
 
 from jointfmu.contact.laws import LAWS
@@ -118,7 +118,7 @@ def test_an_example_runs(
     monkeypatch.setenv(CACHE_VARIABLE, str(folder / "parts"))  # a user's may be large
     if line.startswith("robot"):
         monkeypatch.setattr(
-            "jointfmu_tools.robots.pictures.GRID_ANGLES", 7
+            "jointfmu_tools.exchange.robots.pictures.GRID_ANGLES", 7
         )  # few poses are drawn as many are
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out

@@ -9,7 +9,7 @@ import pytest
 from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.parser import _iterate_parsers, build_parser
+from jointfmu_tools.cli.parser import _iterate_parsers, build_parser
 
 from jointfmu.files.outputs import FOLDER, PARAMETER_FILE, check_output
 from jointfmu.files.writing import write_text

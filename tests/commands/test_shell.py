@@ -12,7 +12,7 @@ import pytest
 from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.parser import COMMAND_GROUPS, COMMANDS, COMPLETION_SHELLS, build_parser
+from jointfmu_tools.cli.parser import COMMAND_GROUPS, COMMANDS, COMPLETION_SHELLS, build_parser
 
 from jointfmu import progress
 

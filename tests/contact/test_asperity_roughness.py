@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools.batch.approach import columns, tabulate
 from jointfmu_tools.cli import main
+from jointfmu_tools.studies.batch.approach import columns, tabulate
 from scipy.integrate import quad
 from scipy.linalg import expm
 from scipy.special import erf

@@ -7,8 +7,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from jointfmu_tools.fields.joint_parameters import insert_field
-from jointfmu_tools.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fields.joint_parameters import insert_field
+from jointfmu_tools.inputs.fields.nodal_result import ContactField
 
 from jointfmu.contact import roughness
 from jointfmu.joints import KINDS

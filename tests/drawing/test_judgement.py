@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.drawing.tables import read_threads
-from jointfmu_tools.drawing.vdi2230 import proof_load, stress_area
+from jointfmu_tools.common.judgement import MAX_STIFFNESS_RATIO, assess_law, find_rms_height
+from jointfmu_tools.common.pressure import judge_file, nominal_pressure
 from jointfmu_tools.fem.convergence import check_bolt_symmetry
-from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.judgement import MAX_STIFFNESS_RATIO, assess_law, find_rms_height
-from jointfmu_tools.pressure import judge_file, nominal_pressure
+from jointfmu_tools.inputs.drawing.tables import read_threads
+from jointfmu_tools.inputs.drawing.vdi2230 import proof_load, stress_area
+from jointfmu_tools.inputs.fields.nodal_result import ContactField
 
 from jointfmu.contact.interface import evaluate_at_pressure, find_validity_violations
 from jointfmu.contact.roughness import PERSSON_GAMMA, predicted_stiffness

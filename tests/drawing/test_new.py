@@ -7,15 +7,15 @@ import shlex
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.drawing.reading import parse_number, parse_numbers
-from jointfmu_tools.drawing.tables import (
+from jointfmu_tools.common.joint_parts import load_tool_module
+from jointfmu_tools.inputs.drawing.reading import parse_number, parse_numbers
+from jointfmu_tools.inputs.drawing.tables import (
     MATERIAL_COLUMNS,
     find_row,
     read_property_classes,
     read_table,
     read_threads,
 )
-from jointfmu_tools.joint_parts import load_tool_module
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_parameter_file

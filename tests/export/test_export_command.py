@@ -8,8 +8,8 @@ import sys
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.export import exports
-from jointfmu_tools.export.exports import FORMAT_CONTENTS
+from jointfmu_tools.exchange.export import exports
+from jointfmu_tools.exchange.export.exports import FORMAT_CONTENTS
 
 from jointfmu import __version__
 from jointfmu.parameters import format_parameter_file, load_default
@@ -176,8 +176,8 @@ def test_a_joint_without_the_part_is_refused(monkeypatch):
 def test_what_can_be_written_and_fitted_is_known_without_scipy():
     program = (
         "import sys\n"
-        "from jointfmu_tools.commands import export, fit\n"
-        "from jointfmu_tools.command_line.common import Parser\n"
+        "from jointfmu_tools.cli.commands import export, fit\n"
+        "from jointfmu_tools.cli.command import Parser\n"
         "words = Parser().add_subparsers()\n"
         "export.add(words), fit.add(words)\n"
         "print([name for name in ('scipy', 'matplotlib') if name in sys.modules])\n"

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.export import keywords, tables, writing
-from jointfmu_tools.export.placing import SI_UNIT_SET, UNIT_SETS
+from jointfmu_tools.exchange.export import keywords, tables, writing
+from jointfmu_tools.exchange.export.placing import SI_UNIT_SET, UNIT_SETS
 from jointfmu_tools.joints.bolted_joint.export import MAX_FORCE_RATIO, TightenedState, tabulate_normal_force
 from scipy.interpolate import PchipInterpolator
 

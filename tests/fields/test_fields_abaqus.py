@@ -7,8 +7,8 @@ with contact variables for displacements. Contact tables of a data file have a s
 
 import numpy as np
 import pytest
-from jointfmu_tools.fields.contact_surface import ContactPlane
-from jointfmu_tools.fields.reading import FieldReader
+from jointfmu_tools.inputs.fields.contact_surface import ContactPlane
+from jointfmu_tools.inputs.fields.reading import FieldReader
 from test_fields_files import UNITS, blocks, faces, grid
 
 DIGITS = 1e-5  # six of them are printed

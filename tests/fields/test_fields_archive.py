@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jointfmu_tools.fields import ansys
-from jointfmu_tools.fields.contact_surface import ContactPlane
-from jointfmu_tools.fields.mesh import nodal_areas
-from jointfmu_tools.fields.reading import FieldReader
+from jointfmu_tools.inputs.fields import ansys
+from jointfmu_tools.inputs.fields.contact_surface import ContactPlane
+from jointfmu_tools.inputs.fields.mesh import nodal_areas
+from jointfmu_tools.inputs.fields.reading import FieldReader
 from mapdl_archive import examples
 from test_fields_files import UNITS, blocks, faces, listing
 

@@ -5,10 +5,10 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from jointfmu_tools.fields import nodal_result
-from jointfmu_tools.fields.contact_surface import ContactPlane
-from jointfmu_tools.fields.mesh import SURFACE_CELLS, VOLUME_CELLS, boundary_faces, nodal_areas
-from jointfmu_tools.fields.reading import FieldReader
+from jointfmu_tools.inputs.fields import nodal_result
+from jointfmu_tools.inputs.fields.contact_surface import ContactPlane
+from jointfmu_tools.inputs.fields.mesh import SURFACE_CELLS, VOLUME_CELLS, boundary_faces, nodal_areas
+from jointfmu_tools.inputs.fields.reading import FieldReader
 
 DATA = Path(__file__).parent
 UNITS = {"length_unit": "mm", "pressure_unit": "MPa"}
@@ -194,7 +194,7 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
 
 def test_middles_of_upright_edges_are_where_calculix_has_them():
     """Every middle node of every boundary face lies between its corners, on the upright faces too."""
-    from jointfmu_tools.fields import frd
+    from jointfmu_tools.inputs.fields import frd
 
     found = frd.read_frd(DATA / "blocks_quadratic.frd", 1e-3, 1e6)
     for block in found.faces:

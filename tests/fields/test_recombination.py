@@ -1,7 +1,7 @@
 """Few nodes keep the sums of many."""
 
 import numpy as np
-from jointfmu_tools.fields.reduction import recombine
+from jointfmu_tools.inputs.fields.reduction import recombine
 
 
 def test_few_nodes_keep_the_sums():

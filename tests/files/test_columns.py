@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from jointfmu_tools.columns import format_rows, format_table, read_columns
+from jointfmu_tools.common.columns import format_rows, format_table, read_columns
 
 from jointfmu.quantity.units import unit_sizes
 

@@ -16,14 +16,13 @@ from jointfmu_fmu_src.native.data import make_data_block
 from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_fmu_src.ssv import ParameterValue, format_parameter_set
 from jointfmu_fmu_src.xml_parts import format_xml_comment as xml_comment
-from jointfmu_tools.export import writing
-from jointfmu_tools.export.placing import SI_UNIT_SET
-from jointfmu_tools.joint_parts import load_tool_module
-from jointfmu_tools.modelica.library import render_library, render_system
-from jointfmu_tools.report.joint import write_joint_report
-from jointfmu_tools.robots import urdf
-from jointfmu_tools.robots.names import make_identifier
-from jointfmu_tools.robots.transmission import make_transmission
+from jointfmu_tools.exchange.export import writing
+from jointfmu_tools.exchange.export.placing import SI_UNIT_SET
+from jointfmu_tools.exchange.modelica.library import render_library, render_system
+from jointfmu_tools.exchange.robots import urdf
+from jointfmu_tools.exchange.robots.names import make_identifier
+from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
+from jointfmu_tools.pages.report.joint import write_joint_report
 from jointfmu_tools.systems.system import read_system
 
 from jointfmu.files.text import MAX_NAME_LENGTH, MAX_TEXT_LENGTH
@@ -31,7 +30,7 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default, load_parameter_file
 
 ROOT = Path(__file__).resolve().parents[2]
-DRIVE = next(name for name, kind in KINDS.items() if load_tool_module(kind, "transmission"))
+DRIVE = "harmonic_drive"
 FMU = KINDS[DRIVE].models[0].name
 TEXTS = (
     '*/ __attribute__((constructor)) static void run(void) { printf("run"); } /*',

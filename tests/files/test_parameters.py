@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from jointfmu_tools.command_line.common import parse_setting
+from jointfmu_tools.cli.command import parse_setting
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import refused_line
-from jointfmu_tools import host
-from jointfmu_tools.parser import _iterate_parsers, build_parser
-from jointfmu_tools.proof.manifest import RelatedFiles
-from jointfmu_tools.surfaces.reading import read_heights as heights
+from jointfmu_tools.cli.parser import _iterate_parsers, build_parser
+from jointfmu_tools.inputs.surfaces.reading import read_heights as heights
+from jointfmu_tools.run import host
+from jointfmu_tools.run.proof.manifest import RelatedFiles
 
 from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes

@@ -64,8 +64,8 @@ def test_a_check_leaves_nothing_and_refuses_what_is_in_the_way(tmp_path):
     ("command", "work"),
     [
         (["build", "GearContact"], "jointfmu_fmu_src.building.build"),
-        (["modelica"], "jointfmu_tools.modelica.library.render_library"),
-        (["system", "robot_joint"], "jointfmu_tools.modelica.library.render_system"),
+        (["modelica"], "jointfmu_tools.exchange.modelica.library.render_library"),
+        (["system", "robot_joint"], "jointfmu_tools.exchange.modelica.library.render_system"),
     ],
 )
 def test_a_folder_that_cannot_be_written_is_refused_before_the_work(

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli, columns
-from jointfmu_tools.fitting.backbone import find_backbone
-from jointfmu_tools.fitting.least_squares import Unknown, solve
+from jointfmu_tools import cli
+from jointfmu_tools.common import columns
+from jointfmu_tools.inputs.fitting.backbone import find_backbone
+from jointfmu_tools.inputs.fitting.least_squares import Unknown, solve
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up

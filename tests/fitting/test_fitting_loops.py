@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.fitting import branches, decay
-from jointfmu_tools.fitting.hysteresis import HysteresisLaw, NonlinearSpring, Oscillator
-from jointfmu_tools.fitting.least_squares import Solution, Unknown
-from jointfmu_tools.fitting.measurement import MIN_ROWS, ColumnNames, read_columns
-from jointfmu_tools.fitting.outcome import FitResult, Picture
+from jointfmu_tools.inputs.fitting import branches, decay
+from jointfmu_tools.inputs.fitting.hysteresis import HysteresisLaw, NonlinearSpring, Oscillator
+from jointfmu_tools.inputs.fitting.least_squares import Solution, Unknown
+from jointfmu_tools.inputs.fitting.measurement import MIN_ROWS, ColumnNames, read_columns
+from jointfmu_tools.inputs.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
 from oracles import joint_measurements as measurements

@@ -8,7 +8,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.fit import loop as shear
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
-from jointfmu_tools.ramps import loops, ramp
+from jointfmu_tools.run.ramps import loops, ramp
 
 from jointfmu.parameters import load_default
 

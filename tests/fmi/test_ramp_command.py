@@ -5,7 +5,8 @@ import sys
 
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli, plots
+from jointfmu_tools import cli
+from jointfmu_tools.common import plots
 
 pytestmark = pytest.mark.slow
 

@@ -60,10 +60,17 @@ def test_a_name_that_is_not_there():
         _ = jointfmu.drives
 
 
+def test_the_core_alone_names_the_missing_package(monkeypatch):
+    monkeypatch.setitem(sys.modules, "jointfmu_tools", None)
+    monkeypatch.delitem(vars(jointfmu), "load", raising=False)
+    with pytest.raises(ImportError, match=r"^jointfmu.load needs the package jointfmu_tools, .* pip install"):
+        _ = jointfmu.load
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MODULES)
 def test_examples(name):
-    assert doctest.testmod(import_module(f"jointfmu_tools.interface.{name}")).failed == 0
+    assert doctest.testmod(import_module(f"jointfmu_tools.api.{name}")).failed == 0
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import jointfmu_fmu_src.joints as builders
 import jointfmu_tools as tools
 import pytest
 from jointfmu_fmu_src.folders import find_fmu_parts
-from jointfmu_tools.joint_parts import TOOL_NAMES, ToolParts, load_tool_module
+from jointfmu_tools.common.joint_parts import TOOL_NAMES, ToolParts, load_tool_module
 
 from jointfmu.joints import KINDS, MODELS
 

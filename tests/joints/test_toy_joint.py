@@ -15,8 +15,8 @@ from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import joints as builders
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_tools import cli
-from jointfmu_tools.job.checks import check_ramp, compare_flavour, run_default_ramp
-from jointfmu_tools.modelica import library
+from jointfmu_tools.exchange.modelica import library
+from jointfmu_tools.studies.checks import check_ramp, compare_flavour, run_default_ramp
 
 from jointfmu import joints
 from jointfmu.parameters import format_parameter_file, load_default
@@ -68,7 +68,7 @@ def test_every_flavour_is_valid_and_gives_hookes_law(built, flavour):
 
 
 def test_a_stiffness_that_is_none_is_refused_by_the_fmu(built):
-    from jointfmu_tools.ramps import ramp
+    from jointfmu_tools.run.ramps import ramp
 
     with pytest.raises(ValueError, match=r"c = -1 N/m is outside \(0, inf\): stiffness"):
         ramp.run_ramp(built / "fmi3" / "ToySpring.fmu", "s_rel", 1e-3, 1e-3, {"c": -1.0})

@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.cli import main
-from jointfmu_tools.joint_parts import load_tool_module
+from jointfmu_tools.common.joint_parts import load_tool_module
+from jointfmu_tools.exchange.modelica import library, records
+from jointfmu_tools.exchange.modelica.records import make_identifier
 from jointfmu_tools.joints.bolted_joint import modelica as bolted_modelica
-from jointfmu_tools.modelica import library, records
-from jointfmu_tools.modelica.records import make_identifier
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from jointfmu_tools.thinning import decimate
+from jointfmu_tools.exchange.thinning import decimate
 
 
 @given(reach=st.lists(st.integers(1, 40), min_size=2, max_size=60), extra=st.sets(st.integers(1, 59)))

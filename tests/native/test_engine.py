@@ -6,8 +6,8 @@ import tempfile
 
 import numpy as np
 import pytest
-from jointfmu_tools import engine
-from jointfmu_tools.engine import CompiledJoint, PythonJoint, open_joint
+from jointfmu_tools.run import engine
+from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, open_joint
 
 import jointfmu
 from jointfmu.joints import KINDS

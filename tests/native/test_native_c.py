@@ -259,11 +259,11 @@ def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
 
 
 def test_files_use_each_other_in_one_direction() -> None:
-    """A .c file with its header is one; kind.h only names the joint's header, for the size of a joint."""
+    """A .c file with its header is one; joint_model.h only names the joint's header."""
     uses: dict[str, set[str]] = {}
     for path in RUNTIME_FOLDER.rglob("*.[ch]"):
         found = set(re.findall(r'#include "(\w+)\.h"', path.read_text(encoding="utf-8")))
-        uses.setdefault(path.stem, set()).update(found - {path.stem, "kind"})
+        uses.setdefault(path.stem, set()).update(found - {path.stem, "joint_model"})
     assert uses["fmi3"]
     tuple(TopologicalSorter(uses).static_order())  # raises CycleError
 

@@ -27,7 +27,7 @@ def functions(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Callable[..
     lines = ['#include "elementary.h"']
     for name in NAMES:
         given = ", ".join(f"double x{i}" for i in range(ARGUMENTS.get(name, 1)))
-        call = f"same_{name}({given.replace('double ', '')})"
+        call = f"portable_{name}({given.replace('double ', '')})"
         visible = '__attribute__((visibility("default")))'
         lines.append(
             f"{visible} double shown_{name}({given});\ndouble shown_{name}({given}) {{ return {call}; }}"

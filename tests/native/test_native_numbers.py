@@ -98,7 +98,7 @@ def test_arrays_follow_a_count(
     count = 2 * getattr(module, constant)
     monkeypatch.setattr(module, constant, count)
     files = c_of(name)
-    text = f'#include "tabulated.h"\n_Static_assert({size} >= {count} && {size} < {count + 100}, "");\n'
+    text = f'#include "tabulated_joint.h"\n_Static_assert({size} >= {count} && {size} < {count + 100}, "");\n'
     assert compiles(tmp_path, files, text)
     assert not compiles(tmp_path, files, text.replace(">=", "<"))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from clients import needs
-from jointfmu_tools.ramps import ramp
+from jointfmu_tools.run.ramps import ramp
 
 from jointfmu.joints import MODELS
 

@@ -24,38 +24,44 @@ ROUND_OFF = 1e-13
 """Of a sum of some products, over the largest of what is compared: C adds in another order."""
 POINTER_TO = POINTER(c_double)
 AVX = " avx " in Path("/proc/cpuinfo").read_text(encoding="utf-8")
-"""Whether this processor has vectors of four."""
+"""Whether this processor has AVX."""
 
 
-LINE = ("K", "per_K", "before", "after", "force")
-PLANE = ("force_x", "force_y", "turning_x", "turning_y", "keeps", "carries", "K", "per_K", "before", "after")
+LINE = ("K", "compliance", "limit_start", "limit_end", "force")
+PLANE = (
+    *("force_x", "force_y", "torsion_x", "torsion_y", "retention", "secant_stiffness"),
+    *("K", "compliance", "limit_start", "limit_end"),
+)
 
 
-class CSliders(Structure):
-    """`Sliders` of sliders.h."""
+class Sliders1D(Structure):
+    """`Sliders1D` of jenkins.h."""
 
     _fields_ = [(name, POINTER_TO) for name in LINE]
 
 
-class PlaneSliders(Structure):
+class Sliders2D(Structure):
     """The same name there."""
 
     _fields_ = [
         *((name, POINTER_TO) for name in PLANE),
-        ("from", c_double),
-        ("to", c_double),
-        ("shift", c_double * 3),
+        ("growth_start", c_double),
+        ("growth_end", c_double),
+        ("displacement", c_double * 3),
     ]
 
 
 class SliderRates(Structure):
     """The same name there."""
 
-    _fields_ = [(name, POINTER_TO) for name in ("turning_x", "turning_y", "limit", "shift_x", "shift_y")]
+    _fields_ = [
+        (name, POINTER_TO)
+        for name in ("torsion_x", "torsion_y", "limit_rate", "displacement_rate_x", "displacement_rate_y")
+    ]
 
 
-class Sum(Structure):
-    """`SliderSum`."""
+class SliderResultant(Structure):
+    """`SliderResultant`."""
 
     _fields_ = [("force", c_double * 3), ("tangent", c_double * 6), ("loss", c_double)]
 
@@ -83,17 +89,17 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
         for f in g.functions
     ]
     law = "\n".join(text.replace("\nvoid ", "\nstatic inline void ", 1) for text in texts)
-    names = ("sliders.c", "sliders.h", "vectors.h", "elementary.c", "elementary.h")
+    names = ("jenkins.c", "jenkins.h", "simd.h", "elementary.c", "elementary.h")
     files = {name: (RUNTIME_FOLDER / "law" / name).read_text(encoding="utf-8") for name in names}
     files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{C_HELPERS}\n{law}'}
     files |= {"elementary_tables.h": elementary.make_tables_header()}
     visible = "#pragma GCC visibility push(default)\n"
-    files["sliders.c"] = visible + files["sliders.c"]
-    made = compiler.compile_libraries("sliders", files, ["sliders.c", "elementary.c"], ["x86_64-linux"])
+    files["jenkins.c"] = visible + files["jenkins.c"]
+    made = compiler.compile_libraries("sliders", files, ["jenkins.c", "elementary.c"], ["x86_64-linux"])
     path = tmp_path_factory.mktemp("sliders") / "sliders.so"
     path.write_bytes(made["x86_64-linux"])
     found = CDLL(str(path))
-    found.sliders_force.restype = found.sliders_heat.restype = c_double
+    found.sliders_force_1d.restype = found.sliders_loss_derivative_1d.restype = c_double
     return found
 
 
@@ -120,13 +126,21 @@ def rows_of(K: np.ndarray, before: np.ndarray, after: np.ndarray, force: np.ndar
     x, y = force
     per_K = np.divide(1.0, K, out=np.zeros_like(K), where=K > 0.0)
     e_x, e_y = np.ascontiguousarray(torsion_directions(SLIDERS))
-    rows = {"K": K, "per_K": per_K, "before": before, "after": after, "force": x, "force_x": x, "force_y": y}
-    return rows | {"turning_x": e_x, "turning_y": e_y, "keeps": np.ones_like(K), "carries": K}
+    rows = {
+        "K": K,
+        "compliance": per_K,
+        "limit_start": before,
+        "limit_end": after,
+        "force": x,
+        "force_x": x,
+        "force_y": y,
+    }
+    return rows | {"torsion_x": e_x, "torsion_y": e_y, "retention": np.ones_like(K), "secant_stiffness": K}
 
 
-def in_c(rows: dict[str, np.ndarray]) -> CSliders:
+def in_c(rows: dict[str, np.ndarray]) -> Sliders1D:
     """The struct; the rows have to stay alive as long as it."""
-    return CSliders(*(pointer(rows[name]) for name in LINE))
+    return Sliders1D(*(pointer(rows[name]) for name in LINE))
 
 
 def assert_close(found: object, expected: object, size: float) -> None:
@@ -139,8 +153,8 @@ def test_along_one_direction(library: CDLL) -> None:
     for K, before, after, force, (u, *_) in moves(plane=False):
         rows = rows_of(K, before, after, force)
         s = in_c(rows)
-        total, rate = Sum(), Sum()
-        library.sliders_line(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
+        total, rate = SliderResultant(), SliderResultant()
+        library.sliders_advance_1d(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
         expected = Sliders(K).advance_1d(force[0], u, before, after)
         size = 1.0 + abs(u) * float(np.sum(K))
         assert_close(moved, expected.force, size)
@@ -152,11 +166,11 @@ def test_along_one_direction(library: CDLL) -> None:
         slips = np.abs(tried) > after
         slipped += int(np.sum(slips))
         if after is before:
-            heat = library.sliders_heat(SLIDERS, byref(s), c_double(u))
+            heat = library.sliders_loss_derivative_1d(SLIDERS, byref(s), c_double(u))
             assert heat == pytest.approx(float(np.sign(tried) @ np.where(slips, after, 0.0)), abs=ROUND_OFF)
         elif np.all(after[slips] > 0.0):
             ones = pointer(np.ones(SLIDERS))
-            library.sliders_line_rate(SLIDERS, byref(s), c_double(u), c_double(1.0), ones, byref(rate))
+            library.sliders_advance_1d_rate(SLIDERS, byref(s), c_double(u), c_double(1.0), ones, byref(rate))
             rises = float(np.sum(np.sign(tried[slips])))
             assert rate.force[0] == pytest.approx(float(expected.tangent) + rises, abs=ROUND_OFF * SLIDERS)
     assert 0.2 * MOVES < slipped < 0.8 * MOVES
@@ -169,21 +183,21 @@ def of_each(shift: np.ndarray) -> np.ndarray:
 
 def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> np.ndarray:
     """Force, tangent, loss and slip (7, n): sliders before the first at its limit stick, the others may slip;
-    forces alone are the same, and all the bits by vectors of four; sums are those of all."""
-    s = PlaneSliders(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
+    forces alone are the same, and all the bits with AVX; sums are those of all."""
+    s = Sliders2D(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
     tried, sticks = np.empty((2, SLIDERS)), (c_double * 3)()
     out = (POINTER_TO * 2)(*map(pointer, tried))
-    first = library.sliders_stick(AVX, SLIDERS, byref(s), out, sticks)
-    at_limit = np.append(limit_function(list(tried), rows["after"]) > 0.0, True)
+    first = library.sliders_predict(AVX, SLIDERS, byref(s), out, sticks)
+    at_limit = np.append(limit_function(list(tried), rows["limit_end"]) > 0.0, True)
     assert first == np.argmax(at_limit) // 2 * 2
     sums = sum_slider_forces(np.where(np.arange(SLIDERS) < first, tried, 0.0))
     assert_close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))
     found, fours, alone = np.empty((3, 7, SLIDERS))
     for slid, by_four, forces in ((found, False, False), (fours, AVX, False), (alone, AVX, True)):
         into = (POINTER_TO * 7)(*map(pointer, slid))
-        library.sliders_slide(by_four, 0, SLIDERS, byref(s), into, forces)
-        total = Sum()
-        library.sliders_sum(by_four, 0, SLIDERS, byref(s), into, byref(total))
+        library.sliders_return_map(by_four, 0, SLIDERS, byref(s), into, forces)
+        total = SliderResultant()
+        library.sliders_resultant(by_four, 0, SLIDERS, byref(s), into, byref(total))
         assert_close(list(total.force), sum_slider_forces(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
     np.testing.assert_array_equal(fours, found)
     assert_close(alone[:2], found[:2], 1.0 + np.max(np.abs(tried)))
@@ -198,7 +212,7 @@ def test_in_a_plane(library: CDLL) -> None:
         rows = rows_of(K, before, after, force)
         moved, tangent, loss = np.split(in_plane(library, rows, shift)[:6], [2, 5])
         tried = elastic_predictor(list(force), 1.0, K, list(of_each(shift)))
-        slid = return_map(list(force), 1.0, K, list(of_each(shift)), before, after, K, rows["per_K"])
+        slid = return_map(list(force), 1.0, K, list(of_each(shift)), before, after, K, rows["compliance"])
         size = 1.0 + float(np.linalg.norm(shift) * np.sum(K))
         assert_close(moved, slid.force, size)
         assert_close(loss[0], slid.dissipated_energy, size**2)
@@ -212,11 +226,11 @@ def test_in_a_plane(library: CDLL) -> None:
 
 def slopes(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """Derivatives (4, 3) of the forces together, by the shift and by what limits and shifts (3, n) follow."""
-    s = PlaneSliders(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
-    given = SliderRates(*map(pointer, (rows["turning_x"], rows["turning_y"], *rates)))
+    s = Sliders2D(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
+    given = SliderRates(*map(pointer, (rows["torsion_x"], rows["torsion_y"], *rates)))
     found, fours = np.empty((2, 4, 3))
     for slope, by_four in ((found, False), (fours, AVX)):
-        library.sliders_slopes(by_four, SLIDERS, byref(s), byref(given), pointer(slope))
+        library.sliders_force_derivatives(by_four, SLIDERS, byref(s), byref(given), pointer(slope))
     np.testing.assert_array_equal(fours, found)
     return found
 
@@ -226,9 +240,9 @@ def forces_together(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Forces (3) after a shift and a motion (4) more, the last of it of what follows; which of them slip."""
     force, K = [rows["force_x"], rows["force_y"]], rows["K"]
-    after = rows["after"] + motion[3] * rates[0]
+    after = rows["limit_end"] + motion[3] * rates[0]
     each = list(of_each(shift + motion[:3]) + motion[3] * rates[1:])
-    slid = return_map(force, 1.0, K, each, rows["before"], after, K, rows["per_K"])
+    slid = return_map(force, 1.0, K, each, rows["limit_start"], after, K, rows["compliance"])
     return sum_slider_forces(np.array(slid.force)), yield_function(
         elastic_predictor(force, 1.0, K, each), after
     ) > 0.0
@@ -269,12 +283,17 @@ def test_limits_grow_by_the_stiffness(library: CDLL) -> None:
     """From what stands in the rows, and are never below nothing."""
     for K, before, after, force, shift in moves(plane=True):
         rows, found = rows_of(K, before, after, force), np.empty((2, 7, SLIDERS))
-        grown = [rows | {"before": before - K, "after": after - 2.0 * K}, rows_of(K, before, after, force)]
-        grown[1] |= {"before": np.maximum(grown[0]["before"] + 0.5 * K, 0.0)}
-        grown[1] |= {"after": np.maximum(grown[0]["after"] + 1.5 * K, 0.0)}
+        grown = [
+            rows | {"limit_start": before - K, "limit_end": after - 2.0 * K},
+            rows_of(K, before, after, force),
+        ]
+        grown[1] |= {"limit_start": np.maximum(grown[0]["limit_start"] + 0.5 * K, 0.0)}
+        grown[1] |= {"limit_end": np.maximum(grown[0]["limit_end"] + 1.5 * K, 0.0)}
         for given, ways, slid in zip(grown, ((0.5, 1.5), (0.0, 0.0)), found, strict=True):
-            s = PlaneSliders(*(pointer(given[name]) for name in PLANE), *ways, (c_double * 3)(*shift))
-            library.sliders_slide(AVX, 0, SLIDERS, byref(s), (POINTER_TO * 7)(*map(pointer, slid)), False)
+            s = Sliders2D(*(pointer(given[name]) for name in PLANE), *ways, (c_double * 3)(*shift))
+            library.sliders_return_map(
+                AVX, 0, SLIDERS, byref(s), (POINTER_TO * 7)(*map(pointer, slid)), False
+            )
         np.testing.assert_array_equal(*found)
 
 
@@ -284,7 +303,7 @@ def test_force_alone(library: CDLL) -> None:
         rows = rows_of(K, limit, limit, force)
         s = in_c(rows)
         tangent = c_double()
-        found = library.sliders_force(c_int(SLIDERS), byref(s), c_double(u), byref(tangent))
+        found = library.sliders_force_1d(c_int(SLIDERS), byref(s), c_double(u), byref(tangent))
         expected = Sliders(K).advance_1d(force[0], u, limit, limit)
         size = 1.0 + abs(u) * float(np.sum(K))
         assert_close([found, tangent.value], [expected.traction, expected.tangent], SLIDERS * size)

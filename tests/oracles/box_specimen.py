@@ -15,7 +15,7 @@ from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.elasticity import Array
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoxSection
 from jointfmu_tools.fem.modes import DEFAULT_REFINEMENT
-from jointfmu_tools.joints.bolted_joint.field import FREQUENCIES
+from jointfmu_tools.joints.bolted_joint.frequencies import ASSEMBLY_FILE
 from scipy.optimize import least_squares
 
 from jointfmu.joints.bolted_joint.law import BoltedJoint
@@ -68,7 +68,7 @@ def specimen(start: Assembly, lengths: Sequence[float]) -> Assembly:
 
 def shipped() -> Assembly:
     """The assembly with the identified lengths."""
-    return read_assembly(FREQUENCIES.path)
+    return read_assembly(ASSEMBLY_FILE)
 
 
 def lengths_of(assembly: Assembly) -> Array:

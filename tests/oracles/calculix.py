@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from jointfmu_tools import cli
-from jointfmu_tools.export.placing import AXIS_ORDER
+from jointfmu_tools.exchange.export.placing import AXIS_ORDER
 from jointfmu_tools.fem.elasticity import ElasticBody
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jointfmu_tools.fractal import areal_roughness
+from jointfmu_tools.inputs.fractal import areal_roughness
 
 from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot, stiffness_curve
 from jointfmu.contact.laws import yu2022

@@ -7,7 +7,7 @@ harmonic only, as the fit does.
 from functools import cache
 
 import numpy as np
-from jointfmu_tools.fitting.hysteresis import Oscillator
+from jointfmu_tools.inputs.fitting.hysteresis import Oscillator
 from jointfmu_tools.joints.bolted_joint.fit import loop
 
 from jointfmu.parameters import load_default

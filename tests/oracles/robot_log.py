@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from jointfmu_tools import columns
+from jointfmu_tools.common import columns
 from jointfmu_tools.joints.harmonic_drive.fit import log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 

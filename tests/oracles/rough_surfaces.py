@@ -1,8 +1,8 @@
 """Self-affine rough surfaces with wavelengths in a band: rms height, rms slope, periodic samples."""
 
 import numpy as np
-from jointfmu_tools.fractal import wave_power
-from jointfmu_tools.surfaces.heights import ArealMap
+from jointfmu_tools.inputs.fractal import wave_power
+from jointfmu_tools.inputs.surfaces.heights import ArealMap
 
 
 def rms_height(H, G, longest, shortest):

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.proof.standard import MANIFEST_PATH, REFERENCE_FOLDER
-from jointfmu_tools.proof.checksum import ALGORITHMS
-from jointfmu_tools.proof.manifest import RelatedFiles
+from jointfmu_tools.run.proof.checksum import ALGORITHMS
+from jointfmu_tools.run.proof.manifest import RelatedFiles
 
 EXPERIMENTS = b'<Experiments><Experiment name="rest" stopTime="1.0"/></Experiments>'
 HEAD = (

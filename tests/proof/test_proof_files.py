@@ -23,8 +23,8 @@ from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import get_experiments, make_proof_files
 from jointfmu_fmu_src.proof.reference import Stimulus, compute_results
 from jointfmu_fmu_src.proof.series import TimeSeries, format_csv, parse_csv
-from jointfmu_tools.proof import manifest
-from jointfmu_tools.uncertainty import study as study_files
+from jointfmu_tools.run.proof import manifest
+from jointfmu_tools.studies.uncertainty import study as study_files
 from lxml import etree
 
 from jointfmu.joints import KINDS, MODELS

@@ -21,7 +21,7 @@ from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import make_proof_files
 from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_tools import cli
-from jointfmu_tools.proof.importers import FMI_VERSIONS as KNOWN
+from jointfmu_tools.run.proof.importers import FMI_VERSIONS as KNOWN
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
 
@@ -263,7 +263,7 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     )
     assert "is not an FMU" in refused_line(capsys, "prove", text)
     assert "invalid choice: 'simulink'" in refused_line(capsys, "prove", text, "--in", "simulink")
-    monkeypatch.setattr("jointfmu_tools.proof.run.find_spec", lambda name: None)
+    monkeypatch.setattr("jointfmu_tools.run.proof.run.find_spec", lambda name: None)
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert "the package ecospy is missing" in line
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jointfmu_tools.published import calibration
-from jointfmu_tools.published import validation as comparison
-from jointfmu_tools.published.calibration import calibrate
-from jointfmu_tools.published.computed import load_published_numbers
-from jointfmu_tools.published.reference import (
+from jointfmu_tools.studies.published import calibration
+from jointfmu_tools.studies.published import validation as comparison
+from jointfmu_tools.studies.published.calibration import calibrate
+from jointfmu_tools.studies.published.computed import load_published_numbers
+from jointfmu_tools.studies.published.reference import (
     CALIBRATION_TOLERANCE,
     GUESS_ROLES,
     ROLES,
@@ -19,7 +19,7 @@ from jointfmu_tools.published.reference import (
     compute_trivial_guesses,
     read_points,
 )
-from jointfmu_tools.published.validation import (
+from jointfmu_tools.studies.published.validation import (
     compare_point,
     count_points,
     format_summary,

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_tools.export import tables
-from jointfmu_tools.export.mesh import COLUMN_UNITS as PAIRS
-from jointfmu_tools.export.placing import UNIT_SETS as SETS
+from jointfmu_tools.exchange.export import tables
+from jointfmu_tools.exchange.export.mesh import COLUMN_UNITS as PAIRS
+from jointfmu_tools.exchange.export.placing import UNIT_SETS as SETS
 from jointfmu_tools.fem.geometry import BoxSection, Layer, Plate
-from jointfmu_tools.fields.nodal_result import COLUMN_UNITS as FIELD
+from jointfmu_tools.inputs.fields.nodal_result import COLUMN_UNITS as FIELD
+from jointfmu_tools.inputs.surfaces.csvfile import LENGTH_UNITS
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
-from jointfmu_tools.surfaces.csvfile import LENGTH_UNITS
 from jointfmu_tools.systems.system import load_systems
 from scipy import constants
 

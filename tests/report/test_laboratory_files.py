@@ -19,8 +19,8 @@ from conftest import made_once
 from joint_cases import CASES, law
 from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_tools import cli
-from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import PageModule, list_modules
+from jointfmu_tools.pages.laboratory.assemble import write_laboratory
+from jointfmu_tools.pages.laboratory.describe import PageModule, list_modules
 from natives import close
 from webassembly import Instance, random_values
 

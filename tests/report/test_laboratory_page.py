@@ -11,8 +11,8 @@ from clients import needs
 from conftest import made_once
 from joint_cases import JOINTS
 from jointfmu_tools import cli
-from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import list_modules
+from jointfmu_tools.pages.laboratory.assemble import write_laboratory
+from jointfmu_tools.pages.laboratory.describe import list_modules
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file

@@ -15,8 +15,8 @@ from browser import browser
 from clients import needs
 from conftest import Fmu
 from joint_cases import random_inputs
-from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import PageModule, list_modules
+from jointfmu_tools.pages.laboratory.assemble import write_laboratory
+from jointfmu_tools.pages.laboratory.describe import PageModule, list_modules
 from webassembly import Instance, native_fmu, random_values, refused_values
 
 pytestmark = pytest.mark.slow

@@ -13,9 +13,9 @@ from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners.models import load_partner_parameters
 from jointfmu_fmu_src.templates import load_template
-from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.report import figure
-from jointfmu_tools.report.joint import write_joint_report
+from jointfmu_tools.pages.laboratory.assemble import write_laboratory
+from jointfmu_tools.pages.report import figure
+from jointfmu_tools.pages.report.joint import write_joint_report
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_default

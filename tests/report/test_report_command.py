@@ -11,9 +11,9 @@ from conftest import refused_line
 from jointfmu_fmu_src.native.page import find_ramp_panels, make_documentation
 from jointfmu_fmu_src.proof.experiments import compute_experiments
 from jointfmu_tools import cli
-from jointfmu_tools.pressure import judge_file
-from jointfmu_tools.report.course import LoadHistory
-from jointfmu_tools.report.joint import VALIDITY_HEADINGS, write_joint_report
+from jointfmu_tools.common.pressure import judge_file
+from jointfmu_tools.pages.report.course import LoadHistory
+from jointfmu_tools.pages.report.joint import VALIDITY_HEADINGS, write_joint_report
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default

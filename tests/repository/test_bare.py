@@ -28,7 +28,7 @@ EXTRAS = (
 )
 PROGRAM = f"import sys; sys.modules.update(dict.fromkeys({EXTRAS}));"
 FEW = (
-    "from jointfmu_tools.report import course; course._RAMP_POINTS = 11;"
+    "from jointfmu_tools.pages.report import course; course._RAMP_POINTS = 11;"
     "course._LOAD_CYCLE = course.CyclicPath(points=8);"
 )
 """A page's ramp and loops of few points are drawn as those of many are."""

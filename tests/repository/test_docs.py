@@ -23,8 +23,8 @@ from clients import CHROMIUM_OPTIONS, chromium, needs
 from conftest import here_alone
 from jointfmu_fmu_src.joint_parts import FmuParts
 from jointfmu_tools import cli
-from jointfmu_tools.joint_parts import TOOL_NAMES
-from jointfmu_tools.parser import build_parser
+from jointfmu_tools.cli.parser import build_parser
+from jointfmu_tools.common.joint_parts import TOOL_NAMES
 from PIL import Image
 
 import jointfmu

@@ -15,9 +15,9 @@ from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
-from jointfmu_tools.fields import nodal_result
-from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.published import validation
+from jointfmu_tools.inputs.fields import nodal_result
+from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.studies.published import validation
 
 from jointfmu.files.outputs import write_parameter_text
 from jointfmu.mechanics.footprint import bolts

@@ -233,12 +233,12 @@ LINUX_WHEEL = "Linux on x86_64 with the extra `test`"
 
 CLIENTS = {
     "ecos": Client(
-        script("from jointfmu_tools.proof.importers import load_importer; load_importer('ecos')"),
+        script("from jointfmu_tools.run.proof.importers import load_importer; load_importer('ecos')"),
         "FMUs and systems in ecos: numbers, refusals, proofs, the code on its page",
         f"{LINUX_WHEEL}, and `libtbb12`",
     ),
     "libcosim": Client(
-        script("from jointfmu_tools.proof.importers import load_importer; load_importer('libcosim')"),
+        script("from jointfmu_tools.run.proof.importers import load_importer; load_importer('libcosim')"),
         "FMUs and systems in libcosim: numbers, refusals, proofs",
         f"{LINUX_WHEEL}, Python before 3.15, and `libatomic1`",
     ),

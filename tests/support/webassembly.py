@@ -15,7 +15,7 @@ from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
 from jointfmu_fmu_src.native.compiled.compiler import library_file_name
 from jointfmu_fmu_src.native.data import make_fmu_data, make_placeholder, split_parameters
 from jointfmu_fmu_src.native.description import format_fmi3_description
-from jointfmu_tools.laboratory.describe import PageModule
+from jointfmu_tools.pages.laboratory.describe import PageModule
 
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import build_parameter_set as make
@@ -51,8 +51,8 @@ class Instance:
         self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
         self("_initialize")
         fixed = np.array([*split_parameters(module.model, file or module.files[0]).data_values.values()])
-        self.exports["memory"].write(self.store, fixed.tobytes(), self("lab_fixed"))
-        self.it = self("lab_new")
+        self.exports["memory"].write(self.store, fixed.tobytes(), self("lab_hidden_parameters"))
+        self.it = self("lab_create")
         model = module.model
         self.outputs = [v.name for v in model.outputs]
         names = [*(v.name for v in model.inputs), *self.outputs, *model.parameter_fields()]
@@ -65,7 +65,7 @@ class Instance:
         """From rest with parameters and inputs; whether they are accepted."""
         self("lab_reset", self.it)
         self.set(values)
-        return self("lab_begin", self.it) == 0
+        return self("lab_initialize", self.it) == 0
 
     def set(self, values: Mapping[str, Any]) -> None:
         for name, value in values.items():
@@ -89,7 +89,7 @@ class Instance:
     @property
     def said(self) -> list[str]:
         """Messages since they were last asked for."""
-        at, memory = self("lab_said"), self.exports["memory"]
+        at, memory = self("lab_take_messages"), self.exports["memory"]
         return bytes(memory.read(self.store, at, at + 768)).split(b"\0")[0].decode().splitlines()
 
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.surfaces import csvfile, synthesis
-from jointfmu_tools.surfaces import heights as sift
-from jointfmu_tools.surfaces.form import fill_gaps, remove_form, remove_spikes
-from jointfmu_tools.surfaces.heights import ArealMap, Profile
-from jointfmu_tools.surfaces.reading import read_heights
+from jointfmu_tools.inputs.surfaces import csvfile, synthesis
+from jointfmu_tools.inputs.surfaces import heights as sift
+from jointfmu_tools.inputs.surfaces.form import fill_gaps, remove_form, remove_spikes
+from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
+from jointfmu_tools.inputs.surfaces.reading import read_heights
 
 from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.roughness import RQ_OVER_RA

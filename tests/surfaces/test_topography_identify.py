@@ -6,15 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli, fractal
-from jointfmu_tools.surfaces import synthesis
-from jointfmu_tools.surfaces.fit import fit_law
-from jointfmu_tools.surfaces.form import remove_form
-from jointfmu_tools.surfaces.heights import ArealMap, Profile
-from jointfmu_tools.surfaces.identify import identify
-from jointfmu_tools.surfaces.joint_parameters import fractal_parameters, with_surface
-from jointfmu_tools.surfaces.results import RoughnessEstimate
-from jointfmu_tools.surfaces.spectrum import power_spectrum, structure_function
+from jointfmu_tools import cli
+from jointfmu_tools.inputs import fractal
+from jointfmu_tools.inputs.surfaces import synthesis
+from jointfmu_tools.inputs.surfaces.fit import fit_law
+from jointfmu_tools.inputs.surfaces.form import remove_form
+from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
+from jointfmu_tools.inputs.surfaces.identify import identify
+from jointfmu_tools.inputs.surfaces.joint_parameters import fractal_parameters, with_surface
+from jointfmu_tools.inputs.surfaces.results import RoughnessEstimate
+from jointfmu_tools.inputs.surfaces.spectrum import power_spectrum, structure_function
 from scipy.integrate import quad
 
 from jointfmu.joints import KINDS

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools import fractal
-from jointfmu_tools.surfaces import form, synthesis
-from jointfmu_tools.surfaces.form import remove_form
-from jointfmu_tools.surfaces.heights import ArealMap, Profile
+from jointfmu_tools.inputs import fractal
+from jointfmu_tools.inputs.surfaces import form, synthesis
+from jointfmu_tools.inputs.surfaces.form import remove_form
+from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
 from oracles import rough_surfaces
 
 SIZE, POINTS, G = 1e-3, 256, 1e-9

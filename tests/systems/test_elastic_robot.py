@@ -15,9 +15,9 @@ import pytest
 from clients import needs
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.interface import drive
-from jointfmu_tools.robots import elastic, pictures, poses
-from jointfmu_tools.robots.transmission import make_transmission
+from jointfmu_tools.api import drive
+from jointfmu_tools.exchange.robots import elastic, pictures, poses
+from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 
 from jointfmu.parameters import format_parameter_file
 

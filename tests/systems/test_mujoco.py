@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 from conftest import Fmu
-from jointfmu_tools.mujoco import plugin
+from jointfmu_tools.exchange.mujoco import plugin
 
 NAME = "HarmonicDriveSpring"
 STEP = 5e-4

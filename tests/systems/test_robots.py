@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.robots.fitted import fit_spring
-from jointfmu_tools.robots.transmission import loop_area, make_transmission
+from jointfmu_tools.exchange.robots.fitted import fit_spring
+from jointfmu_tools.exchange.robots.transmission import loop_area
+from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 
 import jointfmu
 

@@ -12,10 +12,10 @@ import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
 from jointfmu_tools import cli
-from jointfmu_tools.modelica.library import render_system
-from jointfmu_tools.modelica.records import template_environment
-from jointfmu_tools.modelica.systems import render_system_model
-from jointfmu_tools.report.systems import joint_load_outputs, system_panels
+from jointfmu_tools.exchange.modelica.library import render_system
+from jointfmu_tools.exchange.modelica.records import template_environment
+from jointfmu_tools.exchange.modelica.systems import render_system_model
+from jointfmu_tools.pages.report.systems import joint_load_outputs, system_panels
 from jointfmu_tools.systems import cosimulation, ssp
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import find_fmu_names

@@ -12,9 +12,9 @@ import pytest
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.proof.series import TimeSeries
 from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
-from jointfmu_tools.host import open_instance, unpack_fmu
-from jointfmu_tools.proof.manifest import RelatedFiles
-from jointfmu_tools.proof.run import prove
+from jointfmu_tools.run.host import open_instance, unpack_fmu
+from jointfmu_tools.run.proof.manifest import RelatedFiles
+from jointfmu_tools.run.proof.run import prove
 from jointfmu_tools.systems.fmu import proof
 from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system

@@ -37,9 +37,9 @@ from jointfmu_fmu_src.partners.laws import (
 )
 from jointfmu_fmu_src.ssv import REAL_ELEMENT
 from jointfmu_tools import cli
-from jointfmu_tools.fitting import decay
+from jointfmu_tools.inputs.fitting import decay
 from jointfmu_tools.joints.harmonic_drive.job import TORQUE_RATIOS
-from jointfmu_tools.report.systems import wind_up_and_tip_error
+from jointfmu_tools.pages.report.systems import wind_up_and_tip_error
 from jointfmu_tools.systems import decays, ringing, ssp
 from jointfmu_tools.systems.cosimulation import simulate as simulate_system
 from jointfmu_tools.systems.master import Slave, simulate_motion

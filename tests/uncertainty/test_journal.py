@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 from clients import needs
-from jointfmu_tools.uncertainty import journal
-from jointfmu_tools.uncertainty.sweep import format_bands_csv
+from jointfmu_tools.studies.uncertainty import journal
+from jointfmu_tools.studies.uncertainty.sweep import format_bands_csv
 
 from jointfmu.files.text import replace_unprintable
 

@@ -9,8 +9,8 @@ import pytest
 from conftest import refused_line
 from joint_cases import JOINTS
 from jointfmu_tools import cli
-from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import reduced_curves, state_problem
+from jointfmu_tools.studies.uncertainty import propagate
+from jointfmu_tools.studies.uncertainty.problem import reduced_curves, state_problem
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_default

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from jointfmu_tools.batch import approach
 from jointfmu_tools.joints.gear_contact import ramp as gear
-from jointfmu_tools.uncertainty import propagate, study
-from jointfmu_tools.uncertainty.problem import state_problem
-from jointfmu_tools.uncertainty.study import parse_distribution
+from jointfmu_tools.studies.batch import approach
+from jointfmu_tools.studies.uncertainty import propagate, study
+from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.study import parse_distribution
 from scipy import stats
 
 from jointfmu.parameters import load_default

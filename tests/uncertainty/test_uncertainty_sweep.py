@@ -18,11 +18,11 @@ import pytest
 from clients import needs
 from conftest import refused_line, run_host
 from jointfmu_tools import cli
-from jointfmu_tools.ramps import ramp
-from jointfmu_tools.uncertainty import journal
-from jointfmu_tools.uncertainty.problem import state_problem
-from jointfmu_tools.uncertainty.sweep import plan_runs, sweep
-from jointfmu_tools.uncertainty.worker import LoadRamp
+from jointfmu_tools.run.ramps import ramp
+from jointfmu_tools.studies.uncertainty import journal
+from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.sweep import plan_runs, sweep
+from jointfmu_tools.studies.uncertainty.worker import LoadRamp
 
 from jointfmu.parameters import format_parameter_file, load_default
 
@@ -45,7 +45,9 @@ def cluster():
     import dask
     from distributed import LocalCluster
 
-    multiprocessing.set_forkserver_preload(["distributed", "fmpy", "jointfmu_tools.uncertainty.worker"])
+    multiprocessing.set_forkserver_preload(
+        ["distributed", "fmpy", "jointfmu_tools.studies.uncertainty.worker"]
+    )
     how = "spawn" if sys.platform == "win32" else "forkserver"
     with (
         dask.config.set({"distributed.worker.multiprocessing-method": how}),
@@ -260,7 +262,7 @@ LOCAL = """
 import sys
 sys.path.insert(0, sys.argv[3])
 import test_uncertainty_sweep as tests
-from jointfmu_tools.uncertainty import sweep
+from jointfmu_tools.studies.uncertainty import sweep
 sweep.run_locally = tests.local_dies_at_five
 fmu, out = map(tests.Path, sys.argv[1:3])
 done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)
@@ -278,7 +280,7 @@ def test_a_local_run_that_kills_its_process(fmu, tmp_path):
 
 def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path, monkeypatch):
     """It is recorded with its parameters; those whose results went down with it are done again."""
-    monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.run_on_dask_worker", dies_at_five)
+    monkeypatch.setattr("jointfmu_tools.studies.uncertainty.plugin.run_on_dask_worker", dies_at_five)
     done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
     assert (done.run_count, done.new_runs, done.failed_count) == (24, 24, 1)
     assert sorted(indices(tmp_path)) == list(range(24))

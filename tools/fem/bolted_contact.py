@@ -8,8 +8,8 @@ from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..fields.joint_parameters import insert_field
-from ..fields.nodal_result import ContactField
+from ..inputs.fields.joint_parameters import insert_field
+from ..inputs.fields.nodal_result import ContactField
 from .contact import ContactModel, ContactSolution, Interface, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, Body

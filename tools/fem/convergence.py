@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from ..fields.nodal_result import ContactField
+from ..inputs.fields.nodal_result import ContactField
 from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .geometry import Assembly

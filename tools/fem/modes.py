@@ -13,7 +13,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.quantity import Array
 
-from ..fields.bolted_interface import BoltedInterface
+from ..inputs.fields.bolted_interface import BoltedInterface
 from .bolted_contact import BoltedContact, JointSolution
 from .contact import Interface, PressureLaw, displacement_matrix
 from .elasticity import Cholesky, ElasticBody

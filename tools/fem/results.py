@@ -10,9 +10,9 @@ from jointfmu.files.outputs import PROGRAM_MARK
 from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.quantity import Array
 
-from .. import plots
-from ..columns import FIELD_FILE_KIND
-from ..fields import nodal_result
+from ..common import plots
+from ..common.columns import FIELD_FILE_KIND
+from ..inputs.fields import nodal_result
 from .bolted_contact import JointSolution
 from .elasticity import ElasticBody, IndexArray
 from .modes import NaturalModes

@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from ..joint_parts import PARTS
+from ..common.joint_parts import PARTS
 
 _FOLDERS = ("harmonic_drive", "bolted_joint", "gear_contact", "gear_mesh")
 PARTS |= {name: import_module(f".{name}", __name__).PARTS for name in _FOLDERS}

@@ -12,9 +12,9 @@ from scipy.interpolate import CubicSpline
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from ..fitting import decay
-from ..fitting.hysteresis import HysteresisLaw
-from ..ramps import loops
+from ..inputs.fitting import decay
+from ..inputs.fitting.hysteresis import HysteresisLaw
+from ..run.ramps import loops
 from .master import Slave, simulate_motion
 from .ringing import STEPS_PER_PERIOD, VibratingJoint, VibrationTest, WorkingPoint, find_vibrating_joints
 

@@ -11,7 +11,7 @@ from fmpy.fmi1 import FMICallException
 
 from jointfmu.quantity import Array
 
-from ..host import open_instance, unpack_fmu
+from ..run.host import open_instance, unpack_fmu
 
 T = TypeVar("T")
 

@@ -13,7 +13,7 @@ from jointfmu.joints import KINDS
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array, flat_fields
 
-from ..joint_parts import load_tool_module
+from ..common.joint_parts import load_tool_module
 from .master import Slave, damping_ratio, peak_frequency, simulate_motion
 from .ssp import find_fmu_names, list_values
 from .system import Component, System, load_systems

@@ -16,11 +16,11 @@ from jointfmu_fmu_src.partners import load_partner_parameters as partner_paramet
 from jointfmu_fmu_src.ssv import REAL_ELEMENT, SSP_NAMESPACE, ParameterValue, add_units, format_parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialize_xml
 
-from jointfmu import __version__
 from jointfmu.files.outputs import ARCHIVE, check_outputs
 from jointfmu.files.timestamp import fixed_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import map_jobs
+from jointfmu.version import __version__
 
 from .system import Component, System, load_systems
 from .wiring import find_lag_parameters, find_model, find_signals

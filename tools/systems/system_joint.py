@@ -8,7 +8,7 @@ from typing import Any
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_parameter_file
 
-from ..joint_parts import load_tool_module
+from ..common.joint_parts import load_tool_module
 
 FILE_KEYS = {"parameters", "catalogue"}
 """Entries that select a parameter file: a path relative to the system file, or a name in the catalogue."""

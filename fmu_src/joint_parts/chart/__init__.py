@@ -1,7 +1,7 @@
 """Charts of HTML pages: FMU documentation, report and laboratory share one script that draws them.
 
 A page contains the curves as JSON and the script. So building an FMU needs no plotting package, and its bytes
-are the same on every platform. Image files are drawn by matplotlib instead (`jointfmu_tools.plots`).
+are the same on every platform. Image files are drawn by matplotlib instead (`jointfmu_tools.common.plots`).
 """
 
 import json

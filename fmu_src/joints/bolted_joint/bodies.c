@@ -2,10 +2,10 @@
 
 #include <string.h>
 
-#include "cold.h"
-#include "vectors.h"
+#include "optimize_for_size.h"
+#include "simd.h"
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Row of a Jacobian from modal values in units of the last digit, and three derivatives by q. */
 static void set_row(const int16_t *digits, const double rigid[3], double *row)
@@ -19,7 +19,7 @@ static void set_row(const int16_t *digits, const double rigid[3], double *row)
 void bodies_tabulate(Bodies *bodies)
 {
     double rigid[3];
-    bodies->use_avx = vectors_of_four();
+    bodies->use_avx = has_avx();
     if (!ELASTIC)
         return;
     for (int k = 0; k < MODES; k++)
@@ -58,4 +58,4 @@ void deform(const Bodies *bodies, const double *modal_coordinates, Deformation *
                deformation->opening);
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

@@ -11,19 +11,19 @@
 /* Modal coordinates a [m], the opening [m] of the points and the displacement [m] of the patches along x, y and around
  * their centres; or their rates. */
 typedef struct {
-    double modal_coordinates[MODES], opening[MOST_POINTS], patch_displacement[MOST_PATCHES][3];
+    double modal_coordinates[MODES], opening[MAX_POINTS], patch_displacement[MAX_PATCHES][3];
 } Deformation;
 
 /* Rows of the Jacobians: derivatives by the modal coordinates [1], then by three components of q [1, m]: normal ones of
  * openings and elongations, tangential ones of patches. */
 typedef struct {
-    bool use_avx;            /* the processor has vectors of four */
+    bool use_avx;            /* the processor has AVX */
     double stiffness[MODES]; /* modal [N/m]; 1 of modes that are missing */
-    double opening_jacobian[MOST_OPENING][N_COLUMNS];
-    double patch_jacobian[3][MOST_PATCH_DISPLACEMENT_X][N_COLUMNS];
-    double elongation_jacobian[MOST_BOLT_ELONGATION][N_COLUMNS];
+    double opening_jacobian[MAX_OPENING][N_COLUMNS];
+    double patch_jacobian[3][MAX_PATCH_DISPLACEMENT_X][N_COLUMNS];
+    double elongation_jacobian[MAX_BOLT_ELONGATION][N_COLUMNS];
     Deformation state, rate; /* of the last trial, and along the last seed */
-    double start_displacement[MOST_PATCHES][3]; /* of the patches [m] at the start of the load step */
+    double start_displacement[MAX_PATCHES][3]; /* of the patches [m] at the start of the load step */
 } Bodies;
 
 /* Read the modes from the data. */

@@ -4,135 +4,141 @@
 
 #include <string.h>
 
-#include "cold.h"
-#include "tabulated.h"
+#include "optimize_for_size.h"
+#include "tabulated_joint.h"
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Tables */
 
-static bool tabulate(Joint *joint, int steps, Text *why)
+static bool tabulate(Joint *joint, int steps, Text *reason)
 {
-    Contact *contact = &joint->kind.contact;
-    return approach_tabulate(&contact->law, &joint->curve, &contact->spots, joint->c, steps, why);
+    Contact *contact = &joint->model.contact;
+    return tabulate_approach(&contact->law, &joint->curve, &contact->spots, joint->constants, steps, reason);
 }
 
 /* Parts of the joint from its constants. */
 static void set_parts(Joint *joint, const double constants[7])
 {
-    Kind *kind = &joint->kind;
-    kind->contact.c = joint->c;
-    kind->contact.curve = &joint->curve;
-    kind->contact.area = constants[3];
-    kind->friction.has_history = constants[0] != 0.0;
-    kind->friction.mu = constants[1];
-    kind->friction.stiffness_ratio = constants[2];
-    kind->bolts.stiffness = constants[4];
-    kind->bolts.count = constants[6] / (double)data.n_bolts;
-    kind->bolts.lift_off = BOLT_LIFT_OFF_RATIO * kind->contact.law.closed * kind->contact.area;
-    kind->equilibrium.assembly = (JointAssembly){&kind->contact, &kind->bodies, &kind->bolts, &kind->friction};
-    kind->equilibrium.start.is_known = kind->equilibrium.end.is_known = false;
+    JointModel *model = &joint->model;
+    model->contact.c = joint->constants;
+    model->contact.curve = &joint->curve;
+    model->contact.area = constants[3];
+    model->friction.has_history = constants[0] != 0.0;
+    model->friction.mu = constants[1];
+    model->friction.stiffness_ratio = constants[2];
+    model->bolts.stiffness = constants[4];
+    model->bolts.count = constants[6] / (double)data.n_bolts;
+    model->bolts.lift_off = BOLT_LIFT_OFF_RATIO * model->contact.law.closing_end_pressure * model->contact.area;
+    model->equilibrium.assembly = (JointAssembly){&model->contact, &model->bodies, &model->bolts, &model->friction};
+    model->equilibrium.start.is_known = model->equilibrium.end.is_known = false;
 }
 
-bool kind_tabulate(Joint *joint, Text *why)
+bool tabulate_model(Joint *joint, Text *reason)
 {
-    Kind *kind = &joint->kind;
+    JointModel *model = &joint->model;
     double constants[7];
-    kind->contact.preload.is_current = false;
-    if (!spots_begin(&kind->contact.spots, joint->c, why) || !refined(joint, tabulate, APPROACH_STEPS, why))
+    model->contact.preload.is_current = false;
+    if (!set_spot_distribution(&model->contact.spots, joint->constants, reason) ||
+        !refine_curve(joint, tabulate, APPROACH_STEPS, reason))
         return false;
-    joint_constants(0, joint->c, constants);
+    joint_constants(0, joint->constants, constants);
     set_parts(joint, constants);
-    if (ELASTIC && (!kind->friction.has_history || constants[5] != 0.0)) {
-        text_add(why, kind->friction.has_history ? "damping = true with sides = elastic; expected false, the dashpots act between rigid sides only"
-                                                 : "memory = false with sides = elastic; expected true, elastic sides need friction with memory");
+    if (ELASTIC && (!model->friction.has_history || constants[5] != 0.0)) {
+        text_append(reason, model->friction.has_history
+                                ? "damping = true with sides = elastic; expected false, the dashpots act between "
+                                  "rigid sides only"
+                                : "memory = false with sides = elastic; expected true, elastic sides need friction "
+                                  "with memory");
         return false;
     }
-    bodies_tabulate(&kind->bodies);
-    contact_tabulate(&kind->contact);
-    friction_tabulate(&kind->friction, &kind->contact, kind->bodies.use_avx);
+    bodies_tabulate(&model->bodies);
+    contact_tabulate(&model->contact);
+    friction_tabulate(&model->friction, &model->contact, model->bodies.use_avx);
     return true;
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE
 
 /* Evaluation */
 
 /* Preload state and preload forces of the bolts. */
 static void preload(Joint *joint, const double *inputs)
 {
-    Kind *kind = &joint->kind;
-    if (!set_preload_state(&kind->contact, inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT]))
+    JointModel *model = &joint->model;
+    if (!set_preload_state(&model->contact, inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT]))
         return;
-    set_preload_force(&kind->bolts, joint->c, inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT]);
-    kind->sums.points_are_current = false;
+    set_preload_force(&model->bolts, joint->constants, inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT]);
+    model->sums.points_are_current = false;
 }
 
 /* Whether pressures are those of the preload state: no opening, and without history no shear. */
-static bool is_preload_state(const Kind *kind, const double *q)
+static bool is_preload_state(const JointModel *model, const double *q)
 {
     const bool is_sheared = q[S_X] != 0.0 || q[S_Y] != 0.0 || q[THETA_Z] != 0.0;
     for (int k = 0; k < MODES && ELASTIC; k++)
-        if (kind->bodies.state.modal_coordinates[k] != 0.0)
+        if (model->bodies.state.modal_coordinates[k] != 0.0)
             return false;
-    return q[S_Z] == 0.0 && q[THETA_X] == 0.0 && q[THETA_Y] == 0.0 && (kind->friction.has_history || !is_sheared);
+    return q[S_Z] == 0.0 && q[THETA_X] == 0.0 && q[THETA_Y] == 0.0 && (model->friction.has_history || !is_sheared);
 }
 
 /* Points and patches between elastic bodies. */
-static bool evaluate_elastic(Kind *kind, const double *inputs, const double *history, double *after, Text *why)
+static bool evaluate_elastic(JointModel *model, const double *inputs, const double *history, double *after,
+                             Text *reason)
 {
-    if (!solve_equilibrium(&kind->equilibrium, inputs, history, after, why))
+    if (!solve_equilibrium(&model->equilibrium, inputs, history, after, reason))
         return false;
-    sum_points(&kind->sums, &kind->contact);
+    sum_points(&model->sums, &model->contact);
     return true;
 }
 
 /* The same between rigid bodies. */
-static bool evaluate_rigid(Kind *kind, const double *q, const double *history, double *after, Text *why)
+static bool evaluate_rigid(JointModel *model, const double *q, const double *history, double *after, Text *reason)
 {
-    Friction *friction = &kind->friction;
+    Friction *friction = &model->friction;
     const bool accepted =
-        friction->has_history ? evaluate_point_sums(&kind->sums, &kind->contact, &kind->bodies, q, why)
-                              : evaluate_elastic_shear(&kind->sums, &kind->contact, friction->mu, q, why);
+        friction->has_history ? evaluate_point_sums(&model->sums, &model->contact, &model->bodies, q, reason)
+                              : evaluate_elastic_shear(&model->sums, &model->contact, friction->mu, q, reason);
     if (!accepted)
         return false;
-    evaluate_patches(&kind->contact, kind->bodies.state.opening, q);
+    evaluate_patches(&model->contact, model->bodies.state.opening, q);
     if (friction->has_history) {
-        set_increments(friction, &kind->bodies, history, q);
-        update_friction(friction, &kind->contact, history, q, after);
+        set_increments(friction, &model->bodies, history, q);
+        update_friction(friction, &model->contact, history, q, after);
     } else {
-        update_without_history(friction, &kind->contact, history, after);
+        update_without_history(friction, &model->contact, history, after);
     }
-    memset(after + AT_NORMAL, 0, (N_MEMORY - AT_NORMAL) * sizeof *after);
+    memset(after + HISTORY_NORMAL, 0, (N_HISTORY - HISTORY_NORMAL) * sizeof *after);
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *after, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *after, double *out, Text *reason)
 {
-    Kind *kind = &joint->kind;
-    OutputSums *sums = &kind->sums;
+    JointModel *model = &joint->model;
+    OutputSums *sums = &model->sums;
     double q[N_DISPLACEMENTS];
     memset(sums->x, 0, sizeof sums->x);
     relative_displacement(inputs, q);
     preload(joint, inputs);
-    if (!(ELASTIC ? evaluate_elastic(kind, inputs, history, after, why) : evaluate_rigid(kind, q, history, after, why)))
+    if (!(ELASTIC ? evaluate_elastic(model, inputs, history, after, reason)
+                  : evaluate_rigid(model, q, history, after, reason)))
         return false;
-    if (is_preload_state(kind, q))
-        use_preload_sums(sums, &kind->contact);
-    sum_patches(sums, &kind->friction, after, kind->contact.area);
-    sum_cycles(sums, &kind->friction, &kind->contact, &kind->bodies, q);
+    if (is_preload_state(model, q))
+        use_preload_sums(sums, &model->contact);
+    sum_patches(sums, &model->friction, after, model->contact.area);
+    sum_cycles(sums, &model->friction, &model->contact, &model->bodies, q);
     if (ELASTIC)
-        assembly_sums(sums, &kind->equilibrium, q);
+        assembly_sums(sums, &model->equilibrium, q);
     else
-        sum_gaps(sums, &kind->bolts, kind->contact.area, q);
-    set_output_arguments(sums, &kind->contact, inputs);
-    outputs(sums->x, joint->c, out);
+        sum_gaps(sums, &model->bolts, model->contact.area, q);
+    set_output_arguments(sums, &model->contact, inputs);
+    outputs(sums->x, joint->constants, out);
     if (ELASTIC)
-        memcpy(out + N_INTERFACE_OUTPUTS, kind->bolts.force, (size_t)data.n_bolt_elongation * sizeof *out);
+        memcpy(out + N_INTERFACE_OUTPUTS, model->bolts.force, (size_t)data.n_bolt_elongation * sizeof *out);
     return true;
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Derivatives
  *
@@ -144,36 +150,36 @@ typedef struct {
     const double *seed, *history, *after;
 } Seed;
 
-static void point_rates(Kind *kind, const Seed *seed)
+static void point_rates(JointModel *model, const Seed *seed)
 {
-    set_point_rates(&kind->contact, kind->bodies.rate.opening, seed->q_rate, seed->bolts);
+    set_point_rates(&model->contact, model->bodies.rate.opening, seed->q_rate, seed->bolts);
 }
 
 enum { MAX_SIDE_ITERATIONS = 20 }; /* until the sliders that slip are those that the motion of the patches lets slip */
 
 /* Rates of the deformation of elastic bodies, on one side of a corner. */
-static void deformation_rates(Kind *kind, const Seed *seed)
+static void deformation_rates(JointModel *model, const Seed *seed)
 {
-    Bodies *bodies = &kind->bodies;
-    Friction *friction = &kind->friction;
+    Bodies *bodies = &model->bodies;
+    Friction *friction = &model->friction;
     double before[MODES];
-    IncrementRate rates[MOST_PATCHES];
+    IncrementRate rates[MAX_PATCHES];
     memset(friction->direction, 0, sizeof friction->direction);
     for (int n = 0; n < MAX_SIDE_ITERATIONS; n++) {
         memcpy(before, bodies->rate.modal_coordinates, sizeof before);
         memset(bodies->rate.opening, 0, sizeof bodies->rate.opening);
         memset(bodies->rate.patch_displacement, 0, sizeof bodies->rate.patch_displacement);
-        point_rates(kind, seed);
-        increment_rates(friction, &kind->contact, bodies, seed->q_rate, seed->bolts, rates);
+        point_rates(model, seed);
+        increment_rates(friction, &model->contact, bodies, seed->q_rate, seed->bolts, rates);
         if (n == 0)
             set_direction(friction, rates);
         friction->is_corner = false;
         update_rates(friction, seed->history, seed->after, rates);
-        solve_modal_rates(&kind->equilibrium, seed->q_rate, seed->history, seed->after);
+        solve_modal_rates(&model->equilibrium, seed->q_rate, seed->history, seed->after);
         if (!friction->is_corner || (n > 0 && memcmp(before, bodies->rate.modal_coordinates, sizeof before) == 0))
             break;
-        point_rates(kind, seed);
-        increment_rates(friction, &kind->contact, bodies, seed->q_rate, seed->bolts, rates);
+        point_rates(model, seed);
+        increment_rates(friction, &model->contact, bodies, seed->q_rate, seed->bolts, rates);
         set_direction(friction, rates);
     }
 }
@@ -181,43 +187,43 @@ static void deformation_rates(Kind *kind, const Seed *seed)
 /* Derivative along a seed on one side, 1 or -1 along it; true: the other side has another one. */
 static bool side_derivative(Joint *joint, const Seed *seed, double side, double *result)
 {
-    Kind *kind = &joint->kind;
-    Friction *friction = &kind->friction;
+    JointModel *model = &joint->model;
+    Friction *friction = &model->friction;
     double x[2 * N_X] = {0.0}, *dx = x + N_X;
-    IncrementRate rates[MOST_PATCHES];
+    IncrementRate rates[MAX_PATCHES];
     friction->side = side;
     friction->is_corner = false;
-    memcpy(x, kind->sums.x, sizeof kind->sums.x);
+    memcpy(x, model->sums.x, sizeof model->sums.x);
     if (ELASTIC)
-        deformation_rates(kind, seed);
-    point_rates(kind, seed);
-    add_point_rates(&kind->contact, friction, seed->q, seed->q_rate, dx);
-    const bool is_corner = max_pressure_rate(&kind->sums, &kind->contact, side, &dx[X_P_MAX]);
-    increment_rates(friction, &kind->contact, &kind->bodies, seed->q_rate, seed->bolts, rates);
+        deformation_rates(model, seed);
+    point_rates(model, seed);
+    add_point_rates(&model->contact, friction, seed->q, seed->q_rate, dx);
+    const bool is_corner = max_pressure_rate(&model->sums, &model->contact, side, &dx[X_P_MAX]);
+    increment_rates(friction, &model->contact, &model->bodies, seed->q_rate, seed->bolts, rates);
     if (!ELASTIC)
         set_direction(friction, rates);
-    add_cycle_rates(friction, &kind->contact, &kind->bodies, seed->q, rates, dx);
+    add_cycle_rates(friction, &model->contact, &model->bodies, seed->q, rates, dx);
     update_rates(friction, seed->history, seed->after, rates);
     if (friction->has_history)
         add_patch_rates(friction, rates, dx);
     if (ELASTIC)
-        add_assembly_rates(&kind->equilibrium, seed->q, seed->q_rate, dx);
+        add_assembly_rates(&model->equilibrium, seed->q, seed->q_rate, dx);
     else
-        add_gap_rates(&kind->bolts, seed->q_rate, dx);
+        add_gap_rates(&model->bolts, seed->q_rate, dx);
     memcpy(dx + X_S_REL, seed->seed + INPUT_S_REL_X, 3 * sizeof *dx);
     memcpy(dx + X_THETA, seed->seed + INPUT_THETA_X, 3 * sizeof *dx);
     memcpy(dx + X_RATES, seed->seed + INPUT_V_REL_X, 3 * sizeof *dx);
     memcpy(dx + X_RATES + 3, seed->seed + INPUT_OMEGA_X, 3 * sizeof *dx);
-    outputs_seed(x, joint->c, result);
+    outputs_seed(x, joint->constants, result);
     if (ELASTIC)
-        bolt_force_rates(&kind->equilibrium, seed->q_rate, result + N_INTERFACE_OUTPUTS);
+        bolt_force_rates(&model->equilibrium, seed->q_rate, result + N_INTERFACE_OUTPUTS);
     return is_corner || friction->is_corner;
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *after,
                       const double *seed, double *result)
 {
-    Kind *kind = &joint->kind;
+    JointModel *model = &joint->model;
     const double preload[4] = {inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT], seed[INPUT_PRELOAD], seed[INPUT_MOMENT]};
     Seed along = {.seed = seed, .history = history, .after = after};
     double other[N_OUTPUTS];
@@ -225,12 +231,12 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
     text_clear(&ignored);
     relative_displacement(inputs, along.q);
     relative_displacement(seed, along.q_rate);
-    bolt_pressures(preload, joint->c, along.bolts);
-    bolt_pressures_seed(preload, joint->c, along.bolts + 2);
-    set_preload_rate(&kind->bolts, joint->c, preload[0], preload[2], preload[3]);
-    if (after && kind->friction.state != FULL_STICK && kind->friction.has_history)
-        set_heights_from(&kind->friction, after); /* as the next update sets them */
-    if (!evaluate_derivatives(&kind->contact, kind->bodies.state.opening, along.q, &ignored))
+    bolt_pressures(preload, joint->constants, along.bolts);
+    bolt_pressures_seed(preload, joint->constants, along.bolts + 2);
+    set_preload_rate(&model->bolts, joint->constants, preload[0], preload[2], preload[3]);
+    if (after && model->friction.state != FULL_STICK && model->friction.has_history)
+        set_heights_from(&model->friction, after); /* as the next update sets them */
+    if (!evaluate_derivatives(&model->contact, model->bodies.state.opening, along.q, &ignored))
         return;
     if (!side_derivative(joint, &along, 1.0, result))
         return;
@@ -239,4 +245,4 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
         result[k] = 0.5 * (result[k] + other[k]);
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

@@ -17,6 +17,6 @@ typedef struct {
     Contact contact;
     Friction friction;
     Equilibrium equilibrium; /* of elastic bodies */
-} Kind;
+} JointModel;
 
 #endif

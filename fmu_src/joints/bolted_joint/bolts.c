@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "cold.h"
+#include "optimize_for_size.h"
 
 void elongate_bolt(Bolts *bolts, int b, double elongation)
 {
@@ -21,7 +21,7 @@ double bolt_gap_rate(const Bolts *bolts, int b, double elongation_rate)
     return -(1.0 - active) * elongation_rate - (active == 0.0 ? bolts->preload_rate[b] / bolts->stiffness : 0.0);
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 void set_preload_force(Bolts *bolts, const double *c, double preload, double moment)
 {
@@ -43,4 +43,4 @@ void set_preload_rate(Bolts *bolts, const double *c, double preload, double prel
             bolts->is_unloaded[b] ? 0.0 : working + moment_rate * (data.bolts[b][BOLT_LEVER] / bolts->count);
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

@@ -12,11 +12,11 @@ typedef struct {
     double stiffness; /* of each bolt [N/m] */
     double count;     /* bolts at each position [1] */
     double lift_off;  /* largest force [N] of a bolt that stands at lift-off */
-    double preload_force[MOST_BOLTS]; /* of each bolt [N] */
-    bool is_unloaded[MOST_BOLTS];     /* the moment would make the preload force negative */
-    double preload_rate[MOST_BOLTS];  /* rate of the preload force along the last seed */
+    double preload_force[MAX_BOLTS]; /* of each bolt [N] */
+    bool is_unloaded[MAX_BOLTS];     /* the moment would make the preload force negative */
+    double preload_rate[MAX_BOLTS];  /* rate of the preload force along the last seed */
     /* In the last trial: gap under the head [m], force [N], and the fraction of the stiffness that acts [1]. */
-    double gap[MOST_BOLTS], force[MOST_BOLTS], active_fraction[MOST_BOLTS];
+    double gap[MAX_BOLTS], force[MAX_BOLTS], active_fraction[MAX_BOLTS];
 } Bolts;
 
 /* Preload forces from preload per bolt [N] and moment [N.m]; c are the constants. */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "cold.h"
+#include "optimize_for_size.h"
 #include "dense.h"
 
 _Static_assert(N_LAW_STATE == 2, "plastic and elastic work");
@@ -36,15 +36,15 @@ static double open_approach(const Contact *contact, const double *modal_opening,
         if (data.pressure_transfer[e][TRANSFER_PATCH] == j)
             nearest = fmax(nearest,
                            point_approach(contact, modal_opening, data.pressure_transfer[e][TRANSFER_POINT], q));
-    return fmin(nearest, contact->curve->first.x);
+    return fmin(nearest, contact->curve->start.x);
 }
 
 /* Approaches at pressures, which become those that the approaches have; open patches are left out. */
 static void invert_curve(const Curve *curve, int n, bool leave_out_open, double *pressure, double *approach)
 {
-    int segment[MOST_POINTS > MOST_PATCHES ? MOST_POINTS : MOST_PATCHES] = {0};
+    int segment[MAX_POINTS > MAX_PATCHES ? MAX_POINTS : MAX_PATCHES] = {0};
     for (int i = 0; i < n && ELASTIC; i++) /* in a loop of its own: no search waits for another */
-        segment[i] = pressure[i] < curve->end.y ? curve_segment_of_load(curve, pressure[i]) : 0;
+        segment[i] = pressure[i] < curve->end.y ? curve_find_segment_of_load(curve, pressure[i]) : 0;
     for (int i = 0; i < n; i++)
         if (!leave_out_open || pressure[i] > 0.0)
             approach[i] = curve_inverse(curve, pressure[i], &segment[ELASTIC ? i : 0], &pressure[i]);
@@ -53,7 +53,7 @@ static void invert_curve(const Curve *curve, int n, bool leave_out_open, double 
 void evaluate_patches(Contact *contact, const double *modal_opening, const double *q)
 {
     if (ELASTIC) {
-        double transferred[MOST_PATCHES];
+        double transferred[MAX_PATCHES];
         transfer_pressure(contact, contact->pressure, transferred);
         for (int j = 0; j < n_patches(); j++)
             if (!(transferred[j] > 0.0))
@@ -85,7 +85,7 @@ bool set_preload_state(Contact *contact, double preload, double moment)
     PreloadState *state = &contact->preload;
     if (state->is_current && state->preload == preload && state->moment == moment)
         return false;
-    double bolts[2], patch_pressure[MOST_PATCHES];
+    double bolts[2], patch_pressure[MAX_PATCHES];
     bolt_pressures((const double[]){preload, moment}, contact->c, bolts);
     preload_rows(contact, n_points(), data.points[0], sizeof data.points[0] / sizeof(double), bolts, state->approach,
                  state->pressure);
@@ -109,19 +109,19 @@ bool set_preload_state(Contact *contact, double preload, double moment)
 /* Points */
 
 bool state_outside(const Contact *contact, double approach, int order, double *y, double *works, double *slopes,
-                   Text *why)
+                   Text *reason)
 {
     const Curve *curve = contact->curve;
-    curve_at(curve, approach, order, y);
+    curve_evaluate(curve, approach, order, y);
     if (approach >= curve->end.x) {
-        if (!approach_exact(&contact->spots, contact->c, y[0], contact->law.last, works, slopes, why))
+        if (!evaluate_law_state(&contact->spots, contact->c, y[0], contact->law.last_log_area, works, slopes, reason))
             return false;
         for (int w = 0; w < N_LAW_STATE; w++)
             slopes[w] *= y[1];
         return true;
     }
     for (int w = 0; w < N_LAW_STATE; w++) {
-        works[w] = contact->law.state[0][w][0];
+        works[w] = contact->law.state_polynomial[0][w][0];
         slopes[w] = 0.0;
     }
     return true;
@@ -133,33 +133,33 @@ typedef struct {
     double p[POINT_BATCH], k[POINT_BATCH], works[POINT_BATCH][N_LAW_STATE];
 } PointBatch;
 
-static inline bool evaluate_batch(const Contact *contact, const double *modal_opening, const double *q, int first, int n,
-                                  bool with_work, PointBatch *batch, Text *why)
+static inline bool evaluate_batch(const Contact *contact, const double *modal_opening, const double *q, int first,
+                                  int n, bool with_work, PointBatch *batch, Text *reason)
 {
     const Curve *curve = contact->curve;
-    const double begin = curve->first.x, end = curve->end.x;
+    const double begin = curve->start.x, end = curve->end.x;
     double approach[POINT_BATCH], at[POINT_BATCH];
     int segment[POINT_BATCH];
     for (int i = 0; i < n; i++) {
         const double x = point_approach(contact, modal_opening, first + i, q);
         approach[i] = x;
         const double inside = x < begin ? begin : (x < end ? x : begin);
-        segment[i] = curve_segment(curve, inside);
-        at[i] = (inside - curve->x[segment[i]]) * curve->per[segment[i]];
+        segment[i] = curve_find_segment(curve, inside);
+        at[i] = (inside - curve->x[segment[i]]) * curve->inverse_length[segment[i]];
     }
     for (int i = 0; i < n; i++) {
         const int k = segment[i];
-        const double t = at[i], *a = curve->a[k];
-        batch->p[i] = curve_value(a, t);
-        batch->k[i] = curve_slope(a, t) * curve->per[k];
+        const double t = at[i], *a = curve->coefficients[k];
+        batch->p[i] = polynomial_value(a, t);
+        batch->k[i] = polynomial_slope(a, t) * curve->inverse_length[k];
         for (int w = 0; w < N_LAW_STATE && with_work; w++)
-            batch->works[i][w] = curve_value(contact->law.state[k][w], t);
+            batch->works[i][w] = polynomial_value(contact->law.state_polynomial[k][w], t);
     }
     for (int i = 0; i < n; i++) {
         double y[2], slopes[N_LAW_STATE];
         if (approach[i] >= begin && approach[i] < end)
             continue;
-        if (!state_outside(contact, approach[i], 1, y, batch->works[i], slopes, why))
+        if (!state_outside(contact, approach[i], 1, y, batch->works[i], slopes, reason))
             return false;
         batch->p[i] = y[0];
         batch->k[i] = y[1];
@@ -167,12 +167,12 @@ static inline bool evaluate_batch(const Contact *contact, const double *modal_op
     return true;
 }
 
-bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *why)
+bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *reason)
 {
     PointBatch batch;
     for (int first = 0; first < n_points(); first += POINT_BATCH) {
         const int n = n_points() - first < POINT_BATCH ? n_points() - first : POINT_BATCH;
-        if (!evaluate_batch(contact, modal_opening, q, first, n, with_work, &batch, why))
+        if (!evaluate_batch(contact, modal_opening, q, first, n, with_work, &batch, reason))
             return false;
         memcpy(contact->pressure + first, batch.p, (size_t)n * sizeof *batch.p);
         memcpy(contact->stiffness + first, batch.k, (size_t)n * sizeof *batch.k);
@@ -182,12 +182,12 @@ bool evaluate_points(Contact *contact, const double *modal_opening, const double
     return true;
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 void contact_tabulate(Contact *contact)
 {
     contact->preload.is_current = false;
-    energy_tabulate(&contact->energy, contact->curve);
+    tabulate_energy(&contact->energy, contact->curve);
     for (int i = 0; i < n_points(); i++) {
         const double share = data.points[i][SHARE], x = data.points[i][POSITION_X], y = data.points[i][POSITION_Y];
         const double weight[6] = {share, share * x, share * y, share * y * y, share * x * x, share * x * y};
@@ -213,18 +213,18 @@ double preload_approach_rate(const Contact *contact, const double *point, const 
     if (bolts[2] == 0.0 && bolts[3] == 0.0)
         return 0.0;
     shaped_pressure_seed(x, contact->c, &rate);
-    curve_at(contact->curve, approach, 1, y);
+    curve_evaluate(contact->curve, approach, 1, y);
     *stiffness = y[1];
     return y[1] > 0.0 ? rate / y[1] : 0.0;
 }
 
-bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *why)
+bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *reason)
 {
     for (int i = 0; i < n_points(); i++) {
         PointRate *rate = &contact->rate[i];
         const double approach = point_approach(contact, modal_opening, i, q);
         double works[N_LAW_STATE];
-        if (!point_state(contact, approach, 4, rate->derivatives, works, rate->work_slope, why))
+        if (!point_state(contact, approach, 4, rate->derivatives, works, rate->work_slope, reason))
             return false;
     }
     return true;
@@ -240,4 +240,4 @@ void set_point_rates(Contact *contact, const double *modal_opening_rate, const d
     }
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

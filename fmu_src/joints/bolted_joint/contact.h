@@ -18,8 +18,8 @@ enum { TRANSFER_PATCH, TRANSFER_POINT, TRANSFER_SHARE }; /* columns of `data.pre
 typedef struct {
     bool is_current;
     double preload, moment;
-    double approach[MOST_POINTS], pressure[MOST_POINTS]; /* of the points [m, Pa] */
-    double patch_approach[MOST_PATCHES];                 /* [m] */
+    double approach[MAX_POINTS], pressure[MAX_POINTS]; /* of the points [m, Pa] */
+    double patch_approach[MAX_PATCHES];                 /* [m] */
     double sums[3];                                      /* sum of the pressure [Pa], times x, times y [N/m] */
 } PreloadState;
 
@@ -33,18 +33,18 @@ typedef struct {
 typedef struct {
     const double *c; /* constants of the joint */
     const Curve *curve;
-    Energy energy; /* integral of the curve */
-    Spots spots;
-    Approach law; /* of first loading over the approach */
+    CurveEnergy energy; /* integral of the curve */
+    SpotDistribution spots;
+    ApproachTable law; /* of first loading over the approach */
     double area;  /* nominal area of the contact [m2] */
-    double weight[MOST_POINTS][6]; /* share of each point, times 1, x, y, y^2, x^2, x y */
-    double pressure_transfer[MOST_PRESSURE_TRANSFER]; /* pressure of a patch over that of a point, rows of the data */
-    int transfer_end[MOST_PATCHES];                   /* end of the rows of each patch */
+    double weight[MAX_POINTS][6]; /* share of each point, times 1, x, y, y^2, x^2, x y */
+    double pressure_transfer[MAX_PRESSURE_TRANSFER]; /* pressure of a patch over that of a point, rows of the data */
+    int transfer_end[MAX_PATCHES];                   /* end of the rows of each patch */
     PreloadState preload;
     /* In the last trial: pressure [Pa], stiffness [Pa/m] and work [J] of the points, approach [m] of the patches. */
-    double pressure[MOST_POINTS], stiffness[MOST_POINTS], work[MOST_POINTS][N_LAW_STATE];
-    double patch_approach[MOST_PATCHES];
-    PointRate rate[MOST_POINTS];
+    double pressure[MAX_POINTS], stiffness[MAX_POINTS], work[MAX_POINTS][N_LAW_STATE];
+    double patch_approach[MAX_PATCHES];
+    PointRate rate[MAX_POINTS];
 } Contact;
 
 /* Shares of the points and pressure transfer, once for a parameter set. */
@@ -55,12 +55,12 @@ bool set_preload_state(Contact *contact, double preload, double moment);
 void transfer_pressure(const Contact *contact, const double *points, double *patches);
 /* Pressure and stiffness of the points at q and a modal opening (n) [m], their work too if `with_work`.
  * false: refused, with the reason. */
-bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *why);
-/* Patch approach [m] that gives the transferred pressure. If all points of a patch are open: the approach of the nearest
- * point. Between rigid bodies it follows from q. */
+bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *reason);
+/* Patch approach [m] that gives the transferred pressure. If all points of a patch are open: the approach of the
+ * nearest point. Between rigid bodies it follows from q. */
 void evaluate_patches(Contact *contact, const double *modal_opening, const double *q);
 /* Derivatives of all points by their approaches, in `contact->rate`. */
-bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *why);
+bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *reason);
 /* Rates of the points along a seed; bolt pressures as `bolt_pressures` gives them, with their rates. */
 void set_point_rates(Contact *contact, const double *modal_opening_rate, const double *q_rate, const double bolts[4]);
 /* Rate of the approach [m] of a point or patch in the preload state; and the stiffness [Pa/m] there. */
@@ -69,19 +69,19 @@ double preload_approach_rate(const Contact *contact, const double *point, const 
 
 /* `point_state` beyond the ends of the table. */
 bool state_outside(const Contact *contact, double approach, int order, double *y, double *works, double *slopes,
-                   Text *why);
+                   Text *reason);
 
 /* Pressure with derivatives up to an order (1 to 4) at an approach, works [J] and their slopes [J/m]. */
 static inline bool point_state(const Contact *contact, double approach, int order, double *y, double *works,
-                               double *slopes, Text *why)
+                               double *slopes, Text *reason)
 {
     const Curve *curve = contact->curve;
-    if (!(approach >= curve->first.x && approach < curve->end.x))
-        return state_outside(contact, approach, order, y, works, slopes, why);
-    const int segment = curve_segment(curve, approach);
-    const double t = (approach - curve->x[segment]) * curve->per[segment];
-    curve_derivatives(curve, segment, t, order, y);
-    approach_state(&contact->law, curve, segment, t, works, slopes);
+    if (!(approach >= curve->start.x && approach < curve->end.x))
+        return state_outside(contact, approach, order, y, works, slopes, reason);
+    const int segment = curve_find_segment(curve, approach);
+    const double t = (approach - curve->x[segment]) * curve->inverse_length[segment];
+    segment_derivatives(curve, segment, t, order, y);
+    interpolate_law_state(&contact->law, curve, segment, t, works, slopes);
     return true;
 }
 

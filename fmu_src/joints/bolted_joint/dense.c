@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "vectors.h"
+#include "simd.h"
 
 enum { L = LANES };
 
@@ -17,7 +17,7 @@ static inline void subtract_column(double by, const double *restrict column, int
 
 /* Columns are rows of the array, so that what is done to a column goes side by side. */
 
-WITHIN void factor(double (*a)[MODES], int *pivots)
+ALWAYS_INLINE void factor(double (*a)[MODES], int *pivots)
 {
     for (int c = 0; c < MODES; c++) {
         double column[MODES];
@@ -39,15 +39,15 @@ WITHIN void factor(double (*a)[MODES], int *pivots)
             subtract_column(a[k][c], column, (c + 1) / L * L, a[k]);
     }
 }
-COMPILED_TWICE(factor, (double (*a)[MODES], int *pivots), (a, pivots))
+DEFINE_BASELINE_AND_AVX(factor, (double (*a)[MODES], int *pivots), (a, pivots))
 
 void dense_factor(bool use_avx, Factorization *factors)
 {
-    (use_avx ? factor_fours : factor_any)(factors->a, factors->pivots);
+    (use_avx ? factor_avx : factor_baseline)(factors->a, factors->pivots);
 }
 
 /* Four columns at a time: the rows beside their own four side by side. */
-WITHIN void solve(const double (*a)[MODES], const int *pivots, double *x)
+ALWAYS_INLINE void solve(const double (*a)[MODES], const int *pivots, double *x)
 {
     for (int c = 0; c < MODES; c++) {
         const double kept = x[pivots[c]];
@@ -73,49 +73,55 @@ WITHIN void solve(const double (*a)[MODES], const int *pivots, double *x)
                     x[r + l] -= x[c] * a[c][r + l];
     }
 }
-COMPILED_TWICE(solve, (const double (*a)[MODES], const int *pivots, double *x), (a, pivots, x))
+DEFINE_BASELINE_AND_AVX(solve, (const double (*a)[MODES], const int *pivots, double *x), (a, pivots, x))
 
 void dense_solve(bool use_avx, const Factorization *factors, double *x)
 {
-    (use_avx ? solve_fours : solve_any)((const double(*)[MODES])factors->a, factors->pivots, x);
+    (use_avx ? solve_avx : solve_baseline)((const double(*)[MODES])factors->a, factors->pivots, x);
 }
 
-WITHIN void weigh(int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
+ALWAYS_INLINE void weigh(int n, const double *by, const double (*restrict row)[N_COLUMNS],
+                         double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i] * row[i][k];
 }
-COMPILED_TWICE(weigh, (int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
-               (n, by, row, result))
+DEFINE_BASELINE_AND_AVX(weigh,
+                        (int n, const double *by, const double (*restrict row)[N_COLUMNS],
+                         double (*restrict result)[N_COLUMNS]),
+                        (n, by, row, result))
 
 void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double (*result)[N_COLUMNS])
 {
-    (use_avx ? weigh_fours : weigh_any)(n, by, row, result);
+    (use_avx ? weigh_avx : weigh_baseline)(n, by, row, result);
 }
 
-WITHIN void combine(int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
-                    const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
+ALWAYS_INLINE void combine(int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS],
+                           const double (*restrict y)[N_COLUMNS], const double (*restrict t)[N_COLUMNS],
+                           const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * t[i][k] + by[i][3] * z[i][k];
 }
-COMPILED_TWICE(combine,
-               (int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
-                const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
-               (n, by, x, y, t, z, result))
+DEFINE_BASELINE_AND_AVX(combine,
+                        (int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS],
+                         const double (*restrict y)[N_COLUMNS], const double (*restrict t)[N_COLUMNS],
+                         const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
+                        (n, by, x, y, t, z, result))
 
 void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*const rows[4])[N_COLUMNS],
                    double (*result)[N_COLUMNS])
 {
-    (use_avx ? combine_fours : combine_any)(n, by, rows[0], rows[1], rows[2], rows[3], result);
+    (use_avx ? combine_avx : combine_baseline)(n, by, rows[0], rows[1], rows[2], rows[3], result);
 }
 
 /* Sums go in lanes, which a processor adds side by side. */
 
-WITHIN void products(int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
-                     bool all, double (*restrict h)[N_COLUMNS])
+ALWAYS_INLINE void products(int n, const double (*restrict weighted)[N_COLUMNS],
+                            const double (*restrict rows)[N_COLUMNS], int size, bool all,
+                            double (*restrict h)[N_COLUMNS])
 {
     for (int r = 0; r < size; r += L) /* in blocks, whose sums stay in registers */
         for (int c = 0; c <= (all ? size - L : r); c += L) {
@@ -129,18 +135,18 @@ WITHIN void products(int n, const double (*restrict weighted)[N_COLUMNS], const 
                     h[r + k][c + l] += sum[k][l];
         }
 }
-COMPILED_TWICE(products,
+DEFINE_BASELINE_AND_AVX(products,
                (int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
                 bool all, double (*restrict h)[N_COLUMNS]),
                (n, weighted, rows, size, all, h))
 
-void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS],
-                    int size, bool all, double (*restrict h)[N_COLUMNS])
+void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS],
+                    const double (*restrict rows)[N_COLUMNS], int size, bool all, double (*restrict h)[N_COLUMNS])
 {
-    (use_avx ? products_fours : products_any)(n, weighted, rows, size, all, h);
+    (use_avx ? products_avx : products_baseline)(n, weighted, rows, size, all, h);
 }
 
-WITHIN void add_rows(int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum)
+ALWAYS_INLINE void add_rows(int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum)
 {
     int i = 0;
     for (; i + 4 <= n; i += 4)
@@ -151,14 +157,15 @@ WITHIN void add_rows(int n, const double *by, const double (*row)[N_COLUMNS], do
         for (int k = 0; k < MODES; k++)
             sum[k] += by[i] * row[i][k];
 }
-COMPILED_TWICE(add_rows, (int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum), (n, by, row, sum))
+DEFINE_BASELINE_AND_AVX(add_rows, (int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum),
+                        (n, by, row, sum))
 
 void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double *sum)
 {
-    (use_avx ? add_rows_fours : add_rows_any)(n, by, row, sum);
+    (use_avx ? add_rows_avx : add_rows_baseline)(n, by, row, sum);
 }
 
-WITHIN void dots(int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
+ALWAYS_INLINE void dots(int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
     enum { ROWS = 32 }; /* at a time: first all lanes, then their sums */
     double sum[ROWS][L];
@@ -176,10 +183,10 @@ WITHIN void dots(int n, const double (*row)[N_COLUMNS], const double *x, int str
             result[stride * (first + i)] = (sum[i][0] + sum[i][2]) + (sum[i][1] + sum[i][3]);
     }
 }
-COMPILED_TWICE(dots, (int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result),
+DEFINE_BASELINE_AND_AVX(dots, (int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result),
                (n, row, x, stride, result))
 
 void dense_dots(bool use_avx, int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
-    (use_avx ? dots_fours : dots_any)(n, row, x, stride, result);
+    (use_avx ? dots_avx : dots_baseline)(n, row, x, stride, result);
 }

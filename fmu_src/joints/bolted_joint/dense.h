@@ -26,7 +26,7 @@ static inline double dense_dot(const double *a, const double *b)
             sum[l] += a[k + l] * b[k + l];
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
-/* The following on a processor with vectors_of_four or any other. */
+/* `use_avx`: the processor has AVX; results are equal to the bit with and without it. */
 /* Factors in place of a matrix `a`, whose columns are the rows of the array, with partial pivoting. */
 typedef struct {
     double a[MODES][MODES];
@@ -40,8 +40,8 @@ void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[N_CO
 void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*const rows[4])[N_COLUMNS],
                    double (*result)[N_COLUMNS]);
 /* Add the products of n weighted rows with rows to h up to a size, all or the lower half. */
-void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS],
-                    int size, bool all, double (*restrict h)[N_COLUMNS]);
+void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS],
+                    const double (*restrict rows)[N_COLUMNS], int size, bool all, double (*restrict h)[N_COLUMNS]);
 /* Add n rows with their weights to a sum over the modes. */
 void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double *sum);
 /* What n rows are along x, each in its place of the result. */

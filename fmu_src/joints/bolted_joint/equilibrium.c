@@ -3,10 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "cold.h"
+#include "optimize_for_size.h"
 
-_Static_assert((int)AT_MODAL_COORDINATES == (int)AT_NORMAL + 3 && (int)AT_TANGENT == (int)AT_MODAL_COORDINATES + MODES &&
-                   (int)N_MEMORY == (int)AT_TANGENT + 6 * MOST_PATCHES,
+_Static_assert((int)HISTORY_MODAL_COORDINATES == (int)HISTORY_NORMAL + 3 &&
+                   (int)HISTORY_TANGENT == (int)HISTORY_MODAL_COORDINATES + MODES &&
+                   (int)N_HISTORY == (int)HISTORY_TANGENT + 6 * MAX_PATCHES,
                "the end of a history, as in the key of a predictor");
 
 /* Line search: largest energy slope at the end of a correction over its size at the start [1], and smallest length of a
@@ -18,7 +19,8 @@ static void set_modal_opening(Equilibrium *e)
 {
     const Contact *contact = e->assembly.contact;
     for (int j = 0, row = 0; j < n_patches(); j++) {
-        const double stiffness = e->assembly.friction->end[j].y[1], compliance = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
+        const double stiffness = e->assembly.friction->end[j].y[1],
+                     compliance = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
         double sum[N_COLUMNS] = {0.0};
         for (; row < contact->transfer_end[j]; row++) {
             const int i = data.pressure_transfer[row][TRANSFER_POINT];
@@ -30,7 +32,7 @@ static void set_modal_opening(Equilibrium *e)
     }
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Straight path of q from the end of a history to the inputs. */
 typedef struct {
@@ -78,7 +80,7 @@ static void assemble_shear_stiffness(Equilibrium *e, int size, bool all)
     const double area = e->assembly.contact->area;
     const int n = n_patches();
     const double(*rows[4])[N_COLUMNS] = {[3] = (const double(*)[N_COLUMNS])e->modal_opening};
-    double weights[MOST_PATCHES][4];
+    double weights[MAX_PATCHES][4];
     for (int s = 0; s < 3; s++)
         rows[s] = (const double(*)[N_COLUMNS])bodies->patch_jacobian[s];
     memset(e->shear_stiffness, 0, sizeof e->shear_stiffness);
@@ -114,7 +116,7 @@ static void factorize_tangent(Equilibrium *e, int size, bool all, Factorization 
 static void modal_tangent(Equilibrium *e, const double *history)
 {
     const Contact *contact = e->assembly.contact;
-    const double first = contact->curve->first.x;
+    const double first = contact->curve->start.x;
     double deepest = -first; /* where the contact is closed */
     for (int j = 0; j < n_patches(); j++)
         deepest = fmax(deepest, contact->preload.patch_approach[j] - first);
@@ -168,13 +170,14 @@ static void displacement_at(const LoadStep *step, double load_factor, double q[N
 }
 
 /* Deformation, bolt forces, pressures and patch approaches at q and modal coordinates; the works too if complete. */
-static bool evaluate_normal(Equilibrium *e, const double *q, const double *modal_coordinates, bool complete, Text *why)
+static bool evaluate_normal(Equilibrium *e, const double *q, const double *modal_coordinates, bool complete,
+                            Text *reason)
 {
     Bodies *bodies = e->assembly.bodies;
     for (int b = 0; b < (int)data.n_bolt_elongation; b++)
         elongate_bolt(e->assembly.bolts, b, bolt_elongation(bodies, b, q, modal_coordinates));
     deform(bodies, modal_coordinates, &bodies->state);
-    if (!evaluate_points(e->assembly.contact, bodies->state.opening, q, complete, why))
+    if (!evaluate_points(e->assembly.contact, bodies->state.opening, q, complete, reason))
         return false;
     evaluate_patches(e->assembly.contact, bodies->state.opening, q);
     return true;
@@ -182,10 +185,10 @@ static bool evaluate_normal(Equilibrium *e, const double *q, const double *modal
 
 /* The same with friction; complete: with works, losses and history. */
 static bool evaluate_trial(Equilibrium *e, LoadStep *step, const double *q, const double *modal_coordinates,
-                           bool complete, Text *why)
+                           bool complete, Text *reason)
 {
     step->is_complete = complete;
-    if (!evaluate_normal(e, q, modal_coordinates, complete, why))
+    if (!evaluate_normal(e, q, modal_coordinates, complete, reason))
         return false;
     set_increments(e->assembly.friction, e->assembly.bodies, step->history, q);
     if (complete)
@@ -203,7 +206,7 @@ static double residual(const Equilibrium *e, const double *q, const double *moda
     const Bolts *bolts = e->assembly.bolts;
     const bool use_avx = bodies->use_avx;
     double forces = 0.0, stiffness = 0.0, opening = 0.0;
-    double normal[MOST_OPENING], shear[3][MOST_PATCHES], bolt_force[MOST_BOLT_ELONGATION];
+    double normal[MAX_OPENING], shear[3][MAX_PATCHES], bolt_force[MAX_BOLT_ELONGATION];
     for (int k = 0; k < MODES; k++)
         r[k] = bodies->stiffness[k] * modal_coordinates[k];
     for (int i = 0; i < n_points(); i++) {
@@ -232,7 +235,7 @@ static double residual(const Equilibrium *e, const double *q, const double *moda
     dense_add_rows(use_avx, (int)data.n_bolt_elongation, bolt_force,
                    (const double(*)[N_COLUMNS])bodies->elongation_jacobian, r);
     return RELATIVE_TOLERANCE *
-           (forces + stiffness * opening * CANCELLATION_RATIO + contact->area * contact->law.closed);
+           (forces + stiffness * opening * CANCELLATION_RATIO + contact->area * contact->law.closing_end_pressure);
 }
 
 /* Largest component [N], or a component that is not a number. */
@@ -251,12 +254,12 @@ static void predictor_key(const double *inputs, const double *history, double ke
 {
     key[0] = inputs[INPUT_PRELOAD];
     key[1] = inputs[INPUT_MOMENT];
-    memcpy(key + 2, history + AT_TANGENTIAL, 3 * sizeof *key);
-    memcpy(key + 5, history + AT_NORMAL, (PREDICTOR_KEY - 5) * sizeof *key);
+    memcpy(key + 2, history + HISTORY_TANGENTIAL, 3 * sizeof *key);
+    memcpy(key + 5, history + HISTORY_NORMAL, (PREDICTOR_KEY - 5) * sizeof *key);
 }
 
 /* Change of the modal coordinates over a load step [m] by the tangent at its start. */
-static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rate, Text *why)
+static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rate, Text *reason)
 {
     const double *history = step->history;
     double key[PREDICTOR_KEY], first[N_DISPLACEMENTS];
@@ -265,11 +268,11 @@ static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rat
     if (e->end.is_known && memcmp(key, e->end.key, sizeof key) == 0) {
         e->start = e->end;
     } else if (!e->start.is_known || memcmp(key, e->start.key, sizeof key) != 0) {
-        double tangent[6 * MOST_PATCHES];
-        if (!evaluate_normal(e, first, history + AT_MODAL_COORDINATES, false, why))
+        double tangent[6 * MAX_PATCHES];
+        if (!evaluate_normal(e, first, history + HISTORY_MODAL_COORDINATES, false, reason))
             return false;
-        memcpy(tangent, history + AT_TANGENT, sizeof tangent);
-        for (int j = 0; j < n_patches() && history[AT_STATE] == (double)UNKNOWN; j++) {
+        memcpy(tangent, history + HISTORY_TANGENT, sizeof tangent);
+        for (int j = 0; j < n_patches() && history[HISTORY_STATE] == (double)UNKNOWN; j++) {
             const Foundation *f = &e->assembly.friction->foundation[j];
             const PatchState state = patch_state(f, e->assembly.contact->preload.patch_approach[j], 0);
             stick_tangent(stick_stiffness(f, &state), tangent + 6 * j);
@@ -298,10 +301,11 @@ static void apply_broyden(Equilibrium *e, int newest)
     squares[newest] = dense_dot(correction, correction);
 }
 
-/* Trial after a correction of the modal coordinates: shortened while the energy slope at its end is too large, or dropped
- * if the tangent is that of an earlier trial. false: refused. */
-static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction, bool tangent_is_current,
-                        bool complete, double *modal_coordinates, double *r, double *tolerance, bool *is_full, Text *why)
+/* Trial after a correction of the modal coordinates: shortened while the energy slope at its end is too large, or
+ * dropped if the tangent is that of an earlier trial. false: refused. */
+static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction,
+                        bool tangent_is_current, bool complete, double *modal_coordinates, double *r, double *tolerance,
+                        bool *is_full, Text *reason)
 {
     double start[MODES], length = 1.0;
     const double slope_0 = dense_dot(r, correction);
@@ -310,7 +314,7 @@ static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const d
     for (int trial = 0; trial < MAX_LINE_SEARCH; trial++) {
         for (int k = 0; k < MODES; k++)
             modal_coordinates[k] = start[k] + length * correction[k];
-        if (!evaluate_trial(e, step, q, modal_coordinates, complete, why))
+        if (!evaluate_trial(e, step, q, modal_coordinates, complete, reason))
             return false;
         *tolerance = residual(e, q, modal_coordinates, r);
         const double slope_1 = dense_dot(r, correction);
@@ -324,14 +328,14 @@ static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const d
 
 /* Equilibrium at a load factor, from modal coordinates on; if it is not found, the residual that is left [N]. */
 static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_factor, double *modal_coordinates,
-                                 double *left, Text *why)
+                                 double *left, Text *reason)
 {
     const double tolerance_factor = load_factor == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
     const Factorization *factors = &e->start.factors; /* of the tangent: first that at the start of the load step */
     double q[N_DISPLACEMENTS], r[MODES], tolerance, last_norm = INFINITY;
     bool tangent_is_current = false, is_full;
     displacement_at(step, load_factor, q);
-    if (!evaluate_trial(e, step, q, modal_coordinates, false, why))
+    if (!evaluate_trial(e, step, q, modal_coordinates, false, reason))
         return REFUSED;
     tolerance = residual(e, q, modal_coordinates, r);
     for (int n = 0, corrections = 0; n < MAX_NEWTON_ITERATIONS; n++) {
@@ -351,8 +355,8 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_fac
             correction[k] = -r[k];
         dense_solve(e->assembly.bodies->use_avx, factors, correction);
         apply_broyden(e, corrections++);
-        if (!search_line(e, step, q, correction, tangent_is_current, is_last, modal_coordinates, r, &tolerance, &is_full,
-                         why))
+        if (!search_line(e, step, q, correction, tangent_is_current, is_last, modal_coordinates, r, &tolerance,
+                         &is_full, reason))
             return REFUSED;
         last_norm = is_full ? norm : 0.0; /* 0: the next iteration computes the tangent */
         tangent_is_current = false;
@@ -362,50 +366,50 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_fac
 }
 
 /* Say that there is no equilibrium, with the inputs that are not zero. */
-static void explain_failure(const double *inputs, double load_factor, double left, Text *why)
+static void explain_failure(const double *inputs, double load_factor, double left, Text *reason)
 {
-    text_clear(why);
+    text_clear(reason);
     for (int v = 0; v < 2 + N_DISPLACEMENTS; v++) {
         const int at = v == 0 ? INPUT_PRELOAD : (v == 1 ? INPUT_MOMENT : input_of(v - 2));
         if (inputs[at] == 0.0)
             continue;
-        text_add(why, why->length > 0 ? ", " : "");
-        text_add(why, variables[FIRST_INPUT + at].name);
-        text_add(why, " = ");
-        text_number(why, inputs[at], 6);
+        text_append(reason, reason->length > 0 ? ", " : "");
+        text_append(reason, variables[FIRST_INPUT + at].name);
+        text_append(reason, " = ");
+        text_append_number(reason, inputs[at], 6);
     }
-    text_add(why, ": no equilibrium of the joint was found beyond a fraction of ");
-    text_number(why, load_factor, 3);
-    text_add(why, " of the way, the residual is ");
-    text_number(why, left, 2);
-    text_add(why, " N");
+    text_append(reason, ": no equilibrium of the joint was found beyond a fraction of ");
+    text_append_number(reason, load_factor, 3);
+    text_append(reason, " of the way, the residual is ");
+    text_append_number(reason, left, 2);
+    text_append(reason, " N");
 }
 
 /* Modal coordinates in equilibrium at the end of a load step, which is divided where Newton's method fails. */
-static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordinates, Text *why)
+static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordinates, Text *reason)
 {
     double load_factor = 0.0, increment = 1.0, left = 0.0, reached[MODES], rate[MODES];
-    memcpy(reached, step->history + AT_MODAL_COORDINATES, sizeof reached);
+    memcpy(reached, step->history + HISTORY_MODAL_COORDINATES, sizeof reached);
     modal_displacement(e->assembly.bodies, reached, e->assembly.bodies->start_displacement);
-    if (!predict_by_tangent(e, step, rate, why))
+    if (!predict_by_tangent(e, step, rate, reason))
         return false;
     for (;;) {
         const double target = fmin(load_factor + increment, 1.0);
         for (int k = 0; k < MODES; k++)
             modal_coordinates[k] = reached[k] + (target - load_factor) * rate[k];
-        const NewtonResult result = solve_newton(e, step, target, modal_coordinates, &left, why);
+        const NewtonResult result = solve_newton(e, step, target, modal_coordinates, &left, reason);
         if (result == REFUSED)
             return false;
         if (result == NOT_CONVERGED) {
             increment *= 0.5;
             if (increment < MIN_LOAD_STEP) {
-                explain_failure(step->inputs, load_factor, left, why);
+                explain_failure(step->inputs, load_factor, left, reason);
                 return false;
             }
             continue;
         }
         if (target == 1.0)
-            return step->is_complete || evaluate_trial(e, step, step->end, modal_coordinates, true, why);
+            return step->is_complete || evaluate_trial(e, step, step->end, modal_coordinates, true, reason);
         for (int k = 0; k < MODES; k++)
             rate[k] = (modal_coordinates[k] - reached[k]) / (target - load_factor);
         memcpy(reached, modal_coordinates, sizeof reached);
@@ -414,25 +418,26 @@ static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordi
     }
 }
 
-bool solve_equilibrium(Equilibrium *e, const double *inputs, const double *history, double *after, Text *why)
+bool solve_equilibrium(Equilibrium *e, const double *inputs, const double *history, double *after, Text *reason)
 {
     if (!ELASTIC)
         return false;
     LoadStep step = {.inputs = inputs,
                      .history = history,
-                     .start = {history[AT_TANGENTIAL], history[AT_TANGENTIAL + 1], history[AT_NORMAL], history[AT_NORMAL + 1],
-                               history[AT_NORMAL + 2], history[AT_TANGENTIAL + 2]},
+                     .start = {history[HISTORY_TANGENTIAL], history[HISTORY_TANGENTIAL + 1], history[HISTORY_NORMAL],
+                               history[HISTORY_NORMAL + 1], history[HISTORY_NORMAL + 2],
+                               history[HISTORY_TANGENTIAL + 2]},
                      .after = after};
     double modal_coordinates[MODES];
     relative_displacement(inputs, step.end);
-    if (!solve_load_step(e, &step, modal_coordinates, why))
+    if (!solve_load_step(e, &step, modal_coordinates, reason))
         return false;
-    memcpy(after + AT_NORMAL, step.end + S_Z, 3 * sizeof *after);
-    memcpy(after + AT_MODAL_COORDINATES, modal_coordinates, sizeof modal_coordinates);
-    memset(after + AT_TANGENT, 0, 6 * MOST_PATCHES * sizeof *after);
+    memcpy(after + HISTORY_NORMAL, step.end + S_Z, 3 * sizeof *after);
+    memcpy(after + HISTORY_MODAL_COORDINATES, modal_coordinates, sizeof modal_coordinates);
+    memset(after + HISTORY_TANGENT, 0, 6 * MAX_PATCHES * sizeof *after);
     for (int j = 0; j < n_patches(); j++)
-        memcpy(after + AT_TANGENT + 6 * j, e->assembly.friction->update[j].tangent, 6 * sizeof *after);
-    condense_stiffness(e, after + AT_TANGENT, &e->end);
+        memcpy(after + HISTORY_TANGENT + 6 * j, e->assembly.friction->update[j].tangent, 6 * sizeof *after);
+    condense_stiffness(e, after + HISTORY_TANGENT, &e->end);
     predictor_key(inputs, after, e->end.key);
     return true;
 }
@@ -447,7 +452,8 @@ void solve_modal_rates(Equilibrium *e, const double *q_rate, const double *histo
     double r[MODES] = {0.0};
     for (int i = 0; i < n_points(); i++) {
         const PointRate *rate = &contact->rate[i];
-        const double pressure = rate->derivatives[1] * rate->approach - rate->preload_stiffness * rate->preload_approach;
+        const double pressure =
+            rate->derivatives[1] * rate->approach - rate->preload_stiffness * rate->preload_approach;
         add_scaled(contact->area * data.points[i][SHARE] * pressure, bodies->opening_jacobian[i], r);
     }
     for (int j = 0; j < n_patches(); j++)
@@ -463,4 +469,4 @@ void solve_modal_rates(Equilibrium *e, const double *q_rate, const double *histo
     deform(bodies, r, &bodies->rate);
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

@@ -13,7 +13,7 @@
 #include "text.h"
 
 /* Preload, moment, rigid displacement, and the end of a history. */
-enum { PREDICTOR_KEY = 5 + 3 + MODES + 6 * MOST_PATCHES };
+enum { PREDICTOR_KEY = 5 + 3 + MODES + 6 * MAX_PATCHES };
 
 /* Derivatives of the modal coordinates by q at the start of a load step, by its tangent; and what they depend on. */
 typedef struct {
@@ -34,13 +34,14 @@ typedef struct {
     ModalPredictor start, end;         /* at both ends of the last load step */
     double condensed[N_DISPLACEMENTS]; /* diagonal of the condensed stiffness at its end [N/m, N.m] */
     /* Work arrays, as Windows does not allow them on the stack. */
-    double modal_opening[MOST_PATCH_DISPLACEMENT_X][N_COLUMNS]; /* derivatives of the opening of the patches */
-    double weights[MOST_OPENING + MOST_BOLT_ELONGATION];
-    double weighted[MOST_OPENING + MOST_PATCH_DISPLACEMENT_X + MOST_BOLT_ELONGATION][N_COLUMNS];
+    double modal_opening[MAX_PATCH_DISPLACEMENT_X][N_COLUMNS]; /* derivatives of the opening of the patches */
+    double weights[MAX_OPENING + MAX_BOLT_ELONGATION];
+    double weighted[MAX_OPENING + MAX_PATCH_DISPLACEMENT_X + MAX_BOLT_ELONGATION][N_COLUMNS];
     double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
-    TractionDerivatives derivatives[MOST_PATCHES];
+    TractionDerivatives derivatives[MAX_PATCHES];
     Factorization factors; /* of the modal tangent in Newton's method */
-    double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS]; /* since then [m], and their squares [m2] */
+    /* Since then [m], and their squares [m2]. */
+    double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS];
 } Equilibrium;
 
 /* Elongation [m] of bolt b at q and modal coordinates, or its rate. */
@@ -51,7 +52,8 @@ static inline double bolt_elongation(const Bodies *bodies, int b, const double *
 
 /* Equilibrium at the end of the load step from a history to the inputs, and the history there. Contact, bodies, bolts
  * and friction are then those of the equilibrium. false: refused, with the reason. */
-bool solve_equilibrium(Equilibrium *equilibrium, const double *inputs, const double *history, double *after, Text *why);
+bool solve_equilibrium(Equilibrium *equilibrium, const double *inputs, const double *history, double *after,
+                       Text *reason);
 /* Rates of the deformation along a seed, from those of points, patches and bolts at constant modal coordinates. */
 void solve_modal_rates(Equilibrium *equilibrium, const double *q_rate, const double *history, const double *after);
 

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "cold.h"
-#include "vectors.h"
+#include "optimize_for_size.h"
+#include "simd.h"
 
 /* Properties of both sliders of a range at an approach: stiffness, its slope, limits of the early and the late one; or
  * their rates. */
@@ -21,17 +21,18 @@ static double approach_at_load(const Foundation *f, double load)
     return curve_inverse(f->curve, load, &segment, &carried);
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Repeats `slider_heights` of sliders.py. */
 static void slider_heights(Foundation *f, double reference)
 {
     const double end = f->curve->end.y;
     double y[2], *h = f->height;
-    curve_at(f->curve, reference, 0, y);
+    curve_evaluate(f->curve, reference, 0, y);
     const bool touches = y[0] > MIN_REFERENCE_RATIO * end, given = touches && y[0] < MAX_REFERENCE_RATIO * end;
-    const double load = touches ? fmin(y[0], MAX_REFERENCE_RATIO * end) : DEFAULT_REFERENCE_RATIO * end, over = same_log(end / load);
-    *h++ = f->curve->first.x;
+    const double load = touches ? fmin(y[0], MAX_REFERENCE_RATIO * end) : DEFAULT_REFERENCE_RATIO * end,
+                 over = portable_log(end / load);
+    *h++ = f->curve->start.x;
     for (int k = N_BELOW - 1; k >= 0; k--) {
         const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
         *h++ = approach_at_load(f, load * rest / (part * part + rest));
@@ -39,12 +40,12 @@ static void slider_heights(Foundation *f, double reference)
     *h++ = given ? reference : approach_at_load(f, load);
     for (int k = 0; k < N_ABOVE; k++) {
         const double part = (k + f->offset) / (double)N_ABOVE;
-        *h++ = approach_at_load(f, load * same_exp(over * (part * part)));
+        *h++ = approach_at_load(f, load * portable_exp(over * (part * part)));
     }
     *h = f->curve->end.x;
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE
 
 /* Sums over the springs of a range, and its sliders. */
 static void set_range(Foundation *f, int i)
@@ -72,7 +73,7 @@ static void sum_stick_stiffness(Foundation *f)
 static void set_height(Foundation *f, int i, double height)
 {
     double y[2];
-    curve_at(f->curve, height, 1, y);
+    curve_evaluate(f->curve, height, 1, y);
     f->height[i] = height;
     f->load[i] = y[0];
     f->stiffness[i] = y[1];
@@ -114,12 +115,12 @@ void heights_after_liftoff(Foundation *f, double lowest)
 }
 
 /* Load with two derivatives and energy beyond the ends of the curve. */
-static void extrapolate_state(const Curve *curve, const Energy *energy, PatchState *p)
+static void extrapolate_state(const Curve *curve, const CurveEnergy *energy, PatchState *p)
 {
     const bool after = p->approach >= curve->end.x;
-    const double beyond = p->approach - (after ? curve->end.x : curve->first.x);
-    curve_at(curve, p->approach, 2, p->y);
-    p->energy = energy->at[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
+    const double beyond = p->approach - (after ? curve->end.x : curve->start.x);
+    curve_evaluate(curve, p->approach, 2, p->y);
+    p->energy = energy->node_energy[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
 }
 
 void find_ranges(const Foundation *f, PatchState *p)
@@ -134,13 +135,13 @@ void find_ranges(const Foundation *f, PatchState *p)
 PatchState patch_state(const Foundation *f, double approach, int near)
 {
     const Curve *curve = f->curve;
-    const Energy *energy = f->energy;
+    const CurveEnergy *energy = f->energy;
     PatchState p = {.approach = approach, .full_ranges = near};
-    if (approach >= curve->first.x && approach < curve->end.x) {
-        const int segment = curve_segment(curve, approach);
-        const double t = (approach - curve->x[segment]) * curve->per[segment];
-        curve_derivatives(curve, segment, t, 2, p.y);
-        p.energy = energy_inside(energy, curve, segment, t);
+    if (approach >= curve->start.x && approach < curve->end.x) {
+        const int segment = curve_find_segment(curve, approach);
+        const double t = (approach - curve->x[segment]) * curve->inverse_length[segment];
+        segment_derivatives(curve, segment, t, 2, p.y);
+        p.energy = segment_energy(energy, curve, segment, t);
     } else {
         extrapolate_state(curve, energy, &p);
     }
@@ -170,7 +171,8 @@ static inline SliderProperties slider_properties(const Foundation *f, int i, con
         return pair;
     if (i < p->full_ranges) {
         const double *limit = f->limit + 2 * i, K = f->K[2 * i], to = f->mu / f->ratio * p->approach;
-        return (SliderProperties){.K = K, .limit = {limit_at(limit[0], K, to), limit_at(limit[1], K, to)}};
+        return (SliderProperties){.K = K,
+                                  .limit = {limit_at_growth(limit[0], K, to), limit_at_growth(limit[1], K, to)}};
     }
     partial_contact_arguments(f, i, p, x);
     partial_contact(x, NULL, &pair.K);
@@ -187,7 +189,8 @@ static bool keeps_contact_state(int i, const PatchState *from, const PatchState 
 static inline bool is_small_change(const Foundation *f, int i, const PatchState *from, const PatchState *at)
 {
     const double change = at->approach - from->approach;
-    return change == 0.0 || (keeps_contact_state(i, from, at) && fabs(change) < SMALL_CHANGE_RATIO * (f->height[i + 1] - f->height[i]));
+    return change == 0.0 ||
+           (keeps_contact_state(i, from, at) && fabs(change) < SMALL_CHANGE_RATIO * (f->height[i + 1] - f->height[i]));
 }
 
 /* State in the middle of an increment, found when it is first needed. */
@@ -204,7 +207,7 @@ static const PatchState *middle_state(const Foundation *f, const PatchIncrement 
     return &middle->at;
 }
 
-static void add_sum(const SliderSum *sum, SliderUpdate *update)
+static void add_sum(const SliderResultant *sum, SliderUpdate *update)
 {
     for (int d = 0; d < 3; d++)
         update->traction[d] += sum->force[d];
@@ -218,14 +221,25 @@ static inline void add_slider(const double *slid, double e_x, double e_y, Slider
 {
     const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
     const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
-    const SliderSum one = {{x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[SLID_LOSS]};
+    const SliderResultant one = {
+        {x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[MAPPING_LOSS]};
     add_sum(&one, update);
 }
 
 /* Return mapping of sliders that may slip */
 
 /* Arguments of `varying_stiffness_loss`. */
-enum { C_CONTACT_CHANGES, C_FORCE, C_FORCE_END = 3, C_DISPLACEMENT = 5, C_STIFFNESS_START = 7, C_STIFFNESS_END, C_SLIP, C_MIDDLE, N_VARYING_LOSS = 12 };
+enum {
+    C_CONTACT_CHANGES,
+    C_FORCE,
+    C_FORCE_END = 3,
+    C_DISPLACEMENT = 5,
+    C_STIFFNESS_START = 7,
+    C_STIFFNESS_END,
+    C_SLIP,
+    C_MIDDLE,
+    N_VARYING_LOSS = 12
+};
 
 /* Heat of a slider whose stiffness changes. */
 static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
@@ -234,13 +248,13 @@ static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
     double x[N_VARYING_LOSS] = {run->contact_changes}, loss;
     for (int d = 0; d < 2; d++) {
         x[C_FORCE + d] = all->force[d][at];
-        x[C_FORCE_END + d] = all->results[SLID_FORCE + d][at];
+        x[C_FORCE_END + d] = all->results[MAPPING_FORCE + d][at];
         x[C_DISPLACEMENT + d] = all->displacement[d][at];
-        x[C_MIDDLE + d] = run->contact_changes ? all->results[SLID_FORCE + d][at + 2] : 0.0;
+        x[C_MIDDLE + d] = run->contact_changes ? all->results[MAPPING_FORCE + d][at + 2] : 0.0;
     }
     x[C_STIFFNESS_START] = run->K;
     x[C_STIFFNESS_END] = all->K[at];
-    x[C_SLIP] = all->results[SLID_SLIP][at];
+    x[C_SLIP] = all->results[MAPPING_SLIP][at];
     varying_stiffness_loss(x, NULL, &loss);
     return loss;
 }
@@ -248,45 +262,47 @@ static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
 static inline void finish_run(const Run *run, const SimdBatch *all)
 {
     for (int k = 0; k < 2; k++) {
-        double slid[N_SLID];
-        for (int r = 0; r < N_SLID; r++)
+        double slid[N_MAPPING];
+        for (int r = 0; r < N_MAPPING; r++)
             slid[r] = all->results[r][run->at + k];
         if (run->stiffness_changes)
-            slid[SLID_LOSS] = varying_loss(run, k, all);
+            slid[MAPPING_LOSS] = varying_loss(run, k, all);
         add_slider(slid, run->torsion_directions[0][k], run->torsion_directions[1][k], run->update);
         for (int d = 0; d < 2; d++)
             run->force_end[d][k] = slid[d];
     }
 }
 
-static PlaneSliders batch(const SimdBatch *all)
+static Sliders2D batch(const SimdBatch *all)
 {
-    return (PlaneSliders){.force = {all->force[0], all->force[1]},
-                          .turning = {all->displacement[0], all->displacement[1]},
-                          .shift = {0.0, 0.0, 1.0},
-                          .keeps = all->retention,
-                          .carries = all->secant_stiffness,
+    return (Sliders2D){.force = {all->force[0], all->force[1]},
+                          .torsion_directions = {all->displacement[0], all->displacement[1]},
+                          .displacement = {0.0, 0.0, 1.0},
+                          .retention = all->retention,
+                          .secant_stiffness = all->secant_stiffness,
                           .K = all->K,
-                          .per_K = all->per_K,
-                          .before = all->limit_start,
-                          .after = all->limit_end};
+                          .compliance = all->per_K,
+                          .limit_start = all->limit_start,
+                          .limit_end = all->limit_end};
 }
 
 /* Return-map all sliders in the batch. */
 static void finish_runs(SliderWork *work)
 {
     SimdBatch *all = &work->batch;
-    const PlaneSliders s = batch(all);
-    double *slid[N_SLID];
-    for (int r = 0; r < N_SLID; r++)
+    const Sliders2D s = batch(all);
+    double *slid[N_MAPPING];
+    for (int r = 0; r < N_MAPPING; r++)
         slid[r] = all->results[r];
-    sliders_slide(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces_only); /* up to a multiple of four: old rows follow */
+    /* up to a multiple of four: old rows follow */
+    sliders_return_map(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces_only);
     for (int i = 0; i < work->n; i++) {
         const Run *run = &work->runs[i];
         if (!work->forces_only)
             finish_run(run, all);
         else
-            add_forces(2, slid[0] + run->at, slid[1] + run->at, run->torsion_directions[0], run->torsion_directions[1], run->update->traction);
+            add_resultant(2, slid[0] + run->at, slid[1] + run->at, run->torsion_directions[0],
+                          run->torsion_directions[1], run->update->traction);
     }
     work->n = all->n = 0;
 }
@@ -298,7 +314,8 @@ void foundations_finish(SliderWork *work)
 }
 
 /* Start a run of up to `most` rows for the sliders from k on of a patch. */
-static Run *add_run(SliderWork *work, int most, int k, double *const force_end[2], const double *const turning[2], SliderUpdate *update)
+static Run *add_run(SliderWork *work, int most, int k, double *const force_end[2], const double *const turning[2],
+                    SliderUpdate *update)
 {
     if (work->batch.n + most > BATCH_SIZE)
         finish_runs(work);
@@ -311,29 +328,30 @@ static Run *add_run(SliderWork *work, int most, int k, double *const force_end[2
 }
 
 /* Add a pair of sliders to the batch. */
-static inline void add_pair(SimdBatch *all, const PlaneSliders *s, int first)
+static inline void add_pair(SimdBatch *all, const Sliders2D *s, int first)
 {
     for (int k = first; k < first + 2; k++, all->n++) {
         for (int d = 0; d < 2; d++) {
             all->force[d][all->n] = s->force[d][k];
-            all->displacement[d][all->n] = shift_of(s->turning, k, s->shift, d);
+            all->displacement[d][all->n] = slider_displacement(s->torsion_directions, k, s->displacement, d);
         }
-        all->retention[all->n] = s->keeps[k];
-        all->secant_stiffness[all->n] = s->carries[k];
+        all->retention[all->n] = s->retention[k];
+        all->secant_stiffness[all->n] = s->secant_stiffness[k];
         all->K[all->n] = s->K[k];
-        all->per_K[all->n] = s->per_K[k];
-        all->limit_start[all->n] = limit_at(s->before[k], s->K[k], s->from);
-        all->limit_end[all->n] = limit_at(s->after[k], s->K[k], s->to);
+        all->per_K[all->n] = s->compliance[k];
+        all->limit_start[all->n] = limit_at_growth(s->limit_start[k], s->K[k], s->growth_start);
+        all->limit_end[all->n] = limit_at_growth(s->limit_end[k], s->K[k], s->growth_end);
     }
 }
 
 /* Sliders of constant stiffness; `stick` is the sum of the stiffnesses up to each pair. */
-static void advance_constant_stiffness(int n, const PlaneSliders *s, const double *stick, bool is_along_x, double *const force_end[2],
-                        SliderWork *work, SliderUpdate *update)
+static void advance_constant_stiffness(int n, const Sliders2D *s, const double *stick, bool is_along_x,
+                                       double *const force_end[2], SliderWork *work, SliderUpdate *update)
 {
     const bool use_avx = work->batch.use_avx;
-    SliderSum sum = {.loss = 0.0};
-    const int first = is_along_x ? sliders_sticking(n, s, force_end[0], &sum) : sliders_stick(use_avx, n, s, force_end, sum.force);
+    SliderResultant sum = {.loss = 0.0};
+    const int first = is_along_x ? sliders_advance_along_x(n, s, force_end[0], &sum)
+                                 : sliders_predict(use_avx, n, s, force_end, sum.force);
     const int end = first + (n - first) / 4 * 4;
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
@@ -343,20 +361,20 @@ static void advance_constant_stiffness(int n, const PlaneSliders *s, const doubl
     if (is_along_x)
         return;
     if (end > first) {
-        double rows[N_SLID - 2][FOUNDATION_SLIDERS], *slid[N_SLID] = {force_end[0], force_end[1]};
-        for (int r = 2; r < N_SLID; r++)
+        double rows[N_MAPPING - 2][FOUNDATION_SLIDERS], *slid[N_MAPPING] = {force_end[0], force_end[1]};
+        for (int r = 2; r < N_MAPPING; r++)
             slid[r] = rows[r - 2];
-        sliders_slide(use_avx, first, end, s, slid, work->forces_only);
+        sliders_return_map(use_avx, first, end, s, slid, work->forces_only);
         if (!work->forces_only) {
-            sliders_sum(use_avx, first, end, s, slid, &sum);
+            sliders_resultant(use_avx, first, end, s, slid, &sum);
             add_sum(&sum, update);
         } else {
-            add_forces(end - first, force_end[0] + first, force_end[1] + first, s->turning[0] + first, s->turning[1] + first,
-                       update->traction);
+            add_resultant(end - first, force_end[0] + first, force_end[1] + first, s->torsion_directions[0] + first,
+                          s->torsion_directions[1] + first, update->traction);
         }
     }
     if (n > end) {
-        add_run(work, 2, end, force_end, s->turning, update);
+        add_run(work, 2, end, force_end, s->torsion_directions, update);
         add_pair(&work->batch, s, end);
     }
 }
@@ -368,50 +386,59 @@ static const double FULL_RETENTION[] = {
 _Static_assert(sizeof FULL_RETENTION == FOUNDATION_SLIDERS * sizeof *FULL_RETENTION, "of each");
 
 /* Sliders from k on, without stiffness and limits. */
-static inline PlaneSliders sliders_from(const Foundation *f, const PatchIncrement *path, int k)
+static inline Sliders2D sliders_from(const Foundation *f, const PatchIncrement *path, int k)
 {
-    return (PlaneSliders){.force = {path->force[0] + k, path->force[1] + k},
-                          .keeps = FULL_RETENTION,
-                          .turning = {f->torsion_directions[0] + k, f->torsion_directions[1] + k},
-                          .shift = {path->displacement[0], path->displacement[1], path->displacement[2]}};
+    return (Sliders2D){.force = {path->force[0] + k, path->force[1] + k},
+                          .retention = FULL_RETENTION,
+                          .torsion_directions = {f->torsion_directions[0] + k, f->torsion_directions[1] + k},
+                          .displacement = {path->displacement[0], path->displacement[1], path->displacement[2]}};
 }
 
 /* Sliders of ranges in full contact. */
-static PlaneSliders full_range_sliders(const Foundation *f, const PatchIncrement *path)
+static Sliders2D full_range_sliders(const Foundation *f, const PatchIncrement *path)
 {
-    PlaneSliders s = sliders_from(f, path, 0);
-    s.K = s.carries = f->K;
-    s.per_K = f->per_K;
-    s.before = s.after = f->limit;
-    s.from = f->mu / f->ratio * path->start->approach;
-    s.to = f->mu / f->ratio * path->end->approach;
+    Sliders2D s = sliders_from(f, path, 0);
+    s.K = s.secant_stiffness = f->K;
+    s.compliance = f->per_K;
+    s.limit_start = s.limit_end = f->limit;
+    s.growth_start = f->mu / f->ratio * path->start->approach;
+    s.growth_end = f->mu / f->ratio * path->end->approach;
     return s;
 }
 
 /* Advance the first n sliders, of ranges in full contact. */
-static void advance_full_ranges(const Foundation *f, int n, const PatchIncrement *path, bool is_along_x, double *const force_end[2],
-                      SliderWork *work, SliderUpdate *update)
+static void advance_full_ranges(const Foundation *f, int n, const PatchIncrement *path, bool is_along_x,
+                                double *const force_end[2], SliderWork *work, SliderUpdate *update)
 {
-    const PlaneSliders s = full_range_sliders(f, path);
+    const Sliders2D s = full_range_sliders(f, path);
     advance_constant_stiffness(n, &s, f->stick_stiffness, is_along_x, force_end, work, update);
 }
 
 /* Advance the range in partial contact at constant approach. */
-static void advance_constant_approach(const Foundation *f, int i, const PatchIncrement *path, bool is_along_x, double *const force_end[2],
-                         SliderWork *work, SliderUpdate *update)
+static void advance_constant_approach(const Foundation *f, int i, const PatchIncrement *path, bool is_along_x,
+                                      double *const force_end[2], SliderWork *work, SliderUpdate *update)
 {
     const SliderProperties here = slider_properties(f, i, path->end);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
     double *const to[2] = {force_end[0] + 2 * i, force_end[1] + 2 * i}, stick = 2.0 * here.K;
-    PlaneSliders s = sliders_from(f, path, 2 * i);
-    s.K = s.carries = K;
-    s.per_K = per_K;
-    s.before = s.after = here.limit;
+    Sliders2D s = sliders_from(f, path, 2 * i);
+    s.K = s.secant_stiffness = K;
+    s.compliance = per_K;
+    s.limit_start = s.limit_end = here.limit;
     advance_constant_stiffness(2, &s, &stick, is_along_x, to, work, update);
 }
 
 /* Arguments of `retention_and_stiffness`. */
-enum { X_IS_SMALL, X_STIFFNESS_START, X_SLOPE_START, X_STIFFNESS_END, X_SLOPE_END, X_APPROACH_CHANGE, X_RISE, N_RETENTION };
+enum {
+    X_IS_SMALL,
+    X_STIFFNESS_START,
+    X_SLOPE_START,
+    X_STIFFNESS_END,
+    X_SLOPE_END,
+    X_APPROACH_CHANGE,
+    X_RISE,
+    N_RETENTION
+};
 
 static inline double limit_sum(const SliderProperties *pair)
 {
@@ -419,7 +446,8 @@ static inline double limit_sum(const SliderProperties *pair)
 }
 
 /* Its arguments at both ends of an increment, or their rates. */
-static inline void set_range_ends(const Foundation *f, const SliderProperties *start, const SliderProperties *end, double change, double *x)
+static inline void set_range_ends(const Foundation *f, const SliderProperties *start, const SliderProperties *end,
+                                  double change, double *x)
 {
     x[X_STIFFNESS_START] = start->K;
     x[X_SLOPE_START] = start->slope;
@@ -429,8 +457,9 @@ static inline void set_range_ends(const Foundation *f, const SliderProperties *s
     x[X_RISE] = 0.5 * f->ratio / f->mu * (limit_sum(end) - limit_sum(start));
 }
 
-static inline void retention_arguments(const Foundation *f, int i, const PatchIncrement *path, const SliderProperties *start, const SliderProperties *end,
-                        const PatchState *at, double *x)
+static inline void retention_arguments(const Foundation *f, int i, const PatchIncrement *path,
+                                       const SliderProperties *start, const SliderProperties *end, const PatchState *at,
+                                       double *x)
 {
     const double change = at->approach - path->start->approach;
     set_range_ends(f, start, end, change, x);
@@ -438,30 +467,32 @@ static inline void retention_arguments(const Foundation *f, int i, const PatchIn
 }
 
 /* Add the pair of a range that changes; `gained` is the result of `retention_and_stiffness`. */
-static inline void add_range_pair(PlaneSliders s, const SliderProperties *start, const SliderProperties *end, const double gained[2], SimdBatch *all)
+static inline void add_range_pair(Sliders2D s, const SliderProperties *start, const SliderProperties *end,
+                                  const double gained[2], SimdBatch *all)
 {
     const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0, K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
     const double keeps[2] = {gained[0], gained[0]}, carries[2] = {gained[1], gained[1]};
     s.K = K;
-    s.per_K = per_K;
-    s.keeps = keeps;
-    s.carries = carries;
-    s.before = start->limit;
-    s.after = end->limit;
+    s.compliance = per_K;
+    s.retention = keeps;
+    s.secant_stiffness = carries;
+    s.limit_start = start->limit;
+    s.limit_end = end->limit;
     add_pair(all, &s, 0);
 }
 
 /* Advance a range that changes. */
-static void advance_partial_range(const Foundation *f, int i, const PatchIncrement *path, MiddleState *middle, double *const force_end[2],
-                       SliderWork *work, SliderUpdate *update)
+static void advance_partial_range(const Foundation *f, int i, const PatchIncrement *path, MiddleState *middle,
+                                  double *const force_end[2], SliderWork *work, SliderUpdate *update)
 {
     const bool contact_changes = !work->forces_only && !keeps_contact_state(i, path->start, path->end);
-    const PatchState *half = contact_changes ? middle_state(f, path, middle) : path->end, *points[2] = {path->end, half};
+    const PatchState *half = contact_changes ? middle_state(f, path, middle) : path->end,
+                     *points[2] = {path->end, half};
     const SliderProperties start = slider_properties(f, i, path->start), end = slider_properties(f, i, path->end);
     const SliderProperties ends[2] = {end, contact_changes ? slider_properties(f, i, half) : end};
     const int n = contact_changes ? 2 : 1;
     double x[N_RETENTION], gained[2];
-    PlaneSliders s = sliders_from(f, path, 2 * i);
+    Sliders2D s = sliders_from(f, path, 2 * i);
     Run *run = add_run(work, 2 * n, 2 * i, force_end, f->torsion_directions, update);
     run->contact_changes = contact_changes;
     run->K = start.K;
@@ -471,7 +502,7 @@ static void advance_partial_range(const Foundation *f, int i, const PatchIncreme
         retention_and_stiffness(x, NULL, gained);
         add_range_pair(s, &start, &ends[at], gained, &work->batch);
         for (int d = 0; d < 3; d++)
-            s.shift[d] *= 0.5;
+            s.displacement[d] *= 0.5;
     }
 }
 
@@ -481,10 +512,12 @@ static int full_ranges_throughout(const PatchIncrement *path)
     return path->start->full_ranges < path->end->full_ranges ? path->start->full_ranges : path->end->full_ranges;
 }
 
-void foundation_advance(const Foundation *f, const PatchIncrement *path, double *const force_end[2], SliderWork *work, SliderUpdate *update)
+void foundation_advance(const Foundation *f, const PatchIncrement *path, double *const force_end[2], SliderWork *work,
+                        SliderUpdate *update)
 {
     const int full = full_ranges_throughout(path), touched = touched_ranges_of(path);
-    const bool is_constant = path->start->approach == path->end->approach, is_along_x = !ELASTIC && is_constant && path->is_1d;
+    const bool is_constant = path->start->approach == path->end->approach,
+               is_along_x = !ELASTIC && is_constant && path->is_1d;
     MiddleState middle = {.known = false};
     *update = (SliderUpdate){.loss = 0.0};
     advance_full_ranges(f, 2 * full, path, is_along_x, force_end, work, update);
@@ -512,7 +545,8 @@ static void add_opening_pair(const Foundation *f, int first, double K, SliderWor
 }
 
 /* Add a range that changes; its derivatives by opening are differences over a step. */
-static void add_opening_range(const Foundation *f, int i, const PatchIncrement *path, const PatchState *opened, double step, SliderWork *work)
+static void add_opening_range(const Foundation *f, int i, const PatchIncrement *path, const PatchState *opened,
+                              double step, SliderWork *work)
 {
     const PatchState *at[2] = {path->end, opened};
     const SliderProperties start = slider_properties(f, i, path->start);
@@ -532,19 +566,20 @@ static void add_opening_range(const Foundation *f, int i, const PatchIncrement *
         const int row = first + k;
         work->opening.limit_rate[row] = (end[1].limit[k] - end[0].limit[k]) / step;
         for (int d = 0; d < 2; d++)
-            work->opening.displacement_rate[d][row] = per_gain * ((gained[1][0] - gained[0][0]) * work->batch.force[d][row] +
-                                                    (gained[1][1] - gained[0][1]) * work->batch.displacement[d][row]);
+            work->opening.displacement_rate[d][row] =
+                per_gain * ((gained[1][0] - gained[0][0]) * work->batch.force[d][row] +
+                            (gained[1][1] - gained[0][1]) * work->batch.displacement[d][row]);
     }
 }
 
-void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step, double *const trial_force[2], SliderWork *work,
-                       double slope[4][3])
+void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step,
+                                     double *const trial_force[2], SliderWork *work, double slope[4][3])
 {
     const int full = full_ranges_throughout(path), touched = touched_ranges_of(path);
     SimdBatch *all = &work->batch;
     double force[3];
-    PlaneSliders s = full_range_sliders(f, path);
-    const int first = sliders_stick(all->use_avx, 2 * full, &s, trial_force, force);
+    Sliders2D s = full_range_sliders(f, path);
+    const int first = sliders_predict(all->use_avx, 2 * full, &s, trial_force, force);
     const PatchState opened = patch_state(f, path->end->approach - step, path->end->full_ranges);
     for (int k = first; k < 2 * full; k += 2) {
         add_opening_pair(f, k, f->K[k], work);
@@ -554,8 +589,14 @@ void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *
         add_opening_range(f, i, path, &opened, step, work);
     if (all->n % 4 > 0) { /* a pair of zeros */
         static const double none[2] = {0.0};
-        s = (PlaneSliders){.force = {none, none}, .keeps = none, .turning = {none, none}, .K = none, .carries = none,
-                           .per_K = none, .before = none, .after = none};
+        s = (Sliders2D){.force = {none, none},
+                        .retention = none,
+                        .torsion_directions = {none, none},
+                        .K = none,
+                        .secant_stiffness = none,
+                        .compliance = none,
+                        .limit_start = none,
+                        .limit_end = none};
         add_opening_pair(f, 0, 0.0, work);
         add_pair(all, &s, 0);
     }
@@ -563,7 +604,7 @@ void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *
                                work->opening.limit_rate,
                                {work->opening.displacement_rate[0], work->opening.displacement_rate[1]}};
     s = batch(all);
-    sliders_slopes(all->use_avx, all->n, &s, &rates, slope);
+    sliders_force_derivatives(all->use_avx, all->n, &s, &rates, slope);
     for (int d = 0; d < 3 && first > 0; d++)
         slope[d][d] += f->stick_stiffness[first / 2 - 1];
     all->n = 0;
@@ -580,7 +621,8 @@ enum { R_IS_UNLOADING, R_STIFFNESS_START, R_STIFFNESS_END, N_STICK_RETENTION }; 
 bool full_stick_update(const Foundation *f, const PatchIncrement *path, const double before[3], SliderUpdate *update)
 {
     const PatchState *from = path->start, *to = path->end;
-    const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from), stick_stiffness(f, to)};
+    const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from),
+                                         stick_stiffness(f, to)};
     const double most = FULL_STICK_RATIO * f->mu / f->ratio * x[R_STIFFNESS_END] * (to->approach - f->height[0]);
     double rule[2], *t = update->traction;
     stick_retention(x, NULL, rule);
@@ -604,7 +646,8 @@ bool full_stick_rates(const Foundation *f, const PatchIncrement *path, const dou
     stick_retention_seed(x, NULL, slopes);
     *rate = (SliderUpdate){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
     for (int d = 0; d < 3; d++)
-        rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->displacement[d] + rule[1] * rates->displacement[d];
+        rate->traction[d] =
+            slopes[0] * before[d] + slopes[1] * path->displacement[d] + rule[1] * rates->displacement[d];
     return corner;
 }
 
@@ -615,13 +658,14 @@ void distribute_stick_force(const Foundation *f, const PatchState *at, const dou
         const double part = stick > 0.0 ? slider_properties(f, i, at).K / stick : 0.0;
         for (int d = 0; d < 2; d++)
             for (int k = 2 * i; k < 2 * i + 2; k++)
-                force[d][k] = part * shift_of(f->torsion_directions, k, traction, d);
+                force[d][k] = part * slider_displacement(f->torsion_directions, k, traction, d);
     }
     for (int d = 0; d < 2; d++)
-        memset(force[d] + 2 * at->touched_ranges, 0, (size_t)(FOUNDATION_SLIDERS - 2 * at->touched_ranges) * sizeof *force[d]);
+        memset(force[d] + 2 * at->touched_ranges, 0,
+               (size_t)(FOUNDATION_SLIDERS - 2 * at->touched_ranges) * sizeof *force[d]);
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Rates
  *
@@ -655,7 +699,7 @@ typedef struct {
     SliderProperties at, rate;
 } PropertiesRate;
 typedef struct {
-    double at[N_SLID], rate[N_SLID];
+    double at[N_MAPPING], rate[N_MAPPING];
 } MappingRate;
 
 /* Properties with rates; `rate` of the approach, `bend` derivative of the slope. */
@@ -688,7 +732,7 @@ static PropertiesRate properties_rate(const Foundation *f, int i, const PatchSta
     return pairs;
 }
 
-/* Arguments of `slide_plane`; in its seed rates of those from P_RETENTION on follow. */
+/* Arguments of `return_map_2d`; in its seed rates of those from P_RETENTION on follow. */
 enum { P_FORCE, P_RETENTION = 2, P_SECANT, P_DISPLACEMENT, P_LIMIT_START = 6, P_LIMIT_END, P_K, P_PER_K, N_PLANE };
 
 /* Relative distance of an elastic predictor from its limit [1] up to which it is at the limit. */
@@ -721,13 +765,15 @@ static bool has_two_sides(const double x[N_PLANE])
 }
 
 /* Return mapping of one slider with its rate, on the side to which `direction` points. */
-static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const double direction[N_PLANE - P_RETENTION], bool *corner)
+static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const double direction[N_PLANE - P_RETENTION],
+                                   bool *corner)
 {
     MappingRate slid;
     const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), limit = x[P_LIMIT_END];
     const double own[2] = {predictor_rate(x, x + N_PLANE, 0), predictor_rate(x, x + N_PLANE, 1)};
     const bool at_limit = is_at_limit(x);
-    const double beyond = u * predictor_rate(x, direction, 0) + v * predictor_rate(x, direction, 1) - limit * direction[P_LIMIT_END - P_RETENTION];
+    const double beyond = u * predictor_rate(x, direction, 0) + v * predictor_rate(x, direction, 1) -
+                          limit * direction[P_LIMIT_END - P_RETENTION];
     const double least = at_limit ? 1.0 - 2.0 * LIMIT_ROUND_OFF : 1.0;
     const double grows = direction[P_LIMIT_END - P_RETENTION] - direction[P_LIMIT_START - P_RETENTION];
     if (x[P_LIMIT_START] == limit && grows != 0.0) {
@@ -738,13 +784,13 @@ static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const do
         x[k] *= least;
         x[k + N_PLANE - P_RETENTION] *= least;
     }
-    slide_plane(x, NULL, slid.at);
-    slide_plane_seed(x, NULL, slid.rate);
+    return_map_2d(x, NULL, slid.at);
+    return_map_2d_seed(x, NULL, slid.rate);
     *corner = *corner || (at_limit && beyond != 0.0);
     if (at_limit && !(beyond > 0.0)) { /* it sticks; its tangent stays that of a slider that slips */
         slid.rate[0] = own[0];
         slid.rate[1] = own[1];
-        slid.rate[SLID_LOSS] = slid.rate[SLID_SLIP] = 0.0;
+        slid.rate[MAPPING_LOSS] = slid.rate[MAPPING_SLIP] = 0.0;
     }
     return slid;
 }
@@ -754,8 +800,13 @@ static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const do
 static void argument_rates(const Foundation *f, int k, const double gains[2], const IncrementRate *rates, double part,
                          const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_RETENTION])
 {
-    const double all[] = {gains[0], gains[1], part * shift_of(f->torsion_directions, k, rates->displacement, 0),
-                          part * shift_of(f->torsion_directions, k, rates->displacement, 1), limits[0], limits[1], K_rate,
+    const double all[] = {gains[0],
+                          gains[1],
+                          part * slider_displacement(f->torsion_directions, k, rates->displacement, 0),
+                          part * slider_displacement(f->torsion_directions, k, rates->displacement, 1),
+                          limits[0],
+                          limits[1],
+                          K_rate,
                           -K_rate * per_K * per_K};
     memcpy(out, all, sizeof all);
 }
@@ -766,8 +817,8 @@ typedef struct {
     double gained[2], gains[2];
 } SecantRate;
 
-static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from, const PatchState *at, double part,
-                    const IncrementRate *rates)
+static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from,
+                              const PatchState *at, double part, const IncrementRate *rates)
 {
     const double change = at->approach - from->approach, turned = part * (rates->ends[1] - rates->ends[0]);
     const double rises = c->direction->ends[1] - c->direction->ends[0];
@@ -776,7 +827,8 @@ static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, co
                                       : 0.0;
     double x[2 * N_RETENTION - 1];
     SecantRate g = {.end = properties_rate(f, i, at, rates->ends[0] + turned, bend)};
-    g.start = change != 0.0 || c->path->is_first ? properties_rate(f, i, from, rates->ends[0], bend) : (PropertiesRate){.at = g.end.at};
+    g.start = change != 0.0 || c->path->is_first ? properties_rate(f, i, from, rates->ends[0], bend)
+                                                 : (PropertiesRate){.at = g.end.at};
     retention_arguments(f, i, c->path, &g.start.at, &g.end.at, at, x);
     if (change == 0.0 && rises != 0.0) { /* springs that lift off take their force with them */
         x[X_APPROACH_CHANGE] = copysign(DBL_MIN, rises);
@@ -789,14 +841,14 @@ static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, co
 }
 
 /* Return mapping of one slider of a range over a part of an increment, with its rate. */
-static MappingRate range_slider_rate(const Foundation *f, const SideRates *c, int i, const PatchState *from, const PatchState *at, double part, int late,
-                     const SecantRate *own)
+static MappingRate range_slider_rate(const Foundation *f, const SideRates *c, int i, const PatchState *from,
+                                     const PatchState *at, double part, int late, const SecantRate *own)
 {
     const int k = 2 * i + late;
     const double K = own->end.at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
     double x[2 * N_PLANE - P_RETENTION] = {c->path->force[0][k], c->path->force[1][k], own->gained[0], own->gained[1],
-                                       part * shift_of(f->torsion_directions, k, c->path->displacement, 0),
-                                       part * shift_of(f->torsion_directions, k, c->path->displacement, 1),
+                                       part * slider_displacement(f->torsion_directions, k, c->path->displacement, 0),
+                                       part * slider_displacement(f->torsion_directions, k, c->path->displacement, 1),
                                        own->start.at.limit[late], own->end.at.limit[late], K, per_K};
     double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
     const double limits[2] = {own->start.rate.limit[late], own->end.rate.limit[late]};
@@ -829,8 +881,8 @@ static double loss_rate(const SideRates *c, double x[2 * N_VARYING_LOSS - 3])
 }
 
 /* Rates of the sliders of a range that is not all in contact, on one side of a path, whose points are given. */
-static void partial_range_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from, const PatchState *to,
-                       const PatchState *middle, SliderUpdate *rate)
+static void partial_range_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from,
+                               const PatchState *to, const PatchState *middle, SliderUpdate *rate)
 {
     const PatchIncrement *path = c->path;
     const PatchState *points[2] = {to, middle};
@@ -852,18 +904,35 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
         const MappingRate *end = &slid[0][late], *half = &slid[1][late];
         const double *force_end = end->at;
         const int k = 2 * i + late;
-        double shift[2], rated[2], dy[N_SLID];
+        double shift[2], rated[2], dy[N_MAPPING];
         memcpy(dy, end->rate, sizeof dy);
         for (int d = 0; d < 2; d++) {
-            shift[d] = shift_of(f->torsion_directions, k, path->displacement, d);
-            rated[d] = shift_of(f->torsion_directions, k, c->rates->displacement, d);
+            shift[d] = slider_displacement(f->torsion_directions, k, path->displacement, d);
+            rated[d] = slider_displacement(f->torsion_directions, k, c->rates->displacement, d);
         }
-        double x[] = {contact_changes, path->force[0][k], path->force[1][k], force_end[0], force_end[1],
-                            shift[0], shift[1], start->at.K, last->at.K, force_end[SLID_SLIP], half->at[0], half->at[1],
-                            dy[0], dy[1], rated[0], rated[1], start->rate.K, last->rate.K, dy[SLID_SLIP],
-                            half->rate[0], half->rate[1]};
+        double x[] = {contact_changes,
+                      path->force[0][k],
+                      path->force[1][k],
+                      force_end[0],
+                      force_end[1],
+                      shift[0],
+                      shift[1],
+                      start->at.K,
+                      last->at.K,
+                      force_end[MAPPING_SLIP],
+                      half->at[0],
+                      half->at[1],
+                      dy[0],
+                      dy[1],
+                      rated[0],
+                      rated[1],
+                      start->rate.K,
+                      last->rate.K,
+                      dy[MAPPING_SLIP],
+                      half->rate[0],
+                      half->rate[1]};
         if (start->at.K != last->at.K || start->rate.K != last->rate.K)
-            dy[SLID_LOSS] = loss_rate(c, x);
+            dy[MAPPING_LOSS] = loss_rate(c, x);
         add_slider(dy, f->torsion_directions[0][k], f->torsion_directions[1][k], rate);
     }
 }
@@ -878,10 +947,11 @@ static void slider_height_rates(const Foundation *f, double rate, double height[
 {
     const double end = f->curve->end.y;
     double y[2];
-    curve_at(f->curve, f->onset_approach, 1, y);
+    curve_evaluate(f->curve, f->onset_approach, 1, y);
     const bool follow = y[0] > MIN_REFERENCE_RATIO * end && y[0] < MAX_REFERENCE_RATIO * end;
     memset(height, 0, N_HEIGHTS * sizeof *height);
-    for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) { /* loads in proportion below, in that of their logarithm above */
+    /* loads in proportion below, in that of their logarithm above */
+    for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) {
         const double part = i > N_BELOW ? fmax(i - 2 - N_BELOW + f->offset, 0.0) / (double)N_ABOVE : 0.0;
         const double load = f->load[i] / y[0] * (1.0 - part * part) * y[1] * rate;
         height[i] = f->stiffness[i] > 0.0 ? load / f->stiffness[i] : 0.0;
@@ -899,15 +969,17 @@ static void full_range_rates(const Foundation *f, int n, double approach, double
     slider_height_rates(f, rate, height);
     for (int i = 0; i < N_HEIGHTS; i++) {
         double y[3];
-        curve_at(f->curve, f->height[i], 2, y);
+        curve_evaluate(f->curve, f->height[i], 2, y);
         stiffness[i] = y[2] * height[i];
     }
     for (int i = 0; i < n; i++) {
         const double width = f->height[i + 1] - f->height[i], left = f->height[i + 1] - approach;
         const double springs = stiffness[i + 1] - stiffness[i];
         const double normal = (f->stiffness[i + 1] - f->stiffness[i]) * height[i + 1] - stiffness[i] * width;
-        const double opened = f->force_deviation[i] < f->normal_force[i] ? UNIFORM_DEVIATION * (springs * width + f->normal_stiffness[i] * (height[i + 1] - height[i]))
-                                                        : normal;
+        const double opened =
+            f->force_deviation[i] < f->normal_force[i]
+                ? UNIFORM_DEVIATION * (springs * width + f->normal_stiffness[i] * (height[i + 1] - height[i]))
+                : normal;
         for (int late = 0; late < 2; late++) {
             out->K[2 * i + late] = 0.5 * f->ratio * springs;
             out->limit[2 * i + late] = 0.5 * f->mu * (normal + (late ? opened : -opened) - springs * left -
@@ -927,24 +999,36 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
     if (path->is_first)
         full_range_rates(f, n / 2, path->end->approach, turn[1], &own);
     for (int k = 0; k < n; k++) {
-        const double K = f->K[k], per_K = f->per_K[k], before = limit_at(f->limit[k], K, from), after = limit_at(f->limit[k], K, to);
-        double x[2 * N_PLANE - P_RETENTION] = {path->force[0][k], path->force[1][k], 1.0, K,
-                                           shift_of(f->torsion_directions, k, path->displacement, 0), shift_of(f->torsion_directions, k, path->displacement, 1),
-                                           before, after, K, per_K};
+        const double K = f->K[k], per_K = f->per_K[k], before = limit_at_growth(f->limit[k], K, from),
+                     after = limit_at_growth(f->limit[k], K, to);
+        double x[2 * N_PLANE - P_RETENTION] = {path->force[0][k],
+                                               path->force[1][k],
+                                               1.0,
+                                               K,
+                                               slider_displacement(f->torsion_directions, k, path->displacement, 0),
+                                               slider_displacement(f->torsion_directions, k, path->displacement, 1),
+                                               before,
+                                               after,
+                                               K,
+                                               per_K};
         double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
-        const double limits[2] = {path->is_first ? own.limit[k] : grown * K * turn[0], path->is_first ? own.limit[k] : grown * K * turn[1]};
+        const double limits[2] = {path->is_first ? own.limit[k] : grown * K * turn[0],
+                                  path->is_first ? own.limit[k] : grown * K * turn[1]};
         const double stiffer = path->is_first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
         argument_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
-        const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), least = (1.0 - 2.0 * LIMIT_ROUND_OFF) * after;
-        double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_DISPLACEMENT], K * x[N_PLANE + 3] + stiffer * x[P_DISPLACEMENT + 1],
-                                   stiffer, 0.0, stiffer};
+        const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1),
+                     least = (1.0 - 2.0 * LIMIT_ROUND_OFF) * after;
+        double dy[N_MAPPING] = {K * x[N_PLANE + 2] + stiffer * x[P_DISPLACEMENT],
+                                K * x[N_PLANE + 3] + stiffer * x[P_DISPLACEMENT + 1], stiffer, 0.0, stiffer};
         if (u * u + v * v >= least * least) {
-            const bool sides = path->is_first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first increment are equal */
+            const bool sides =
+                path->is_first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first increment are equal */
             if (sides && path->is_first && !found)
                 full_range_rates(f, n / 2, path->end->approach, turned[1], &ahead);
             found = found || sides;
             if (sides) {
-                const double next[2] = {path->is_first ? ahead.limit[k] : grown * K * turned[0], path->is_first ? ahead.limit[k] : grown * K * turned[1]};
+                const double next[2] = {path->is_first ? ahead.limit[k] : grown * K * turned[0],
+                                        path->is_first ? ahead.limit[k] : grown * K * turned[1]};
                 const double stiff = path->is_first ? ahead.K[k] : 0.0, gain_ahead[2] = {0.0, stiff};
                 argument_rates(f, k, gain_ahead, c->direction, 1.0, next, stiff, per_K, ahead_rates);
             }
@@ -957,9 +1041,10 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
 
 /* Rates of a range i > 0 whose springs begin to touch beyond the end of a path. Their limits are of second order, and
  * none of their force is left. They slip along the shift, and are stiff across it alone, where it is larger than what
- * the load rises by lets stick; where the load falls to the height, along the part of their force that they keep, and the
- * shift. Where nothing moves, each goes along as its neighbour below: it slips where that is at its limit. */
-static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from, const PatchState *to, SliderUpdate *rate)
+ * the load rises by lets stick; where the load falls to the height, along the part of their force that they keep, and
+ * the shift. Where nothing moves, each goes along as its neighbour below: it slips where that is at its limit. */
+static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from,
+                                   const PatchState *to, SliderUpdate *rate)
 {
     const PatchIncrement *path = c->path;
     const bool still = path->displacement[0] == 0.0 && path->displacement[1] == 0.0 && path->displacement[2] == 0.0;
@@ -969,21 +1054,24 @@ static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *
     const bool lifts = change < 0.0 && start.K > 0.0, follows = still && !lifts;
     for (int late = 0; late < 2; late++) {
         const int at = 2 * i + late, k = follows ? at - 2 : at;
-        const double sticks = f->mu / f->ratio * fmax(change, 0.0) * (late ? 1.0 + 2.0 * UNIFORM_DEVIATION : 1.0 - 2.0 * UNIFORM_DEVIATION);
+        const double sticks = f->mu / f->ratio * fmax(change, 0.0) *
+                              (late ? 1.0 + 2.0 * UNIFORM_DEVIATION : 1.0 - 2.0 * UNIFORM_DEVIATION);
         const double least = follows ? (1.0 - 2.0 * LIMIT_ROUND_OFF) * below.limit[late] : sticks;
         double way[2];
         for (int d = 0; d < 2; d++) {
-            const double shift = shift_of(f->torsion_directions, k, path->displacement, d), force = path->force[d][k];
+            const double shift = slider_displacement(f->torsion_directions, k, path->displacement, d),
+                         force = path->force[d][k];
             way[d] = lifts ? force / start.K + shift : follows ? force : shift;
         }
         const double square = way[0] * way[0] + way[1] * way[1], per = square > least * least ? K / square : 0.0;
-        const double dy[N_SLID] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1], K - per * way[1] * way[1]};
+        const double dy[N_MAPPING] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1],
+                                      K - per * way[1] * way[1]};
         add_slider(dy, f->torsion_directions[0][at], f->torsion_directions[1][at], rate);
     }
 }
 
-bool foundation_rates(const Foundation *f, const PatchIncrement *path, const IncrementRate *direction, const IncrementRate *rates,
-                      SliderUpdate *rate)
+bool foundation_rates(const Foundation *f, const PatchIncrement *path, const IncrementRate *direction,
+                      const IncrementRate *rates, SliderUpdate *rate)
 {
     bool corner = false;
     const SideRates path_side = {path, direction, rates, &corner};
@@ -1009,4 +1097,4 @@ bool foundation_rates(const Foundation *f, const PatchIncrement *path, const Inc
     return corner;
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

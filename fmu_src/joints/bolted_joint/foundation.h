@@ -4,7 +4,7 @@
 #define JOINTFMU_FOUNDATION_H
 
 #include "curve.h"
-#include "sliders.h"
+#include "jenkins.h"
 
 enum {
     N_HEIGHTS = N_BELOW + N_ABOVE + 3,
@@ -12,11 +12,11 @@ enum {
     FOUNDATION_SLIDERS = 2 * N_RANGES /* in the order of the heights, of each range first the one that slips earlier */
 };
 
-_Static_assert((int)FOUNDATION_SLIDERS <= (int)MOST_SLIDERS, "in one call");
+_Static_assert((int)FOUNDATION_SLIDERS <= (int)MAX_SLIDERS, "in one call");
 
 typedef struct {
     const Curve *curve;
-    const Energy *energy; /* integral of the curve */
+    const CurveEnergy *energy; /* integral of the curve */
     double mu, ratio;     /* friction coefficient, stiffness ratio K_T/K_N [1] */
     const double *torsion_directions[2]; /* unit vectors of the sliders on the circle of the patch */
     double offset;         /* of the heights [1], see `slider_heights` */
@@ -82,14 +82,15 @@ typedef struct {
 /* Arguments and results of the return mapping of sliders of several patches. */
 enum { BATCH_SIZE = 64 };
 typedef struct {
-    bool use_avx; /* the processor has vectors of four */
+    bool use_avx; /* the processor has AVX */
     int n;
     double force[2][BATCH_SIZE], displacement[2][BATCH_SIZE], retention[BATCH_SIZE], secant_stiffness[BATCH_SIZE];
     double K[BATCH_SIZE], per_K[BATCH_SIZE], limit_start[BATCH_SIZE], limit_end[BATCH_SIZE];
-    double results[N_SLID][BATCH_SIZE];
+    double results[N_MAPPING][BATCH_SIZE];
 } SimdBatch;
 
-/* Derivatives of these arguments: of the displacement by one around the centre, of limit and displacement by opening. */
+/* Derivatives of these arguments: of the displacement by one around the centre, of limit and displacement by
+ * opening. */
 typedef struct {
     double torsion_directions[2][BATCH_SIZE], limit_rate[BATCH_SIZE], displacement_rate[2][BATCH_SIZE];
 } OpeningBatch;

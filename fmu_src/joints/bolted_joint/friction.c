@@ -3,16 +3,17 @@
 #include <math.h>
 #include <string.h>
 
-#include "cold.h"
+#include "optimize_for_size.h"
 
-_Static_assert((int)AT_NORMAL == (int)AT_FORCE + MOST_PATCHES * 2 * FOUNDATION_SLIDERS, "room for all patches");
+_Static_assert((int)HISTORY_NORMAL == (int)HISTORY_FORCE + MAX_PATCHES * 2 * FOUNDATION_SLIDERS,
+               "room for all patches");
 
 /* Slider forces of patch j along x in a history; those along y follow. */
 enum { PATCH_FORCES = 2 * FOUNDATION_SLIDERS };
 
 static inline const double *forces_of(const double *history, int j)
 {
-    return history + AT_FORCE + j * PATCH_FORCES;
+    return history + HISTORY_FORCE + j * PATCH_FORCES;
 }
 
 /* Set the heights of a patch, unless they are these; the ranges of its states are found again. */
@@ -31,22 +32,22 @@ static void set_heights(Friction *friction, int j, double onset_approach, double
 /* Heights of a patch for an update that starts at an approach. */
 static void set_patch_heights(Friction *friction, int j, const double *history, double start)
 {
-    const bool is_onset = history[AT_STATE] < (double)SLIP_1D;
-    const double min_approach = history[AT_MIN_APPROACH + j];
-    const bool was_open = min_approach < friction->foundation[j].curve->first.x;
-    set_heights(friction, j, is_onset ? start : history[AT_ONSET_APPROACH + j],
+    const bool is_onset = history[HISTORY_STATE] < (double)SLIP_1D;
+    const double min_approach = history[HISTORY_MIN_APPROACH + j];
+    const bool was_open = min_approach < friction->foundation[j].curve->start.x;
+    set_heights(friction, j, is_onset ? start : history[HISTORY_ONSET_APPROACH + j],
                 is_onset || was_open ? start : fmin(min_approach, start));
 }
 
-/* States of the patches at both ends of their increments; without a known state the increment has no change of approach.
- * States are kept where they are still right. */
+/* States of the patches at both ends of their increments; without a known state the increment has no change of
+ * approach. States are kept where they are still right. */
 static void find_states(Friction *friction, const Contact *contact, const double *history)
 {
-    const bool is_known = history[AT_STATE] != (double)UNKNOWN;
+    const bool is_known = history[HISTORY_STATE] != (double)UNKNOWN;
     for (int j = 0; j < n_patches(); j++) {
         PatchState *first = &friction->start[j], *last = &friction->end[j];
         const double end = contact->patch_approach[j];
-        const double start = is_known ? history[AT_APPROACH + j] : end;
+        const double start = is_known ? history[HISTORY_APPROACH + j] : end;
         if (friction->state != FULL_STICK)
             set_patch_heights(friction, j, history, start);
         const Foundation *f = &friction->foundation[j];
@@ -59,21 +60,21 @@ static void find_states(Friction *friction, const Contact *contact, const double
 
 void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q)
 {
-    const double rotation = q[THETA_Z] - history[AT_TANGENTIAL + 2];
+    const double rotation = q[THETA_Z] - history[HISTORY_TANGENTIAL + 2];
     NOT_VECTORIZED
     for (int j = 0; j < n_patches(); j++) {
         const double *patch = data.patches[j];
         const double *modal = bodies->state.patch_displacement[j], *before = bodies->start_displacement[j];
         double *u = friction->increment[j];
-        u[0] = q[S_X] - history[AT_TANGENTIAL] - rotation * patch[POSITION_Y] + (modal[0] - before[0]);
-        u[1] = q[S_Y] - history[AT_TANGENTIAL + 1] + rotation * patch[POSITION_X] + (modal[1] - before[1]);
+        u[0] = q[S_X] - history[HISTORY_TANGENTIAL] - rotation * patch[POSITION_Y] + (modal[0] - before[0]);
+        u[1] = q[S_Y] - history[HISTORY_TANGENTIAL + 1] + rotation * patch[POSITION_X] + (modal[1] - before[1]);
         u[2] = rotation * patch[RADIUS] + (modal[2] - before[2]);
     }
 }
 
 static inline PatchIncrement increment_of(const Friction *friction, int j, const double *history)
 {
-    const bool leaves_stick = friction->state != FULL_STICK && history[AT_STATE] < (double)SLIP_1D;
+    const bool leaves_stick = friction->state != FULL_STICK && history[HISTORY_STATE] < (double)SLIP_1D;
     const double *force = leaves_stick ? friction->stick_force[j][0] : forces_of(history, j);
     const double *u = friction->increment[j];
     return (PatchIncrement){.force = {force, force + FOUNDATION_SLIDERS},
@@ -86,8 +87,8 @@ static inline PatchIncrement increment_of(const Friction *friction, int j, const
 /* State after an increment that leaves full stick: SLIP_1D as long as all moves and forces are along x. */
 static int slip_state(const double *history, const double *q)
 {
-    bool is_1d = !ELASTIC && history[AT_STATE] != (double)SLIP_2D && q[S_Y] == history[AT_TANGENTIAL + 1] &&
-                 q[THETA_Z] == history[AT_TANGENTIAL + 2];
+    bool is_1d = !ELASTIC && history[HISTORY_STATE] != (double)SLIP_2D && q[S_Y] == history[HISTORY_TANGENTIAL + 1] &&
+                 q[THETA_Z] == history[HISTORY_TANGENTIAL + 2];
     for (int j = 0; j < n_patches() && is_1d; j++) {
         const double *force_y = forces_of(history, j) + FOUNDATION_SLIDERS;
         is_1d = force_y[0] == 0.0 && force_y[1] == 0.0;
@@ -107,7 +108,7 @@ static inline void full_stick_force(const double *history, int j, double tractio
 /* Update all patches in full stick; false: a patch moves more than FULL_STICK_RATIO allows. */
 static bool update_full_stick(Friction *friction, const Contact *contact, const double *history)
 {
-    bool sticks = history[AT_STATE] < (double)SLIP_1D;
+    bool sticks = history[HISTORY_STATE] < (double)SLIP_1D;
     if (sticks) {
         friction->state = FULL_STICK;
         find_states(friction, contact, history);
@@ -128,7 +129,7 @@ static void begin_update(Friction *friction, const Contact *contact, const doubl
         return;
     friction->state = slip_state(history, q);
     find_states(friction, contact, history);
-    for (int j = 0; j < n_patches() && history[AT_STATE] < (double)SLIP_1D; j++) {
+    for (int j = 0; j < n_patches() && history[HISTORY_STATE] < (double)SLIP_1D; j++) {
         double *const force[2] = {friction->stick_force[j][0], friction->stick_force[j][1]}, before[3];
         full_stick_force(history, j, before);
         distribute_stick_force(&friction->foundation[j], &friction->start[j], before, force);
@@ -169,9 +170,9 @@ static void store_full_stick_force(const SliderUpdate *update, double *const for
 /* State, heat [J] and rigid displacement of a history. */
 static void set_history(int state, double loss, const double rigid[3], double *after)
 {
-    after[AT_STATE] = state;
-    after[AT_LOSS] = loss;
-    memcpy(after + AT_TANGENTIAL, rigid, 3 * sizeof *rigid);
+    after[HISTORY_STATE] = state;
+    after[HISTORY_LOSS] = loss;
+    memcpy(after + HISTORY_TANGENTIAL, rigid, 3 * sizeof *rigid);
 }
 
 void update_friction(Friction *friction, const Contact *contact, const double *history, const double *q, double *after)
@@ -179,7 +180,7 @@ void update_friction(Friction *friction, const Contact *contact, const double *h
     double heat = 0.0;
     begin_update(friction, contact, history, q);
     for (int j = 0; j < n_patches(); j++) {
-        double *const along_x = after + AT_FORCE + j * PATCH_FORCES;
+        double *const along_x = after + HISTORY_FORCE + j * PATCH_FORCES;
         double *const force[2] = {along_x, along_x + FOUNDATION_SLIDERS};
         if (friction->state == FULL_STICK)
             store_full_stick_force(&friction->update[j], force);
@@ -192,12 +193,12 @@ void update_friction(Friction *friction, const Contact *contact, const double *h
         const double approach = friction->end[j].approach;
         const Foundation *f = &friction->foundation[j];
         heat += data.patches[j][SHARE] * friction->update[j].loss;
-        after[AT_ONSET_APPROACH + j] = sticks ? approach : f->onset_approach;
-        after[AT_MIN_APPROACH + j] = sticks ? approach : f->min_approach;
-        after[AT_APPROACH + j] = approach;
+        after[HISTORY_ONSET_APPROACH + j] = sticks ? approach : f->onset_approach;
+        after[HISTORY_MIN_APPROACH + j] = sticks ? approach : f->min_approach;
+        after[HISTORY_APPROACH + j] = approach;
     }
     const double rigid[3] = {q[S_X], q[S_Y], q[THETA_Z]};
-    set_history(friction->state, history[AT_LOSS] + contact->area * heat, rigid, after);
+    set_history(friction->state, history[HISTORY_LOSS] + contact->area * heat, rigid, after);
 }
 
 void update_without_history(Friction *friction, const Contact *contact, const double *history, double *after)
@@ -205,7 +206,7 @@ void update_without_history(Friction *friction, const Contact *contact, const do
     const double rigid[3] = {0.0};
     friction->state = FULL_STICK;
     find_states(friction, contact, history);
-    set_history(UNKNOWN, history[AT_LOSS], rigid, after);
+    set_history(UNKNOWN, history[HISTORY_LOSS], rigid, after);
 }
 
 /* Tangents */
@@ -219,8 +220,8 @@ static inline void directional_stiffness(const double *patch, const double tange
                              radius * radius * tangent[5]);
 }
 
-/* Stiffness against S_X, S_Y, THETA_Z: with all sliders sticking; what it lacks if all sliders at their limits slip; and
- * the lack with the sign of the traction along the motion. */
+/* Stiffness against S_X, S_Y, THETA_Z: with all sliders sticking; what it lacks if all sliders at their limits slip;
+ * and the lack with the sign of the traction along the motion. */
 typedef struct {
     double stick[3], lack[3], signed_lack[3];
 } TangentSums;
@@ -259,7 +260,7 @@ static void weaker_direction(const TangentSums *sums, const double *traction_sum
 
 void consistent_tangent(Friction *friction, double stiffness[3])
 {
-    double stick[MOST_PATCHES];
+    double stick[MAX_PATCHES];
     NOT_VECTORIZED
     for (int j = 0; j < n_patches(); j++)
         stick[j] = stick_stiffness(&friction->foundation[j], &friction->end[j]);
@@ -268,7 +269,7 @@ void consistent_tangent(Friction *friction, double stiffness[3])
     weaker_direction(&sums, friction->traction_sum, stiffness);
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx)
 {
@@ -318,7 +319,7 @@ void set_heights_from(Friction *friction, const double *history)
 void increment_rates(const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q_rate,
                      const double bolts[4], IncrementRate *rates)
 {
-    double points[MOST_POINTS], transferred[MOST_PATCHES], unused;
+    double points[MAX_POINTS], transferred[MAX_PATCHES], unused;
     for (int i = 0; i < n_points() && ELASTIC; i++)
         points[i] = contact->rate[i].derivatives[1] * contact->rate[i].approach;
     if (ELASTIC)
@@ -352,7 +353,7 @@ SliderUpdate update_rate(Friction *friction, int j, const double *history, const
                          const double displacement_rate[3])
 {
     const Foundation *f = &friction->foundation[j];
-    const bool is_first = !after && history[AT_STATE] == (double)UNKNOWN;
+    const bool is_first = !after && history[HISTORY_STATE] == (double)UNKNOWN;
     const IncrementRate rates = {{is_first ? approach_rate : 0.0, approach_rate},
                                  {displacement_rate[0], displacement_rate[1], displacement_rate[2]}};
     IncrementRate direction = friction->direction[j];
@@ -385,11 +386,11 @@ void update_rates(Friction *friction, const double *history, const double *after
 
 void consistent_tangent_rate(const Friction *friction, const IncrementRate *rates, double stiffness[3])
 {
-    double stick_rate[MOST_PATCHES];
+    double stick_rate[MAX_PATCHES];
     for (int j = 0; j < n_patches(); j++)
         stick_rate[j] = friction->stiffness_ratio * friction->end[j].y[2] * rates[j].ends[1];
     const TangentSums sums = sum_tangents(friction, stick_rate, friction->rate);
     weaker_direction(&sums, friction->traction_sum, stiffness);
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

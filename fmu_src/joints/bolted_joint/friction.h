@@ -1,8 +1,8 @@
 /* Repeats friction.py of the package: friction of all patches with its history variables.
  *
- * Histories are arrays of N_MEMORY numbers, whose parts begin at AT_STATE, ... While all patches are in full stick, the
- * history has their tractions in place of slider forces: in the first slider along x and along y, and around the centre
- * of the patch in the second one along y. */
+ * Histories are arrays of N_HISTORY numbers, whose parts begin at HISTORY_STATE, ... While all patches are in full
+ * stick, the history has their tractions in place of slider forces: in the first slider along x and along y, and around
+ * the centre of the patch in the second one along y. */
 #ifndef JOINTFMU_FRICTION_H
 #define JOINTFMU_FRICTION_H
 
@@ -19,26 +19,26 @@
 typedef double TractionDerivatives[4][3];
 
 typedef struct {
-    Foundation foundation[MOST_PATCHES];
+    Foundation foundation[MAX_PATCHES];
     bool has_history;
     double mu, stiffness_ratio;
     SliderWork work;
     double trial_force[2][FOUNDATION_SLIDERS];                /* room for slider forces that are not kept */
-    double stick_force[MOST_PATCHES][2][FOUNDATION_SLIDERS];  /* slider forces at the end of full stick */
+    double stick_force[MAX_PATCHES][2][FOUNDATION_SLIDERS];  /* slider forces at the end of full stick */
     /* The last update: FULL_STICK, SLIP_1D or SLIP_2D; states at both ends, increments [m], results. */
     int state;
-    PatchState start[MOST_PATCHES], end[MOST_PATCHES];
-    double increment[MOST_PATCHES][3];
-    SliderUpdate update[MOST_PATCHES];
+    PatchState start[MAX_PATCHES], end[MAX_PATCHES];
+    double increment[MAX_PATCHES][3];
+    SliderUpdate update[MAX_PATCHES];
     double traction_sum[3]; /* of `consistent_tangent`: its signs are the directions in which more patches slip */
     /* Rates along the last seed, on the side 1 or -1 along it; rates of the increments that point to this side. */
     double side;
-    IncrementRate direction[MOST_PATCHES];
+    IncrementRate direction[MAX_PATCHES];
     bool is_corner; /* the other side has other rates */
-    SliderUpdate rate[MOST_PATCHES];
+    SliderUpdate rate[MAX_PATCHES];
 } Friction;
 
-/* Sliders of all patches, once for a parameter set; `use_avx`: the processor has vectors of four. */
+/* Sliders of all patches, once for a parameter set; `use_avx`: the processor has AVX. */
 void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx);
 /* Increments of the patches [m] from the history to q and the deformation of the bodies. */
 void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "cold.h"
+#include "optimize_for_size.h"
 
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as the sums of PreloadState");
 _Static_assert(SUM_TANGENT_Y == SUM_TANGENT_X + 1 && SUM_TANGENT_Z == SUM_TANGENT_X + 2, "in this order");
@@ -38,7 +38,7 @@ void sum_points(OutputSums *sums, const Contact *contact)
     memcpy(sums->x, x, sizeof sums->points);
 }
 
-bool evaluate_point_sums(OutputSums *sums, Contact *contact, const Bodies *bodies, const double *q, Text *why)
+bool evaluate_point_sums(OutputSums *sums, Contact *contact, const Bodies *bodies, const double *q, Text *reason)
 {
     const double *opening = q + S_Z;
     if (sums->points_are_current && memcmp(sums->opening, opening, sizeof sums->opening) == 0) {
@@ -46,7 +46,7 @@ bool evaluate_point_sums(OutputSums *sums, Contact *contact, const Bodies *bodie
         return true;
     }
     sums->points_are_current = false;
-    if (!evaluate_points(contact, bodies->state.opening, q, true, why))
+    if (!evaluate_points(contact, bodies->state.opening, q, true, reason))
         return false;
     sum_points(sums, contact);
     memcpy(sums->opening, opening, sizeof sums->opening);
@@ -107,14 +107,14 @@ static inline void set_shear_arguments(double limit, const double *derivatives, 
     x[E_DISPLACEMENT + 1] = tangential_y(point, q);
 }
 
-bool evaluate_elastic_shear(OutputSums *sums, const Contact *contact, double mu, const double *q, Text *why)
+bool evaluate_elastic_shear(OutputSums *sums, const Contact *contact, double mu, const double *q, Text *reason)
 {
     double y[4], works[N_LAW_STATE], slopes[N_LAW_STATE], arguments[N_E], shear[N_ELASTIC], *x = sums->x;
     sums->p_max = 0.0;
     for (int i = 0; i < n_points(); i++) {
         const double *point = data.points[i];
         const double approach = contact->preload.approach[i] - opening_at(point, q);
-        if (!point_state(contact, approach, 3, y, works, slopes, why))
+        if (!point_state(contact, approach, 3, y, works, slopes, reason))
             return false;
         set_shear_arguments(mu * contact->preload.pressure[i], y, point, q, arguments);
         elastic_shear(arguments, contact->c, shear);
@@ -148,19 +148,20 @@ void sum_patches(OutputSums *sums, Friction *friction, const double *after, doub
         add_patch(sums->x, data.patches[j], friction->update[j].traction);
     if (friction->has_history && !ELASTIC)
         consistent_tangent(friction, sums->x + SUM_TANGENT_X);
-    sums->x[SUM_LOSS] = after[AT_LOSS] / area;
+    sums->x[SUM_LOSS] = after[HISTORY_LOSS] / area;
 }
 
 /* Integral of the curve from its beginning to an approach, the load and its slope. */
 static inline double energy_at(const Contact *contact, double approach, double *y)
 {
     const Curve *curve = contact->curve;
-    const double inside = approach < curve->first.x ? curve->first.x : (approach > curve->end.x ? curve->end.x : approach);
-    const int segment = curve_segment(curve, inside);
-    const double t = (inside - curve->x[segment]) * curve->per[segment], beyond = approach - inside;
-    curve_derivatives(curve, segment, t, 1, y);
+    const double inside =
+        approach < curve->start.x ? curve->start.x : (approach > curve->end.x ? curve->end.x : approach);
+    const int segment = curve_find_segment(curve, inside);
+    const double t = (inside - curve->x[segment]) * curve->inverse_length[segment], beyond = approach - inside;
+    segment_derivatives(curve, segment, t, 1, y);
     const double energy =
-        energy_inside(&contact->energy, curve, segment, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
+        segment_energy(&contact->energy, curve, segment, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
     y[0] += beyond * y[1];
     return energy;
 }
@@ -170,15 +171,15 @@ static inline double energy_and_load(const Contact *contact, double approach, do
 {
     const Curve *curve = contact->curve;
     double y[2];
-    if (!(approach >= curve->first.x && approach < curve->end.x)) {
+    if (!(approach >= curve->start.x && approach < curve->end.x)) {
         const double energy = energy_at(contact, approach, y);
         *load = y[0];
         return energy;
     }
-    const int segment = curve_segment(curve, approach);
-    const double t = (approach - curve->x[segment]) * curve->per[segment];
-    *load = curve_value(curve->a[segment], t);
-    return energy_inside(&contact->energy, curve, segment, t);
+    const int segment = curve_find_segment(curve, approach);
+    const double t = (approach - curve->x[segment]) * curve->inverse_length[segment];
+    *load = polynomial_value(curve->coefficients[segment], t);
+    return segment_energy(&contact->energy, curve, segment, t);
 }
 
 /* Arguments of `cycle_energies` and `small_cycle_energies`; the seeds have rates of those from the amplitude on. */
@@ -197,8 +198,8 @@ static inline bool is_small_amplitude(const PatchState *state, double reach)
 static inline void cycle_ends(const Contact *contact, const PatchState *state, double reach, double upper[5],
                               double lower[5])
 {
-    curve_at(contact->curve, state->approach, 4, upper);
-    curve_at(contact->curve, state->approach - reach, 4, lower);
+    curve_evaluate(contact->curve, state->approach, 4, upper);
+    curve_evaluate(contact->curve, state->approach - reach, 4, lower);
 }
 
 static inline double patch_displacement(const Bodies *bodies, int j, const double *q, double u[3])
@@ -209,7 +210,8 @@ static inline double patch_displacement(const Bodies *bodies, int j, const doubl
     return sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
 }
 
-void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q)
+void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies,
+                const double *q)
 {
     const double mu = friction->mu, ratio = friction->stiffness_ratio, per_reach = ratio / mu;
     double losses = 0.0, energies = 0.0;
@@ -273,12 +275,13 @@ void set_output_arguments(OutputSums *sums, const Contact *contact, const double
     x[X_P_MAX] = sums->p_max;
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Elastic bodies */
 
 /* Stiffness of the joint, or its rate, without that of the bolts between rigid bodies, over the area. */
-static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLACEMENTS], double bolt_stiffness, double *x)
+static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLACEMENTS], double bolt_stiffness,
+                          double *x)
 {
     static const int sums[N_DISPLACEMENTS] = {SUM_TANGENT_X, SUM_TANGENT_Y, SUM_NORMAL_STIFFNESS,
                                               SUM_NORMAL_ABOUT_X, SUM_NORMAL_ABOUT_Y, SUM_TANGENT_Z};
@@ -318,7 +321,8 @@ void assembly_sums(OutputSums *sums, const Equilibrium *e, const double *q)
 
 static const double SAME_PRESSURE = 1e-11; /* relative difference of equal pressures: round-off and residual [1] */
 
-void add_point_rates(const Contact *contact, const Friction *friction, const double *q, const double *q_rate, double *dx)
+void add_point_rates(const Contact *contact, const Friction *friction, const double *q, const double *q_rate,
+                     double *dx)
 {
     for (int i = 0; i < n_points(); i++) {
         const PointRate *point_rate = &contact->rate[i];
@@ -329,8 +333,8 @@ void add_point_rates(const Contact *contact, const Friction *friction, const dou
             for (int d = 0; d < 4; d++)
                 slopes[d] = y[d + 1] * rate;
             set_shear_arguments(friction->mu * contact->preload.pressure[i], y, point, q, x);
-            set_shear_arguments(friction->mu * point_rate->preload_stiffness * point_rate->preload_approach, slopes, point,
-                                q_rate, x + N_E);
+            set_shear_arguments(friction->mu * point_rate->preload_stiffness * point_rate->preload_approach, slopes,
+                                point, q_rate, x + N_E);
             elastic_shear_seed(x, contact->c, shear);
             add_elastic_shear(dx, point, shear);
         }
@@ -371,8 +375,8 @@ void add_patch_rates(const Friction *friction, const IncrementRate *rates, doubl
 }
 
 /* Add the rates of the cycle of a patch. */
-static void add_cycle_rate(const Friction *friction, const Contact *contact, const Bodies *bodies, int j, const double *q,
-                           const IncrementRate *rates, double *dx)
+static void add_cycle_rate(const Friction *friction, const Contact *contact, const Bodies *bodies, int j,
+                           const double *q, const IncrementRate *rates, double *dx)
 {
     const PatchState *state = &friction->end[j];
     const double *u_rate = rates->displacement, approach_rate = rates->ends[1];
@@ -457,7 +461,7 @@ void add_assembly_rates(const Equilibrium *e, const double *q, const double *q_r
     const Bodies *bodies = e->assembly.bodies;
     const Bolts *bolts = e->assembly.bolts;
     const double *a = bodies->state.modal_coordinates, *a_rate = bodies->rate.modal_coordinates;
-    double rates[N_DISPLACEMENTS], gap_rates[MOST_BOLT_ELONGATION], energy = 0.0;
+    double rates[N_DISPLACEMENTS], gap_rates[MAX_BOLT_ELONGATION], energy = 0.0;
     condensed_rates(e, rates);
     set_condensed(e, rates, 0.0, dx);
     for (int b = 0; b < (int)data.n_bolt_elongation; b++)
@@ -482,4 +486,4 @@ void bolt_force_rates(const Equilibrium *e, const double *q_rate, double *rates)
     }
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

@@ -24,15 +24,16 @@ typedef struct {
 /* Sums over the points that were evaluated last. */
 void sum_points(OutputSums *sums, const Contact *contact);
 /* The same between rigid bodies, where the points are evaluated first, unless q has the same normal components. */
-bool evaluate_point_sums(OutputSums *sums, Contact *contact, const Bodies *bodies, const double *q, Text *why);
+bool evaluate_point_sums(OutputSums *sums, Contact *contact, const Bodies *bodies, const double *q, Text *reason);
 /* Sums over the points with elastic shear, without history. */
-bool evaluate_elastic_shear(OutputSums *sums, const Contact *contact, double mu, const double *q, Text *why);
+bool evaluate_elastic_shear(OutputSums *sums, const Contact *contact, double mu, const double *q, Text *reason);
 /* The sums of the preload state in place of normal sums, which have other round-off. */
 void use_preload_sums(OutputSums *sums, const Contact *contact);
 /* Sums over the patches after an update of friction. */
 void sum_patches(OutputSums *sums, Friction *friction, const double *after, double area);
 /* Loss and elastic energy of a cycle with the present displacement of the patches as amplitude. */
-void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q);
+void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies,
+                const double *q);
 /* Gaps of the bolts between rigid bodies, and the stiffness that bolts at lift-off lack. */
 void sum_gaps(OutputSums *sums, Bolts *bolts, double area, const double *q);
 /* Condensed stiffness without that of the bolts between rigid bodies, elongation of the bolts, elastic energy. */

@@ -1,85 +1,86 @@
-/* Repeats `GearContactSpring.approach` of the package; the laws in it are generated. */
+/* Repeats `GearContactSpring` of the package; the functions of the law are generated. */
 #include "gear_contact.h"
 
 #include <math.h>
 
-#include "tabulated.h"
+#include "tabulated_joint.h"
 
-_Static_assert(N_LAW_STATE == 2 || N_LAW_STATE == 0, "real contact area and its elastic part, unless the "
-                                                       "law has them in closed form");
+_Static_assert(N_LAW_STATE == 2 || N_LAW_STATE == 0, "real contact area and its elastic fraction, unless the "
+                                                     "law has them in closed form");
 
-static bool tabulate(Joint *joint, int steps, Text *why)
+static bool tabulate(Joint *joint, int steps, Text *reason)
 {
-    Kind *kind = &joint->kind;
-    return approach_tabulate(&kind->approach, &joint->curve, &kind->spots, joint->c, steps, why);
+    JointModel *model = &joint->model;
+    return tabulate_approach(&model->approach, &joint->curve, &model->spots, joint->constants, steps, reason);
 }
 
-bool kind_tabulate(Joint *joint, Text *why)
+bool tabulate_model(Joint *joint, Text *reason)
 {
-    return spots_begin(&joint->kind.spots, joint->c, why) && refined(joint, tabulate, APPROACH_STEPS, why);
+    return set_spot_distribution(&joint->model.spots, joint->constants, reason) &&
+           refine_curve(joint, tabulate, APPROACH_STEPS, reason);
 }
 
-enum { N_FOUND = 2 + N_LAW_STATE }; /* approach from first touch, stiffness, state */
+enum { N_CURVE_RESULTS = 2 + N_LAW_STATE }; /* approach from first contact, stiffness, law state */
 
-/* The curve and the law at a pressure, and the slopes of all in it. Below the table of the law, while the
- * contact closes, and above it the law itself is asked. */
-static bool look_up(const Joint *joint, double pressure, double *x, double *slopes, Text *why)
+/* Results x of curve and law at a pressure, and their derivatives with respect to it. In the closing of the contact and
+ * beyond the table, the law state is computed by the law instead of the table. */
+static bool evaluate_curve(const Joint *joint, double pressure, double *x, double *slopes, Text *reason)
 {
-    const Kind *kind = &joint->kind;
+    const JointModel *model = &joint->model;
     const Curve *curve = &joint->curve;
-    double y[3], carried;
-    int nearest = 0;
-    const double delta = curve_inverse(curve, pressure, &nearest, &carried);
-    curve_at(curve, delta, 2, y);
+    double y[3], load_at_result;
+    int segment_hint = 0;
+    const double delta = curve_inverse(curve, pressure, &segment_hint, &load_at_result);
+    curve_evaluate(curve, delta, 2, y);
     const double compliance = y[1] > 0.0 ? 1.0 / y[1] : 0.0;
     x[0] = delta - curve->x[0];
     x[1] = y[1];
     slopes[0] = compliance;
     slopes[1] = y[2] * compliance;
     if (delta >= 0.0 && delta < curve->end.x) {
-        const int segment = curve_segment(curve, delta);
-        const double t = (delta - curve->x[segment]) * curve->per[segment];
-        approach_state(&kind->approach, curve, segment, t, x + 2, slopes + 2);
+        const int segment = curve_find_segment(curve, delta);
+        const double t = (delta - curve->x[segment]) * curve->inverse_length[segment];
+        interpolate_law_state(&model->approach, curve, segment, t, x + 2, slopes + 2);
         for (int q = 0; q < N_LAW_STATE; q++)
             slopes[2 + q] *= compliance;
         return true;
     }
     for (int q = 0; q < N_LAW_STATE; q++)
         x[2 + q] = slopes[2 + q] = 0.0;
-    const double u = delta < 0.0 ? kind->approach.first : kind->approach.last;
+    const double u = delta < 0.0 ? model->approach.first_log_area : model->approach.last_log_area;
     return !(pressure >= MIN_PRESSURE) ||
-           approach_exact(&kind->spots, joint->c, pressure, u, x + 2, slopes + 2, why);
+           evaluate_law_state(&model->spots, joint->constants, pressure, u, x + 2, slopes + 2, reason);
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
+                    Text *reason)
 {
-    double pressure, x[1 + N_FOUND], slopes[N_FOUND];
-    (void)memory, (void)after;
-    argument(inputs, joint->c, &pressure);
+    double pressure, x[1 + N_CURVE_RESULTS], slopes[N_CURVE_RESULTS];
+    (void)history, (void)history_end;
+    curve_argument(inputs, joint->constants, &pressure);
     x[0] = inputs[0];
-    if (!look_up(joint, pressure, &x[1], slopes, why))
+    if (!evaluate_curve(joint, pressure, &x[1], slopes, reason))
         return false;
-    outputs(x, joint->c, out);
+    outputs(x, joint->constants, out);
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)after;
-    enum { N = 1 + N_FOUND };
+    (void)history_end;
+    enum { N = 1 + N_CURVE_RESULTS };
     double pressure, rate, x[2 * N];
-    const double at[2] = {inputs[0], seed[0]};
+    const double input_and_seed[2] = {inputs[0], seed[0]};
     Text ignored;
-    (void)memory;
+    (void)history;
     text_clear(&ignored);
-    argument(inputs, joint->c, &pressure);
-    argument_seed(at, joint->c, &rate);
+    curve_argument(inputs, joint->constants, &pressure);
+    curve_argument_seed(input_and_seed, joint->constants, &rate);
     x[0] = inputs[0];
     x[N] = seed[0];
-    look_up(joint, pressure, &x[1], &x[N + 1], &ignored);
+    evaluate_curve(joint, pressure, &x[1], &x[N + 1], &ignored);
     for (int i = N + 1; i < 2 * N; i++)
         x[i] *= rate;
-    outputs_seed(x, joint->c, result);
+    outputs_seed(x, joint->constants, result);
 }

@@ -1,12 +1,12 @@
-/* Gear contact: approach over load, with the real contact area of the law at that load. */
+/* Gear contact: approach, stiffness and real contact area at a load. */
 #ifndef JOINTFMU_GEAR_CONTACT_H
 #define JOINTFMU_GEAR_CONTACT_H
 
 #include "approach.h"
 
 typedef struct {
-    Spots spots;
-    Approach approach;
-} Kind;
+    SpotDistribution spots;
+    ApproachTable approach;
+} JointModel;
 
 #endif

@@ -15,7 +15,7 @@ def _add_functions(function_graph: Graph, model: Model) -> None:
     joint = function_graph.joint
     f, approach, stiffness, area, elastic = make_symbols("x", 5)
     pressure = np.maximum(f, 0.0) / joint.A_0
-    function_graph.add_with_derivative("argument", "inputs -> pressure", [f], [pressure])
+    function_graph.add_with_derivative("curve_argument", "inputs -> pressure", [f], [pressure])
     x = [f, approach, stiffness]
     if isinstance(joint, spring.RoughGearContact):
         add_law_functions(function_graph, joint, ("normal",), lambda spots, u: [])
@@ -25,7 +25,7 @@ def _add_functions(function_graph: Graph, model: Model) -> None:
         x += [area, elastic]
     out = spring.contact_outputs(joint, f, approach, stiffness, area, elastic)
     add_closing_function(function_graph)
-    doc = "inputs, approach, stiffness of the curve, areas where the law sums them over spots -> outputs"
+    doc = "inputs, approach, stiffness of the curve, areas if the law sums them over spots -> outputs"
     function_graph.add_with_derivative("outputs", doc, x, [out[o.name] for o in model.outputs])
 
 

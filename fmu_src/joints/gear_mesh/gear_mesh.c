@@ -1,48 +1,50 @@
-/* Repeats `pair_curve` of the package, and its energy; the laws in it are generated. */
+/* Repeats `tabulate_pair` of the package, and the energy of a tooth pair; the functions of the law are generated. */
 #include "gear_mesh.h"
 
 #include <math.h>
 
-#include "tabulated.h"
+#include "tabulated_joint.h"
 
-_Static_assert(N_LAW_STATE == 0, "the flanks' curve alone");
+_Static_assert(N_LAW_STATE == 0, "the mesh needs the curve of the flanks only");
 _Static_assert(PAIR_CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
-static bool tabulate_flanks(Joint *joint, int steps, Text *why)
+static bool tabulate_flanks(Joint *joint, int steps, Text *reason)
 {
-    Kind *kind = &joint->kind;
-    return approach_tabulate(&kind->approach, &joint->curve, &kind->spots, joint->c, steps, why);
+    JointModel *model = &joint->model;
+    return tabulate_approach(&model->approach, &joint->curve, &model->spots, joint->constants, steps, reason);
 }
 
-/* Node of a pair at an approach of its flanks; `bend` is that of their pressure. */
-static Node pair_node(const Joint *joint, double approach, const double *pressure, double bend)
+/* Node of a tooth pair at an approach of its flanks: pressure[0], its derivative pressure[1] and second derivative
+ * `pressure_curvature` there. */
+static Node pair_node(const Joint *joint, double approach, const double *pressure, double pressure_curvature)
 {
-    const double x[4] = {approach, pressure[0], pressure[1], bend};
+    const double x[4] = {approach, pressure[0], pressure[1], pressure_curvature};
     double y[4];
-    in_series(x, joint->c, y);
-    return (Node){.x = y[0], .y = y[1], .s = y[2], .bend = y[3]};
+    combine_in_series(x, joint->constants, y);
+    return (Node){.x = y[0], .y = y[1], .stiffness = y[2], .stiffness_slope = y[3]};
 }
 
-/* A node of the pair's piece that ends with a node of the flanks, at a displacement of their table. */
-static bool add_node(Joint *joint, double x, bool begins, int last)
+/* Add the node of the pair at a displacement x of the flanks' table, in the piece that ends with its node
+ * `last_node`. */
+static bool add_node(Joint *joint, double x, bool is_first, int last_node)
 {
-    const Curve *flanks = &joint->kind.flanks;
+    const Curve *flanks = &joint->model.flanks;
     double pressure[3], below[3];
-    curve_at(flanks, x, 2, pressure);
-    curve_derivatives(flanks, last - 1, 1.0, 2, below); /* a regime may end there */
-    const double bend = x == flanks->x[last] ? below[2] : pressure[2];
-    const Node node = pair_node(joint, x - flanks->x[0], pressure, bend);
-    if (!begins)
-        return curve_add(&joint->curve, node);
-    curve_piece(&joint->curve, node);
+    curve_evaluate(flanks, x, 2, pressure);
+    segment_derivatives(flanks, last_node - 1, 1.0, 2, below); /* a regime may end there: derivatives from below */
+    const double pressure_curvature = x == flanks->x[last_node] ? below[2] : pressure[2];
+    const Node node = pair_node(joint, x - flanks->x[0], pressure, pressure_curvature);
+    if (!is_first)
+        return curve_add_node(&joint->curve, node);
+    curve_begin_piece(&joint->curve, node);
     return true;
 }
 
-/* While the contact closes, with steps that shrink towards first touch. */
-static bool add_closing(Joint *joint, int parts)
+/* Add the closing of the contact, with steps that shrink towards first contact. */
+static bool tabulate_closing(Joint *joint, int divisions)
 {
-    const Curve *flanks = &joint->kind.flanks;
-    const int steps = PAIR_CLOSING_STEPS * parts;
+    const Curve *flanks = &joint->model.flanks;
+    const int steps = PAIR_CLOSING_STEPS * divisions;
     for (int i = 0; i <= steps; i++) {
         const double t = (double)i / steps;
         if (!add_node(joint, (1.0 - t * t) * flanks->x[0], i == 0, CLOSING_STEPS))
@@ -51,126 +53,132 @@ static bool add_closing(Joint *joint, int parts)
     return true;
 }
 
-/* From one node of the flanks to another, each of their steps in so many parts. */
-static bool add_piece(Joint *joint, int first, int last, int parts)
+/* Add the piece from node `first_node` to `last_node` of the flanks; each of their steps is divided into
+ * `divisions`. */
+static bool add_piece(Joint *joint, int first_node, int last_node, int divisions)
 {
-    const double *x = joint->kind.flanks.x;
-    bool begins = true;
-    for (int i = first; i < last; i++)
-        for (int part = 0; part < parts; part++) {
-            if (!add_node(joint, x[i] + (x[i + 1] - x[i]) * part / parts, begins, last))
+    const double *x = joint->model.flanks.x;
+    bool is_first = true;
+    for (int i = first_node; i < last_node; i++)
+        for (int division = 0; division < divisions; division++) {
+            if (!add_node(joint, x[i] + (x[i + 1] - x[i]) * division / divisions, is_first, last_node))
                 return false;
-            begins = false;
+            is_first = false;
         }
-    return add_node(joint, x[last], begins, last);
+    return add_node(joint, x[last_node], is_first, last_node);
 }
 
-/* Node of the flanks that carries a pressure. */
-static int node_of(const Curve *flanks, double pressure)
+/* Node of the flanks at a pressure. */
+static int find_pressure_node(const Curve *flanks, double pressure)
 {
     int i = 0;
-    while (i < flanks->n - 2 && 0.5 * (flanks->a[i][0] + flanks->a[i + 1][0]) < pressure)
+    while (i < flanks->n - 2 && 0.5 * (flanks->coefficients[i][0] + flanks->coefficients[i + 1][0]) < pressure)
         i++;
     return i;
 }
 
-/* Nodes of the flanks between which their bend does not jump, once closed: n + 1 of them. */
-static int find_pieces(const Kind *kind, const double *c, int *nodes)
+/* End nodes of the n pieces of the flanks' table beyond the closing; in between, the derivative of the stiffness is
+ * continuous. Returns n; `nodes` has n + 1 nodes. */
+static int find_pieces(const JointModel *model, const double *c, int *nodes)
 {
-    const Spots *spots = &kind->spots;
-    const double least = kind->flanks.a[CLOSING_STEPS][0], most = kind->flanks.end.y;
+    const SpotDistribution *spots = &model->spots;
+    const double min_pressure = model->flanks.coefficients[CLOSING_STEPS][0], max_pressure = model->flanks.end.y;
     int n = 0;
     nodes[0] = CLOSING_STEPS;
-    for (int i = 0; i < spots->n_ends; i++) {
-        double y[N_LAW_TABLE];
-        spots_table(spots, c, spots->ends[i], y);
-        const double pressure = y[0] / spots->area;
-        const int node = node_of(&kind->flanks, pressure);
-        if (pressure > least && pressure < most && node > nodes[n] && node < kind->flanks.n - 1)
+    for (int i = 0; i < spots->n_regime_ends; i++) {
+        double y[N_LAW_TOTALS];
+        spot_totals(spots, c, spots->regime_ends[i], y);
+        const double pressure = y[0] / spots->nominal_area;
+        const int node = find_pressure_node(&model->flanks, pressure);
+        if (pressure > min_pressure && pressure < max_pressure && node > nodes[n] && node < model->flanks.n - 1)
             nodes[++n] = node;
     }
-    nodes[++n] = kind->flanks.n - 1;
+    nodes[++n] = model->flanks.n - 1;
     return n;
 }
 
-static bool tabulate_pair(Joint *joint, int parts, Text *why)
+static bool tabulate_pair(Joint *joint, int divisions, Text *reason)
 {
-    int nodes[N_LAW_ENDS + 2];
-    const int pieces = find_pieces(&joint->kind, joint->c, nodes);
-    (void)why;
-    curve_begin(&joint->curve, joint->kind.flanks.error);
-    if (!add_closing(joint, parts))
+    int nodes[N_LAW_REGIME_ENDS + 2];
+    const int n_pieces = find_pieces(&joint->model, joint->constants, nodes);
+    (void)reason;
+    curve_begin(&joint->curve, joint->model.flanks.error);
+    if (!tabulate_closing(joint, divisions))
         return false;
-    for (int i = 0; i < pieces; i++)
-        if (!add_piece(joint, nodes[i], nodes[i + 1], parts))
+    for (int i = 0; i < n_pieces; i++)
+        if (!add_piece(joint, nodes[i], nodes[i + 1], divisions))
             return false;
     curve_finish(&joint->curve);
     return true;
 }
 
-bool kind_tabulate(Joint *joint, Text *why)
+bool tabulate_model(Joint *joint, Text *reason)
 {
-    Kind *kind = &joint->kind;
-    if (!spots_begin(&kind->spots, joint->c, why) || !refined(joint, tabulate_flanks, APPROACH_STEPS, why))
+    JointModel *model = &joint->model;
+    if (!set_spot_distribution(&model->spots, joint->constants, reason) ||
+        !refine_curve(joint, tabulate_flanks, APPROACH_STEPS, reason))
         return false;
-    kind->flanks = joint->curve;
-    const double closed[2] = {kind->approach.closed, 0.0};
-    kind->closing = pair_node(joint, -kind->flanks.x[0], closed, 0.0).x;
-    if (!refined(joint, tabulate_pair, 1, why))
+    model->flanks = joint->curve;
+    const double closed[2] = {model->approach.closing_end_pressure, 0.0};
+    model->closing_end = pair_node(joint, -model->flanks.x[0], closed, 0.0).x;
+    if (!refine_curve(joint, tabulate_pair, 1, reason))
         return false;
-    energy_tabulate(&kind->energy, &joint->curve);
+    tabulate_energy(&model->energy, &joint->curve);
     return true;
 }
 
-/* A pair at a deflection: load, stiffness and energy x; load and its derivatives up to an order y. */
-static void look_up(const Joint *joint, double deflection, int order, double *x, double *y)
+/* Tooth pair at a deflection: load, stiffness and energy x; load and its derivatives y up to `order`. */
+static void evaluate_pair(const Joint *joint, double deflection, int order, double *x, double *y)
 {
     const Curve *curve = &joint->curve;
-    const double inside = fmin(deflection, curve->end.x), beyond = fmax(deflection - inside, 0.0);
-    const int i = curve_segment(curve, inside);
-    const double t = (inside - curve->x[i]) * curve->per[i];
-    curve_derivatives(curve, i, t, order, y);
-    x[2] = energy_inside(&joint->kind.energy, curve, i, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
-    y[0] += beyond * y[1];
-    for (int k = 2; k <= order && beyond > 0.0; k++)
+    const double clipped = fmin(deflection, curve->end.x), excess = fmax(deflection - clipped, 0.0);
+    const int i = curve_find_segment(curve, clipped);
+    const double t = (clipped - curve->x[i]) * curve->inverse_length[i];
+    segment_derivatives(curve, i, t, order, y);
+    x[2] = segment_energy(&joint->model.energy, curve, i, t) + excess * (y[0] + 0.5 * excess * y[1]);
+    y[0] += excess * y[1];
+    for (int k = 2; k <= order && excess > 0.0; k++)
         y[k] = 0.0;
     x[0] = y[0];
     x[1] = y[1];
 }
 
-enum { N_PAIR = 3, N_GIVEN = 1 + N_INPUTS + N_PAIR }; /* closing, inputs, what look_up finds */
+enum {
+    N_PAIR_RESULTS = 3,
+    N_OUTPUT_ARGUMENTS = 1 + N_INPUTS + N_PAIR_RESULTS
+}; /* arguments of `outputs`: closing_end, inputs, results of `evaluate_pair` */
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
+                    Text *reason)
 {
-    double deflection, x[N_GIVEN], y[2];
-    (void)memory, (void)after, (void)why;
-    argument(inputs, joint->c, &deflection);
-    x[0] = joint->kind.closing;
+    double deflection, x[N_OUTPUT_ARGUMENTS], y[2];
+    (void)history, (void)history_end, (void)reason;
+    curve_argument(inputs, joint->constants, &deflection);
+    x[0] = joint->model.closing_end;
     for (int i = 0; i < N_INPUTS; i++)
         x[1 + i] = inputs[i];
-    look_up(joint, deflection, 1, &x[1 + N_INPUTS], y);
-    outputs(x, joint->c, out);
+    evaluate_pair(joint, deflection, 1, &x[1 + N_INPUTS], y);
+    outputs(x, joint->constants, out);
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)after;
-    double deflection, rate, at[2 * N_INPUTS], x[2 * N_GIVEN - 1], y[3];
-    double *moved = &x[N_GIVEN]; /* of all but the closing */
-    (void)memory;
+    (void)history_end;
+    double deflection, rate, inputs_and_seed[2 * N_INPUTS], x[2 * N_OUTPUT_ARGUMENTS - 1], y[3];
+    double *x_rate = &x[N_OUTPUT_ARGUMENTS]; /* rates of all arguments except closing_end */
+    (void)history;
     for (int i = 0; i < N_INPUTS; i++) {
-        x[1 + i] = at[i] = inputs[i];
-        moved[i] = at[N_INPUTS + i] = seed[i];
+        x[1 + i] = inputs_and_seed[i] = inputs[i];
+        x_rate[i] = inputs_and_seed[N_INPUTS + i] = seed[i];
     }
-    x[0] = joint->kind.closing;
-    argument(inputs, joint->c, &deflection);
-    argument_seed(at, joint->c, &rate);
-    look_up(joint, deflection, 2, &x[1 + N_INPUTS], y);
-    moved[N_INPUTS] = y[1] * rate;
-    moved[N_INPUTS + 1] = y[2] * rate;
-    moved[N_INPUTS + 2] = y[0] * rate;
-    outputs_seed(x, joint->c, result);
+    x[0] = joint->model.closing_end;
+    curve_argument(inputs, joint->constants, &deflection);
+    curve_argument_seed(inputs_and_seed, joint->constants, &rate);
+    evaluate_pair(joint, deflection, 2, &x[1 + N_INPUTS], y);
+    x_rate[N_INPUTS] = y[1] * rate;
+    x_rate[N_INPUTS + 1] = y[2] * rate;
+    x_rate[N_INPUTS + 2] = y[0] * rate;
+    outputs_seed(x, joint->constants, result);
 }

@@ -1,15 +1,15 @@
-/* Gear mesh: load over deflection of a tooth pair, whose rough flanks and bending teeth are in series. */
-#ifndef JOINTFMU_MESH_H
-#define JOINTFMU_MESH_H
+/* Gear mesh: load over deflection of a tooth pair, with its rough flanks and bending teeth in series. */
+#ifndef JOINTFMU_GEAR_MESH_H
+#define JOINTFMU_GEAR_MESH_H
 
 #include "approach.h"
 
 typedef struct {
-    Spots spots;
-    Approach approach;
-    Curve flanks;               /* pressure over approach; the pair's table is made of it */
-    double closing;             /* [m] deflection of a pair at which the closing of its contact ends */
-    Energy energy;              /* [J] of a pair */
-} Kind;
+    SpotDistribution spots;
+    ApproachTable approach;
+    Curve flanks;       /* pressure over approach of the flanks; the curve of the pair is computed from it */
+    double closing_end; /* deflection of a pair [m] at which the closing of its contact ends */
+    CurveEnergy energy; /* of a pair [J] */
+} JointModel;
 
 #endif

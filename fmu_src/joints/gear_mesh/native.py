@@ -16,14 +16,16 @@ def _add_functions(function_graph: Graph, model: Model) -> None:
     add_law_functions(function_graph, mesh, ("normal",), lambda spots, u: [])
     add_closing_function(function_graph)
     flanks = make_symbols("flanks", 4)
-    doc = "approach of the flanks, pressure, its two derivatives -> deflection, load, K, dK/ds of a pair"
-    function_graph.add_function("in_series", doc, flanks, spring.combine_in_series(mesh, *flanks))
+    doc = "approach, pressure, dp/dx, d2p/dx2 of the flanks -> deflection, load, K, dK/ds of a tooth pair"
+    function_graph.add_function("combine_in_series", doc, flanks, spring.combine_in_series(mesh, *flanks))
     motion = [ca.SX.sym(v.name) for v in model.inputs]
     argument = np.abs(spring.deflection(mesh, motion))
-    function_graph.add_with_derivative("argument", "inputs -> argument of the curve", motion, [argument])
+    function_graph.add_with_derivative(
+        "curve_argument", "inputs -> argument of the curve", motion, [argument]
+    )
     closing, load, stiffness, energy = make_symbols("pair", 4)
     out = spring.mesh_outputs(mesh, motion, load, stiffness, energy, closing)
-    doc = "deflection at which the closing ends, inputs, load, K and energy of a pair -> outputs"
+    doc = "deflection at the end of the closing, inputs, load, K, energy of a tooth pair -> outputs"
     x = [closing, *motion, load, stiffness, energy]
     function_graph.add_with_derivative(
         "outputs", doc, x, [out[o.name] for o in model.outputs], constant_count=1

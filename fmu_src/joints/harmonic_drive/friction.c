@@ -1,195 +1,210 @@
-/* Repeats `Hysteresis` and `Friction` of the package; the rule of a slider, their shares and limits are generated. */
+/* Repeats hysteresis.py and friction.py of the package; return mapping, shares and limits of the sliders are
+ * generated. */
 #include "harmonic_drive.h"
 
 #include <math.h>
 
 #include "model.h"
 
-enum { LOSS, STIFFNESS, RATED }; /* of the drive's numbers */
+enum { HYSTERESIS_LOSS, HYSTERESIS_STIFFNESS, RATED_TORQUE }; /* results of `hysteresis_constants` */
 
-void midline(const Curve *curve, double phi, int order, double *y)
+void midline_torque(const Curve *curve, double phi, int order, double *y)
 {
-    curve_at(curve, fabs(phi), order, y);
+    curve_evaluate(curve, fabs(phi), order, y);
     y[0] = copysign(y[0], phi);
     if (order == 2)
         y[2] = phi < 0.0 ? -y[2] : y[2];
 }
 
-double midline_inverse(const Curve *curve, double torque)
+double midline_wind_up(const Curve *curve, double torque)
 {
-    double carried;
-    int nearest = 0;
-    return copysign(curve_inverse(curve, fabs(torque), &nearest, &carried), torque);
+    double load_at_result;
+    int segment_hint = 0;
+    return copysign(curve_inverse(curve, fabs(torque), &segment_hint, &load_at_result), torque);
 }
 
 /* Hysteresis */
 
-_Static_assert(HYSTERESIS_SLIDERS % 4 == 0, "as sliders_line needs them");
+_Static_assert(HYSTERESIS_SLIDERS % 4 == 0, "as sliders_advance_1d requires");
 
-static Sliders sliders_of(const Hysteresis *h, const double *memory)
+static Sliders1D hysteresis_sliders(const Hysteresis *h, const double *history)
 {
-    return (Sliders){h->K, h->per_K, h->limit, h->limit, memory + AT_FORCE};
+    return (Sliders1D){h->K, h->compliance, h->limit, h->limit, history + HISTORY_FORCE};
 }
 
-SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi, double *after)
+SliderResultant hysteresis_advance(const Hysteresis *hysteresis, const double *history, double phi, double *history_end)
 {
-    const Sliders s = sliders_of(hysteresis, memory);
-    SliderSum sum;
-    sliders_line(HYSTERESIS_SLIDERS, &s, phi - memory[AT_WIND_UP], after + AT_FORCE, &sum);
+    const Sliders1D sliders = hysteresis_sliders(hysteresis, history);
+    SliderResultant sum;
+    sliders_advance_1d(HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP], history_end + HISTORY_FORCE, &sum);
     return sum;
 }
 
-double hysteresis_heat(const Hysteresis *hysteresis, const double *memory, double phi)
+double hysteresis_loss_derivative(const Hysteresis *hysteresis, const double *history, double phi)
 {
-    const Sliders s = sliders_of(hysteresis, memory);
-    return sliders_heat(HYSTERESIS_SLIDERS, &s, phi - memory[AT_WIND_UP]);
+    const Sliders1D sliders = hysteresis_sliders(hysteresis, history);
+    return sliders_loss_derivative_1d(HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP]);
 }
 
-double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *memory,
-                          double torque)
+double hysteresis_solve_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *history, double torque)
 {
-    const double least = midline_inverse(curve, torque - hysteresis->most);
-    const double largest = midline_inverse(curve, torque + hysteresis->most);
-    const Sliders sliders = sliders_of(hysteresis, memory);
-    double phi = fmin(fmax(memory[AT_WIND_UP], least), largest), low = -INFINITY, high = INFINITY;
+    const double lower = midline_wind_up(curve, torque - hysteresis->limit_torque);
+    const double upper = midline_wind_up(curve, torque + hysteresis->limit_torque);
+    const Sliders1D sliders = hysteresis_sliders(hysteresis, history);
+    double phi = fmin(fmax(history[HISTORY_WIND_UP], lower), upper), low = -INFINITY, high = INFINITY;
     for (int k = 0; k < MAX_ITERATIONS; k++) {
         double y[2], tangent;
-        midline(curve, phi, 1, y);
-        const double rest = torque - (y[0] + sliders_force(HYSTERESIS_SLIDERS, &sliders, phi - memory[AT_WIND_UP], &tangent));
-        const double step = phi + rest / (y[1] + tangent);
-        if (rest > 0.0)
+        midline_torque(curve, phi, 1, y);
+        const double residual =
+            torque - (y[0] + sliders_force_1d(HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP], &tangent));
+        const double step = phi + residual / (y[1] + tangent);
+        if (residual > 0.0)
             low = phi;
-        else if (rest < 0.0)
+        else if (residual < 0.0)
             high = phi;
         const double next = step >= low && step <= high ? step : 0.5 * (low + high);
         const double change = fabs(next - phi);
         phi = next;
-        if (change <= WIND_UP_TOLERANCE * (fabs(phi) + hysteresis->length))
+        if (change <= WIND_UP_TOLERANCE * (fabs(phi) + hysteresis->characteristic_wind_up))
             break;
     }
     return phi;
 }
 
-/* Friction against the midline on the way back from a torque, at a wind-up. */
-static double opening(const Hysteresis *hysteresis, const Curve *curve, double torque, double half)
+/* Negative friction torque [N.m] on unloading from a torque [N.m], at the wind-up half_opening [rad], by Masing's
+ * rule. */
+static double unloading_friction(const Hysteresis *hysteresis, const Curve *curve, double torque, double half_opening)
 {
-    const double rest[N_MEMORY] = {0.0};
-    const double turn = hysteresis_wind_up(hysteresis, curve, rest, torque);
-    const Sliders s = sliders_of(hysteresis, rest);
+    const double virgin[N_HISTORY] = {0.0};
+    const double turn_wind_up = hysteresis_solve_wind_up(hysteresis, curve, virgin, torque);
+    const Sliders1D sliders = hysteresis_sliders(hysteresis, virgin);
     double tangent;
-    return 2.0 * sliders_force(HYSTERESIS_SLIDERS, &s, 0.5 * (turn - half), &tangent) -
-        sliders_force(HYSTERESIS_SLIDERS, &s, turn, &tangent);
+    return 2.0 * sliders_force_1d(HYSTERESIS_SLIDERS, &sliders, 0.5 * (turn_wind_up - half_opening), &tangent) -
+           sliders_force_1d(HYSTERESIS_SLIDERS, &sliders, turn_wind_up, &tangent);
 }
 
-static double extra_stiffness(const double *head, const Curve *curve, double least)
+/* K_h [N.m/rad]; half_loop_torque is the torque of the midline at half of hysteresis_loss. */
+static double initial_stiffness(const double *constants, const Curve *curve, double half_loop_torque)
 {
-    if (head[STIFFNESS] > 0.0)
-        return head[STIFFNESS];
-    const double back = curve_inverse_safe(curve, head[RATED] - least) - 0.5 * head[LOSS];
-    return fmax(curve->first.s, 2.0 * MIN_REVERSAL_RATIO * least / back);
+    if (constants[HYSTERESIS_STIFFNESS] > 0.0)
+        return constants[HYSTERESIS_STIFFNESS];
+    const double back =
+        curve_inverse_safeguarded(curve, constants[RATED_TORQUE] - half_loop_torque) - 0.5 * constants[HYSTERESIS_LOSS];
+    return fmax(curve->start.stiffness, 2.0 * MIN_REVERSAL_RATIO * half_loop_torque / back);
 }
 
-static void set_limit(Hysteresis *hysteresis, const double *share, double limit, double stiffness)
+/* Set M_f and what follows from it. */
+static void set_limit_torque(Hysteresis *hysteresis, const double *shares, double limit, double stiffness)
 {
-    hysteresis->acts = limit > 0.0;
-    hysteresis->most = limit;
-    hysteresis->length = limit / stiffness;
+    hysteresis->is_active = limit > 0.0;
+    hysteresis->limit_torque = limit;
+    hysteresis->characteristic_wind_up = limit / stiffness;
     for (int i = 0; i < HYSTERESIS_SLIDERS; i++)
-        hysteresis->limit[i] = limit * share[HYSTERESIS_SLIDERS + i];
+        hysteresis->limit[i] = limit * shares[HYSTERESIS_SLIDERS + i];
 }
 
-bool hysteresis_of(Hysteresis *hysteresis, const double *head, const double *share, const Curve *curve,
-                   Text *why)
+bool hysteresis_tabulate(Hysteresis *hysteresis, const double *constants, const double *shares, const Curve *curve,
+                         Text *reason)
 {
     double y[2];
-    curve_at(curve, 0.5 * head[LOSS], 1, y);
-    const double least = y[0];
-    if (!(least < 0.5 * head[RATED])) {
-        text_print(why, "hysteresis_loss = %g rad is outside [0, %g) rad: above it the hysteresis friction would exceed half of the rated torque",
-                   head[LOSS], 2.0 * curve_inverse_safe(curve, 0.5 * head[RATED]));
+    curve_evaluate(curve, 0.5 * constants[HYSTERESIS_LOSS], 1, y);
+    const double half_loop_torque = y[0];
+    if (!(half_loop_torque < 0.5 * constants[RATED_TORQUE])) {
+        text_append_format(
+            reason,
+            "hysteresis_loss = %g rad is outside [0, %g) rad: above it the hysteresis friction would exceed half of "
+            "the rated torque",
+            constants[HYSTERESIS_LOSS], 2.0 * curve_inverse_safeguarded(curve, 0.5 * constants[RATED_TORQUE]));
         return false;
     }
-    const double stiffness = extra_stiffness(head, curve, least);
+    const double stiffness = initial_stiffness(constants, curve, half_loop_torque);
     for (int i = 0; i < HYSTERESIS_SLIDERS; i++) {
-        hysteresis->K[i] = stiffness * share[i];
-        hysteresis->per_K[i] = 1.0 / hysteresis->K[i];
+        hysteresis->K[i] = stiffness * shares[i];
+        hysteresis->compliance[i] = 1.0 / hysteresis->K[i];
     }
-    double limit = least;
+    double limit = half_loop_torque;
     for (int k = 0; k < MAX_LIMIT_ITERATIONS; k++) {
-        set_limit(hysteresis, share, limit, stiffness);
-        if (!hysteresis->acts)
+        set_limit_torque(hysteresis, shares, limit, stiffness);
+        if (!hysteresis->is_active)
             return true;
-        const double before = limit, open = opening(hysteresis, curve, head[RATED], 0.5 * head[LOSS]);
-        limit *= open > 0.0 ? least / open : INFINITY;
-        if (!(limit < head[RATED]))
+        const double previous = limit, opening_friction = unloading_friction(hysteresis, curve, constants[RATED_TORQUE],
+                                                                             0.5 * constants[HYSTERESIS_LOSS]);
+        limit *= opening_friction > 0.0 ? half_loop_torque / opening_friction : INFINITY;
+        if (!(limit < constants[RATED_TORQUE]))
             break;
-        if (fabs(limit - before) <= LIMIT_TOLERANCE * limit)
+        if (fabs(limit - previous) <= LIMIT_TOLERANCE * limit)
             return true;
     }
-    text_print(why,
-               "hysteresis_stiffness = %g N.m/rad is too small for a loop through rated torque that opens by %g rad; "
-               "allowed are 0 and larger ones",
-               head[STIFFNESS], head[LOSS]);
+    text_append_format(
+        reason,
+        "hysteresis_stiffness = %g N.m/rad is too small for a loop through rated torque that opens by %g rad; "
+        "allowed are 0 and larger ones",
+        constants[HYSTERESIS_STIFFNESS], constants[HYSTERESIS_LOSS]);
     return false;
 }
 
 /* Friction at the wave generator */
 
-_Static_assert(FRICTION_SLIDERS % 4 == 0, "as sliders_line needs them");
+_Static_assert(FRICTION_SLIDERS % 4 == 0, "as sliders_advance_1d requires");
 
-void friction_of(Friction *friction, double stiffness)
+void friction_tabulate(Friction *friction, double stiffness)
 {
-    friction->acts = stiffness > 0.0;
+    friction->is_active = stiffness > 0.0;
     for (int i = 0; i < FRICTION_SLIDERS; i++) {
-        friction->K[i] = stiffness * BRAKE_SPRINGS[i];
-        friction->per_K[i] = friction->acts ? 1.0 / friction->K[i] : 0.0;
+        friction->K[i] = stiffness * STIFFNESS_SHARES[i];
+        friction->compliance[i] = friction->is_active ? 1.0 / friction->K[i] : 0.0;
     }
 }
 
-/* On the first path the drive has turned to where it is. */
-static double way(const double *memory, Turn turn)
+/* Angle [rad] that the wave generator has rotated in the load step. In the first one it comes from its speed, see
+ * PRIOR_ROTATION_TIME. */
+static double rotation_increment(const double *history, FrictionArguments arguments)
 {
-    return memory[AT_BEGUN] > 0.0 ? turn.angle - memory[AT_ANGLE] : PRIOR_ROTATION_TIME * turn.speed;
+    return history[HISTORY_BEGUN] > 0.0 ? arguments.angle - history[HISTORY_ANGLE]
+                                        : PRIOR_ROTATION_TIME * arguments.speed;
 }
 
-/* Each slider is held by the limit on the side of the force that it would have if it stuck. */
-static void limits_at(const Friction *friction, const double *memory, double shift, const double *limit,
-                      double *each)
+/* Friction limits of the sliders: each has that of the sign of its elastic predictor. */
+static void slider_limits(const Friction *friction, const double *history, double increment, const double *limit,
+                          double *slider_limit)
 {
     for (int i = 0; i < FRICTION_SLIDERS; i++)
-        each[i] = limit[memory[AT_BRAKE + i] + friction->K[i] * shift < 0.0] * BRAKE_LIMITS[i];
+        slider_limit[i] = limit[history[HISTORY_BRAKE + i] + friction->K[i] * increment < 0.0] * LIMIT_SHARES[i];
 }
 
-SliderSum friction_at(const Friction *friction, const double *memory, Turn turn, double *after)
+SliderResultant friction_advance(const Friction *friction, const double *history, FrictionArguments arguments,
+                                 double *history_end)
 {
-    double start[FRICTION_SLIDERS], end[FRICTION_SLIDERS];
-    const double shift = way(memory, turn);
-    limits_at(friction, memory, shift, memory + AT_LIMIT, start);
-    limits_at(friction, memory, shift, turn.limit, end);
-    const Sliders s = {friction->K, friction->per_K, start, end, memory + AT_BRAKE};
-    SliderSum sum;
-    sliders_line(FRICTION_SLIDERS, &s, shift, after + AT_BRAKE, &sum);
-    after[AT_ANGLE] = turn.angle;
-    after[AT_LIMIT] = turn.limit[0];
-    after[AT_LIMIT + 1] = turn.limit[1];
-    after[AT_BEGUN] = 1.0;
-    if (!(memory[AT_BEGUN] > 0.0))
+    double limit_start[FRICTION_SLIDERS], limit_end[FRICTION_SLIDERS];
+    const double increment = rotation_increment(history, arguments);
+    slider_limits(friction, history, increment, history + HISTORY_LIMIT, limit_start);
+    slider_limits(friction, history, increment, arguments.limit, limit_end);
+    const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end, history + HISTORY_BRAKE};
+    SliderResultant sum;
+    sliders_advance_1d(FRICTION_SLIDERS, &sliders, increment, history_end + HISTORY_BRAKE, &sum);
+    history_end[HISTORY_ANGLE] = arguments.angle;
+    history_end[HISTORY_LIMIT] = arguments.limit[0];
+    history_end[HISTORY_LIMIT + 1] = arguments.limit[1];
+    history_end[HISTORY_BEGUN] = 1.0;
+    if (!(history[HISTORY_BEGUN] > 0.0))
         sum.loss = 0.0;
     return sum;
 }
 
-SliderSum friction_rate(const Friction *friction, const double *memory, Turn turn, Turn rate)
+SliderResultant friction_rate(const Friction *friction, const double *history, FrictionArguments arguments,
+                              FrictionArguments rate)
 {
-    const bool begun = memory[AT_BEGUN] > 0.0;
-    double start[FRICTION_SLIDERS], end[FRICTION_SLIDERS], rises[FRICTION_SLIDERS];
-    const double shift = way(memory, turn);
-    limits_at(friction, memory, shift, memory + AT_LIMIT, start);
-    limits_at(friction, memory, shift, turn.limit, end);
-    limits_at(friction, memory, shift, rate.limit, rises);
-    const Sliders s = {friction->K, friction->per_K, start, end, memory + AT_BRAKE};
-    SliderSum sum;
-    sliders_line_rate(FRICTION_SLIDERS, &s, shift, begun ? rate.angle : PRIOR_ROTATION_TIME * rate.speed, rises, &sum);
-    if (!begun)
+    const bool has_begun = history[HISTORY_BEGUN] > 0.0;
+    double limit_start[FRICTION_SLIDERS], limit_end[FRICTION_SLIDERS], limit_rate[FRICTION_SLIDERS];
+    const double increment = rotation_increment(history, arguments);
+    slider_limits(friction, history, increment, history + HISTORY_LIMIT, limit_start);
+    slider_limits(friction, history, increment, arguments.limit, limit_end);
+    slider_limits(friction, history, increment, rate.limit, limit_rate);
+    const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end, history + HISTORY_BRAKE};
+    SliderResultant sum;
+    sliders_advance_1d_rate(FRICTION_SLIDERS, &sliders, increment,
+                            has_begun ? rate.angle : PRIOR_ROTATION_TIME * rate.speed, limit_rate, &sum);
+    if (!has_begun)
         sum.loss = 0.0;
     return sum;
 }

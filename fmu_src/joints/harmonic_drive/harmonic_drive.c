@@ -1,23 +1,26 @@
-/* Repeats `torque_curve` of the package: the table that is made for every parameter set; the laws in it are
- * generated. A law that gives the table's nodes defines GIVEN_NODES, how many; those of a measured midline are
- * data. */
+/* Repeats spring.py of the package: the curve of the midline, and the outputs. The functions of the drive are
+ * generated. The nodes of the midline are computed from a contact pair, or given: by the function `midline_nodes`
+ * (MIDLINE_NODES is their number), or as data if the midline was measured (MIDLINE_IS_DATA). */
 #include "harmonic_drive.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "data.h"
-#include "tabulated.h"
+#include "tabulated_joint.h"
 
-#if defined GIVEN_NODES || defined MIDLINE_IS_DATA
-/* Each segment is a piece of its own: its bend may jump at the nodes. */
-static bool through(Joint *joint, const double (*given)[5], int nodes)
+#if defined MIDLINE_NODES || defined MIDLINE_IS_DATA
+/* Tabulate given nodes: wind-up, torque, stiffness, derivative of the stiffness before and after the node. Each segment
+ * is a piece of its own, because this derivative may jump at the nodes. */
+static bool tabulate_nodes(Joint *joint, const double (*nodes)[5], int n_nodes)
 {
     curve_begin(&joint->curve, 0.0);
-    for (int k = 0; k + 1 < nodes; k++) {
-        const double *left = given[k], *right = given[k + 1];
-        curve_piece(&joint->curve, (Node){.x = left[0], .y = left[1], .s = left[2], .bend = left[4]});
-        if (!curve_add(&joint->curve, (Node){.x = right[0], .y = right[1], .s = right[2], .bend = right[3]}))
+    for (int k = 0; k + 1 < n_nodes; k++) {
+        const double *left = nodes[k], *right = nodes[k + 1];
+        curve_begin_piece(&joint->curve,
+                          (Node){.x = left[0], .y = left[1], .stiffness = left[2], .stiffness_slope = left[4]});
+        if (!curve_add_node(&joint->curve,
+                            (Node){.x = right[0], .y = right[1], .stiffness = right[2], .stiffness_slope = right[3]}))
             return false;
     }
     curve_finish(&joint->curve);
@@ -26,189 +29,207 @@ static bool through(Joint *joint, const double (*given)[5], int nodes)
 #endif
 
 #ifdef MIDLINE_IS_DATA
-_Static_assert((int)CURVE_NODES >= (int)MOST_MIDLINE, "all of them");
+_Static_assert((int)CURVE_NODES >= (int)MAX_MIDLINE, "room for all nodes");
 
-static bool midline_of(Joint *joint, Text *why)
+static bool tabulate_midline(Joint *joint, Text *reason)
 {
-    (void)why;
-    return through(joint, data.midline, (int)data.n_midline);
+    (void)reason;
+    return tabulate_nodes(joint, data.midline, (int)data.n_midline);
 }
-#elif defined GIVEN_NODES
-enum { N_GIVEN_NODES = (int)GIVEN_NODES };
-_Static_assert(CURVE_NODES >= N_GIVEN_NODES, "all of them");
+#elif defined MIDLINE_NODES
+enum { N_MIDLINE_NODES = (int)MIDLINE_NODES };
+_Static_assert(CURVE_NODES >= N_MIDLINE_NODES, "room for all nodes");
 
-static bool midline_of(Joint *joint, Text *why)
+static bool tabulate_midline(Joint *joint, Text *reason)
 {
-    double given[N_GIVEN_NODES][5];
-    (void)why;
-    given_nodes(0, joint->c, given[0]);
-    return through(joint, (const double (*)[5])given, N_GIVEN_NODES);
+    double nodes[N_MIDLINE_NODES][5];
+    (void)reason;
+    midline_nodes(0, joint->constants, nodes[0]);
+    return tabulate_nodes(joint, (const double (*)[5])nodes, N_MIDLINE_NODES);
 }
 #else
-enum { SMOOTHING, MAX_TORQUE, K_FTS0, N_HEAD }; /* of the pair's numbers */
-_Static_assert(CURVE_NODES > DRIVE_STEPS, "one curve at least");
+enum { SMOOTHING, MAX_TORQUE, K_FTS0, N_PAIR_CONSTANTS }; /* results of `pair_constants` */
+_Static_assert(CURVE_NODES > DRIVE_STEPS, "room for the coarsest table");
 
-static bool windup(Joint *joint, int steps, Text *why)
+/* Midline of a contact pair: torque over wind-up, by integration of the compliance over the torque. */
+static bool tabulate_pair(Joint *joint, int steps, Text *reason)
 {
-    double head[N_HEAD], phi = 0.0, K[2];
-    pair_head(0, joint->c, head);
-    const double smoothing = head[SMOOTHING];
-    const double step = same_asinh(head[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
+    double constants[N_PAIR_CONSTANTS], phi = 0.0, K[2];
+    pair_constants(0, joint->constants, constants);
+    const double smoothing = constants[SMOOTHING];
+    const double step = portable_asinh(constants[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
     curve_begin(&joint->curve, 0.0);
     for (int k = 0; k <= steps; k++) {
-        const double xi = k * step, torque = smoothing * same_sinh(xi);
-        stiffness(&torque, joint->c, K);
-        if (!(K[0] > MIN_STIFFNESS && K[0] < (1.0 - MIN_STIFFNESS_MARGIN) * head[K_FTS0])) {
-            stiffness(&head[MAX_TORQUE], joint->c, K);
-            text_print(why,
-                       "K_FTS0 = %g N.m/rad and the contact pair give K_WTS = %g N.m/rad, allowed is (%g, %g) "
-                       "N.m/rad with K_TS at most %g times K_FTS0",
-                       head[K_FTS0], K[0], MIN_STIFFNESS, head[K_FTS0], 1.0 / MIN_STIFFNESS_MARGIN);
+        const double xi = k * step, torque = smoothing * portable_sinh(xi);
+        stiffness_with_play(&torque, joint->constants, K);
+        if (!(K[0] > MIN_STIFFNESS && K[0] < (1.0 - MIN_STIFFNESS_MARGIN) * constants[K_FTS0])) {
+            stiffness_with_play(&constants[MAX_TORQUE], joint->constants, K);
+            text_append_format(reason,
+                               "K_FTS0 = %g N.m/rad and the contact pair give K_WTS = %g N.m/rad, allowed is (%g, %g) "
+                               "N.m/rad with K_TS at most %g times K_FTS0",
+                               constants[K_FTS0], K[0], MIN_STIFFNESS, constants[K_FTS0], 1.0 / MIN_STIFFNESS_MARGIN);
             return false;
         }
-        const Node node = {.x = phi, .y = torque, .s = K[0], .bend = K[0] * K[1]};
+        const Node node = {.x = phi, .y = torque, .stiffness = K[0], .stiffness_slope = K[0] * K[1]};
         if (k == 0)
-            curve_piece(&joint->curve, node);
-        else if (!curve_add(&joint->curve, node))
+            curve_begin_piece(&joint->curve, node);
+        else if (!curve_add_node(&joint->curve, node))
             return false;
-        double rise = 0.0;
+        double wind_up_increment = 0.0;
         for (int i = 0; i < N_DRIVE_GAUSS && k < steps; i++) {
-            const double at = xi + half * (1.0 + DRIVE_GAUSS[i]), inner = smoothing * same_sinh(at);
-            stiffness(&inner, joint->c, K);
-            rise += DRIVE_GAUSS_WEIGHTS[i] * smoothing * same_cosh(at) / K[0];
+            const double inner_xi = xi + half * (1.0 + DRIVE_GAUSS[i]),
+                         inner_torque = smoothing * portable_sinh(inner_xi);
+            stiffness_with_play(&inner_torque, joint->constants, K);
+            wind_up_increment += DRIVE_GAUSS_WEIGHTS[i] * smoothing * portable_cosh(inner_xi) / K[0];
         }
-        phi += half * rise;
+        phi += half * wind_up_increment;
     }
     curve_finish(&joint->curve);
     return true;
 }
 
-static bool midline_of(Joint *joint, Text *why)
+static bool tabulate_midline(Joint *joint, Text *reason)
 {
-    return refined(joint, windup, DRIVE_STEPS, why);
+    return refine_curve(joint, tabulate_pair, DRIVE_STEPS, reason);
 }
 #endif
 
-bool kind_tabulate(Joint *joint, Text *why)
+bool tabulate_model(Joint *joint, Text *reason)
 {
-    Kind *kind = &joint->kind;
-    double head[3], share[2 * HYSTERESIS_SLIDERS], amplitudes[N_HARMONICS], stiffness;
-    *kind = (Kind){.errs = false};
-    error_amplitudes(0, joint->c, amplitudes);
+    JointModel *model = &joint->model;
+    double constants[3], shares[2 * HYSTERESIS_SLIDERS], amplitudes[N_HARMONICS], stiffness;
+    *model = (JointModel){.has_kinematic_error = false};
+    error_amplitudes(0, joint->constants, amplitudes);
     for (int i = 0; i < N_HARMONICS; i++)
-        kind->errs |= amplitudes[i] != 0.0;
-    brake(0, joint->c, &stiffness);
-    friction_of(&kind->friction, stiffness);
-    hysteresis_head(0, joint->c, head);
-    slider_shares(0, joint->c, share);
-    return midline_of(joint, why) &&
-        hysteresis_of(&kind->hysteresis, head, share, &joint->curve, why);
+        model->has_kinematic_error |= amplitudes[i] != 0.0;
+    sticking_stiffness(0, joint->constants, &stiffness);
+    friction_tabulate(&model->friction, stiffness);
+    hysteresis_constants(0, joint->constants, constants);
+    slider_shares(0, joint->constants, shares);
+    return tabulate_midline(joint, reason) &&
+           hysteresis_tabulate(&model->hysteresis, constants, shares, &joint->curve, reason);
 }
 
-enum { N_ERROR = 3 }; /* kinematic error, its first and its second derivative in phi1 */
+enum { N_ERROR = 3 }; /* kinematic error, its first and second derivative with respect to phi1 */
 
-static void error_at(const Joint *joint, const double *inputs, double *error)
+static void evaluate_kinematic_error(const Joint *joint, const double *inputs, double *error)
 {
-    if (joint->kind.errs)
-        kinematic_error(inputs, joint->c, error);
+    if (joint->model.has_kinematic_error)
+        kinematic_error(inputs, joint->constants, error);
     else
         error[0] = error[1] = error[2] = 0.0;
 }
 
-/* Wind-up at inputs, coming from a memory; they are motion or torque. */
-static double wind_up(const Joint *joint, const double *inputs, double error, const double *memory)
+/* Wind-up at the inputs, which are a motion or a torque, after a path from a history. */
+static double solve_wind_up(const Joint *joint, const double *inputs, double error, const double *history)
 {
-    double x[N_INPUTS + 1], at;
+    double x[N_INPUTS + 1], curve_x;
     memcpy(x, inputs, N_INPUTS * sizeof(double));
     x[N_INPUTS] = error;
-    argument(x, joint->c, &at);
+    curve_argument(x, joint->constants, &curve_x);
     if (!ARGUMENT_IS_LOAD)
-        return at;
-    if (joint->kind.hysteresis.acts)
-        return hysteresis_wind_up(&joint->kind.hysteresis, &joint->curve, memory, at);
-    return midline_inverse(&joint->curve, at);
+        return curve_x;
+    if (joint->model.hysteresis.is_active)
+        return hysteresis_solve_wind_up(&joint->model.hysteresis, &joint->curve, history, curve_x);
+    return midline_wind_up(&joint->curve, curve_x);
 }
 
-/* What the outputs are made of: inputs, and what a motion finds in the spring. */
-enum { PHI = N_INPUTS, LOAD, STIFF, SLID, LOSS, ERROR, SLOPE, DRY, N_GIVEN };
-/* What the friction is made of: inputs, torques of curve and hysteresis, slope of the kinematic error. */
-enum { TURN_LOAD = N_INPUTS, TURN_SLID, TURN_SLOPE, N_TURN };
+/* Arguments of `outputs`: inputs, then wind-up, torque and stiffness of the midline, hysteresis torque, loss, kinematic
+ * error and its derivative, dry friction torque. */
+enum {
+    PHI = N_INPUTS,
+    MIDLINE_TORQUE,
+    STIFFNESS,
+    HYSTERESIS_TORQUE,
+    LOSS,
+    ERROR,
+    ERROR_SLOPE,
+    DRY_FRICTION,
+    N_OUTPUT_ARGUMENTS
+};
+/* Arguments of `friction_arguments`: inputs, torques of midline and hysteresis, derivative of the kinematic error. */
+enum { FRICTION_MIDLINE_TORQUE = N_INPUTS, FRICTION_HYSTERESIS_TORQUE, FRICTION_ERROR_SLOPE, N_FRICTION_ARGUMENTS };
 
-/* The inputs of `turn` out of those of `outputs`. */
-static void to_turn(const double *x, double *y)
+/* Copy the arguments y of `friction_arguments` from the arguments x of `outputs`. */
+static void copy_friction_arguments(const double *x, double *y)
 {
     memcpy(y, x, N_INPUTS * sizeof(double));
-    y[TURN_LOAD] = x[LOAD];
-    y[TURN_SLID] = x[SLID];
-    y[TURN_SLOPE] = x[SLOPE];
+    y[FRICTION_MIDLINE_TORQUE] = x[MIDLINE_TORQUE];
+    y[FRICTION_HYSTERESIS_TORQUE] = x[HYSTERESIS_TORQUE];
+    y[FRICTION_ERROR_SLOPE] = x[ERROR_SLOPE];
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
+                    Text *reason)
 {
-    Kind *kind = &joint->kind;
-    double x[N_GIVEN], error[N_ERROR];
-    (void)why;
-    error_at(joint, inputs, error);
-    kind->phi = wind_up(joint, inputs, error[0], memory);
-    memset(after, 0, N_MEMORY * sizeof *after);
-    kind->slid = kind->braked = (SliderSum){.loss = 0.0};
-    if (kind->hysteresis.acts)
-        kind->slid = hysteresis_at(&kind->hysteresis, memory, kind->phi, after);
+    JointModel *model = &joint->model;
+    double x[N_OUTPUT_ARGUMENTS], error[N_ERROR];
+    (void)reason;
+    evaluate_kinematic_error(joint, inputs, error);
+    model->phi = solve_wind_up(joint, inputs, error[0], history);
+    memset(history_end, 0, N_HISTORY * sizeof *history_end);
+    model->hysteresis_update = model->friction_update = (SliderResultant){.loss = 0.0};
+    if (model->hysteresis.is_active)
+        model->hysteresis_update = hysteresis_advance(&model->hysteresis, history, model->phi, history_end);
     memcpy(x, inputs, N_INPUTS * sizeof(double));
-    x[PHI] = kind->phi;
-    midline(&joint->curve, kind->phi, 1, &x[LOAD]);
-    x[SLID] = kind->slid.force[0];
+    x[PHI] = model->phi;
+    midline_torque(&joint->curve, model->phi, 1, &x[MIDLINE_TORQUE]);
+    x[HYSTERESIS_TORQUE] = model->hysteresis_update.force[0];
     x[ERROR] = error[0];
-    x[SLOPE] = error[1];
-    if (kind->friction.acts) {
-        double given[N_TURN], y[4];
-        to_turn(x, given);
-        turn(given, joint->c, y);
-        kind->turn = (Turn){y[0], y[1], {y[2], y[3]}};
-        kind->braked = friction_at(&kind->friction, memory, kind->turn, after);
+    x[ERROR_SLOPE] = error[1];
+    if (model->friction.is_active) {
+        double friction_x[N_FRICTION_ARGUMENTS], y[4];
+        copy_friction_arguments(x, friction_x);
+        friction_arguments(friction_x, joint->constants, y);
+        model->friction_arguments = (FrictionArguments){y[0], y[1], {y[2], y[3]}};
+        model->friction_update = friction_advance(&model->friction, history, model->friction_arguments, history_end);
     }
-    x[DRY] = kind->braked.force[0];
-    x[LOSS] = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
-    after[AT_WIND_UP] = kind->phi;
-    after[AT_LOSS] = x[LOSS];
-    outputs(x, joint->c, out);
+    x[DRY_FRICTION] = model->friction_update.force[0];
+    x[LOSS] = history[HISTORY_LOSS] + model->hysteresis_update.loss + model->friction_update.loss;
+    history_end[HISTORY_WIND_UP] = model->phi;
+    history_end[HISTORY_LOSS] = x[LOSS];
+    outputs(x, joint->constants, out);
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)after;
-    const Kind *kind = &joint->kind;
-    double x[2 * N_GIVEN] = {0.0}, y[3], at[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
-    error_at(joint, inputs, error);
+    (void)history_end;
+    const JointModel *model = &joint->model;
+    double x[2 * N_OUTPUT_ARGUMENTS] = {0.0}, y[3], curve_x[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
+    evaluate_kinematic_error(joint, inputs, error);
     for (int i = 0; i < N_INPUTS; i++) {
-        x[i] = at[i] = inputs[i];
-        x[N_GIVEN + i] = at[N_INPUTS + 1 + i] = seed[i];
+        x[i] = curve_x[i] = inputs[i];
+        x[N_OUTPUT_ARGUMENTS + i] = curve_x[N_INPUTS + 1 + i] = seed[i];
     }
-    at[N_INPUTS] = error[0];
-    at[2 * N_INPUTS + 1] = error[1] * seed[0];
-    argument_seed(at, joint->c, &rate);
-    midline(&joint->curve, kind->phi, 2, y);
+    curve_x[N_INPUTS] = error[0];
+    curve_x[2 * N_INPUTS + 1] = error[1] * seed[0];
+    curve_argument_seed(curve_x, joint->constants, &rate);
+    midline_torque(&joint->curve, model->phi, 2, y);
     if (ARGUMENT_IS_LOAD)
-        rate /= y[1] + kind->slid.tangent[0];
-    const double heat = kind->hysteresis.acts ? hysteresis_heat(&kind->hysteresis, memory, kind->phi) : 0.0;
-    const double slid = kind->slid.tangent[0] * rate, loss = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
-    const double given[] = {kind->phi, y[0], y[1], kind->slid.force[0], loss, error[0], error[1], kind->braked.force[0]};
-    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slid, heat * rate, error[1] * seed[0],
-                             error[2] * seed[0], 0.0};
-    memcpy(x + PHI, given, sizeof given);
-    memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);
-    if (kind->friction.acts) {
-        double turning[2 * N_TURN], drift[4];
-        to_turn(x, turning);
-        to_turn(x + N_GIVEN, turning + N_TURN);
-        turn_seed(turning, joint->c, drift);
-        const SliderSum brakes =
-            friction_rate(&kind->friction, memory, kind->turn, (Turn){drift[0], drift[1], {drift[2], drift[3]}});
-        x[N_GIVEN + DRY] = brakes.force[0];
-        x[N_GIVEN + LOSS] += brakes.loss;
+        rate /= y[1] + model->hysteresis_update.tangent[0];
+    const double loss_derivative =
+        model->hysteresis.is_active ? hysteresis_loss_derivative(&model->hysteresis, history, model->phi) : 0.0;
+    const double hysteresis_rate = model->hysteresis_update.tangent[0] * rate,
+                 loss = history[HISTORY_LOSS] + model->hysteresis_update.loss + model->friction_update.loss;
+    const double values[] = {model->phi, y[0],     y[1],     model->hysteresis_update.force[0],
+                             loss,       error[0], error[1], model->friction_update.force[0]};
+    const double x_rates[] = {
+        rate, y[1] * rate, y[2] * rate, hysteresis_rate, loss_derivative * rate, error[1] * seed[0], error[2] * seed[0],
+        0.0};
+    memcpy(x + PHI, values, sizeof values);
+    memcpy(x + N_OUTPUT_ARGUMENTS + PHI, x_rates, sizeof x_rates);
+    if (model->friction.is_active) {
+        double friction_x[2 * N_FRICTION_ARGUMENTS], rates[4];
+        copy_friction_arguments(x, friction_x);
+        copy_friction_arguments(x + N_OUTPUT_ARGUMENTS, friction_x + N_FRICTION_ARGUMENTS);
+        friction_arguments_seed(friction_x, joint->constants, rates);
+        const SliderResultant friction_torque_rate =
+            friction_rate(&model->friction, history, model->friction_arguments,
+                          (FrictionArguments){rates[0], rates[1], {rates[2], rates[3]}});
+        x[N_OUTPUT_ARGUMENTS + DRY_FRICTION] = friction_torque_rate.force[0];
+        x[N_OUTPUT_ARGUMENTS + LOSS] += friction_torque_rate.loss;
     }
-    outputs_seed(x, joint->c, result);
+    outputs_seed(x, joint->constants, result);
 }

@@ -1,60 +1,65 @@
-/* Harmonic drive: torque over wind-up, odd; sliders in parallel, spring and friction each, give the hysteresis beside
- * it and the dry friction at the wave generator. */
+/* Harmonic drive: odd curve of torque over wind-up (midline). Parallel Jenkins sliders model its hysteresis, and the
+ * dry friction at the wave generator. */
 #ifndef JOINTFMU_HARMONIC_DRIVE_H
 #define JOINTFMU_HARMONIC_DRIVE_H
 
 #include <stdbool.h>
 
 #include "curve.h"
-#include "sliders.h"
+#include "jenkins.h"
 #include "text.h"
 
-/* Torque, and its derivatives up to an order (2 at most), of the odd midline at a wind-up. */
-void midline(const Curve *curve, double phi, int order, double *y);
-/* Wind-up at which it carries a torque. */
-double midline_inverse(const Curve *curve, double torque);
+/* Torque y[0] of the midline at a wind-up [rad] of either sign, and its derivatives up to `order`, 1 or 2. */
+void midline_torque(const Curve *curve, double phi, int order, double *y);
+/* Wind-up [rad] of the midline at a torque [N.m] of either sign. */
+double midline_wind_up(const Curve *curve, double torque);
 
 typedef struct {
-    bool acts;
-    double most;            /* friction of all */
-    double length;          /* wind-up over which the sliders begin to slip */
-    double K[HYSTERESIS_SLIDERS], per_K[HYSTERESIS_SLIDERS], limit[HYSTERESIS_SLIDERS]; /* of each slider */
+    bool is_active;                /* the drive has hysteresis */
+    double limit_torque;           /* M_f, sum of the friction limits [N.m] */
+    double characteristic_wind_up; /* M_f/K_h [rad] */
+    double K[HYSTERESIS_SLIDERS], compliance[HYSTERESIS_SLIDERS], limit[HYSTERESIS_SLIDERS];
 } Hysteresis;
 
-/* Numbers of a drive and of its sliders, and its midline; false: refused. */
-bool hysteresis_of(Hysteresis *hysteresis, const double *head, const double *share, const Curve *curve,
-                   Text *why);
-/* What the sliders give on the straight path from a memory to a wind-up, and their forces after it. */
-SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi, double *after);
-/* Derivative of the loss in the wind-up. */
-double hysteresis_heat(const Hysteresis *hysteresis, const double *memory, double phi);
-/* Wind-up at which midline and sliders carry a torque, coming from a memory. */
-double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *memory,
-                          double torque);
+/* Sliders from `hysteresis_constants`, `slider_shares` and the midline. false: refused, with the reason. */
+bool hysteresis_tabulate(Hysteresis *hysteresis, const double *constants, const double *shares, const Curve *curve,
+                         Text *reason);
+/* Update of the sliders from a history on a straight path to the wind-up phi; `history_end` gets their forces. */
+SliderResultant hysteresis_advance(const Hysteresis *hysteresis, const double *history, double phi,
+                                   double *history_end);
+/* Derivative of the dissipated energy with respect to the wind-up. */
+double hysteresis_loss_derivative(const Hysteresis *hysteresis, const double *history, double phi);
+/* Wind-up [rad] at which midline and sliders carry a torque [N.m], from a history. */
+double hysteresis_solve_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *history, double torque);
 
 typedef struct {
-    bool acts;
-    double K[FRICTION_SLIDERS], per_K[FRICTION_SLIDERS]; /* of each slider */
+    bool is_active; /* the drive has dry friction */
+    double K[FRICTION_SLIDERS], compliance[FRICTION_SLIDERS];
 } Friction;
 
-/* Angle and speed of the wave generator, and the limits of its friction; or rates of them. */
+/* Angle [rad] and speed [rad/s] of the wave generator, and its limits [N.m] of positive and of negative friction; or
+ * their rates. */
 typedef struct {
     double angle, speed, limit[2];
-} Turn;
+} FrictionArguments;
 
-void friction_of(Friction *friction, double stiffness);
-/* Torque and loss on the straight path from a memory, and the memory after it. */
-SliderSum friction_at(const Friction *friction, const double *memory, Turn turn, double *after);
-/* Their derivative along a rate. */
-SliderSum friction_rate(const Friction *friction, const double *memory, Turn turn, Turn rate);
+/* Sliders from the total stiffness of their springs [N.m/rad]. */
+void friction_tabulate(Friction *friction, double stiffness);
+/* Friction torque and loss of a straight path from a history, and the history at its end. */
+SliderResultant friction_advance(const Friction *friction, const double *history, FrictionArguments arguments,
+                                 double *history_end);
+/* Rates of torque and loss. */
+SliderResultant friction_rate(const Friction *friction, const double *history, FrictionArguments arguments,
+                              FrictionArguments rate);
 
 typedef struct {
     Hysteresis hysteresis;
     Friction friction;
-    bool errs;  /* there is a kinematic error */
-    double phi; /* of the last evaluation, for its derivative: wind-up, what moves the friction, both sums */
-    Turn turn;
-    SliderSum slid, braked;
-} Kind;
+    bool has_kinematic_error;
+    /* Of the last evaluation, for its derivative: wind-up [rad], arguments of the friction, updates of the sliders. */
+    double phi;
+    FrictionArguments friction_arguments;
+    SliderResultant hysteresis_update, friction_update;
+} JointModel;
 
 #endif

@@ -26,21 +26,21 @@ def _add_functions(function_graph: Graph, model: Model) -> None:
     drive = function_graph.joint
     add_slider_functions(function_graph)
     if isinstance(drive, CatalogueDrive):
-        doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after"
+        doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after the node"
         function_graph.add_function(
-            "given_nodes", doc, [], [number for node in drive.make_nodes() for number in node]
+            "midline_nodes", doc, [], [number for node in drive.make_nodes() for number in node]
         )
     elif isinstance(drive, ContactPairDrive):
         (torque,) = make_symbols("x", 1)
-        doc = "torque -> K_WTS, its slope"
-        function_graph.add_function("stiffness", doc, [torque], stiffness_with_play(drive, torque))
+        doc = "torque -> K_WTS, its derivative by the torque"
+        function_graph.add_function("stiffness_with_play", doc, [torque], stiffness_with_play(drive, torque))
         head = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
-        function_graph.add_function("pair_head", "-> T_s, largest torque, K_FTS0", [], head)
+        function_graph.add_function("pair_constants", "-> T_s, largest torque, K_FTS0", [], head)
     head = [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
-    function_graph.add_function("hysteresis_head", "-> loss, stiffness, rated torque", [], head)
+    function_graph.add_function("hysteresis_constants", "-> loss, stiffness, rated torque", [], head)
     springs, limits = hysteresis.slider_shares(hysteresis.stiffness_exponent(drive))
     function_graph.add_function(
-        "slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *limits]
+        "slider_shares", "-> shares of the sliders in K_h, in M_f", [], [*springs, *limits]
     )
     inputs = [ca.SX.sym(i.name) for i in model.inputs]
     locked = _is_torque_input(model)
@@ -49,7 +49,7 @@ def _add_functions(function_graph: Graph, model: Model) -> None:
         "kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, waves
     )
     errors = [0.0 * a if locked else a for a in error_amplitudes(drive)]
-    function_graph.add_function("error_amplitudes", "-> of the kinematic error", [], errors)
+    function_graph.add_function("error_amplitudes", "-> amplitudes of the kinematic error", [], errors)
     x, load, stiffness, slid, loss, error, slope, dry = make_symbols("found", 8)
     turn: Symbols
     if locked:
@@ -63,15 +63,17 @@ def _add_functions(function_graph: Graph, model: Model) -> None:
         turn = [*motion[:2], *friction.friction_limits(drive, motion[1], tau, temperature)]
         out = spring.motion_outputs(drive, motion, temperature, state, dry)
     doc = "inputs, kinematic error -> argument of the curve"
-    function_graph.add_with_derivative("argument", doc, [*inputs, error], [argument])
-    function_graph.add_function("brake", "-> stiffness of the friction while all stick", [], [brake])
-    doc = "inputs, torques of curve and hysteresis, slope of the error -> phi1, w1, limits of the friction"
-    function_graph.add_with_derivative("turn", doc, [*inputs, load, slid, slope], turn)
+    function_graph.add_with_derivative("curve_argument", doc, [*inputs, error], [argument])
+    function_graph.add_function(
+        "sticking_stiffness", "-> stiffness of the friction sliders while all stick", [], [brake]
+    )
+    doc = "inputs, torques of midline and hysteresis, d(error)/d(phi1) -> phi1, w1, friction limits"
+    function_graph.add_with_derivative("friction_arguments", doc, [*inputs, load, slid, slope], turn)
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]
     doc = (
-        "inputs, wind-up, torque and stiffness of the curve, torque of the hysteresis, loss, kinematic "
-        "error and its slope, dry friction -> outputs"
+        "inputs, wind-up, torque and stiffness of the midline, hysteresis torque, loss, kinematic "
+        "error and its derivative by phi1, dry friction -> outputs"
     )
     function_graph.add_with_derivative(
         "outputs", doc, [*inputs, x, load, stiffness, slid, loss, error, slope, dry], y
@@ -99,16 +101,16 @@ def _make_definitions(function_graph: Graph, model: Model) -> Definitions:
     """Constants for the C code of the harmonic drive."""
     counts = {"ARGUMENT_IS_LOAD": int(_is_torque_input(model)), "DRIVE_STEPS": spring.MIN_TABLE_STEPS}
     counts["N_HARMONICS"] = len(HARMONICS)
-    sliders = define_array("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.STIFFNESS_SHARES)
-    sliders |= define_array("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMIT_SHARES)
+    sliders = define_array("STIFFNESS_SHARES", "N_STIFFNESS_SHARES", friction.STIFFNESS_SHARES)
+    sliders |= define_array("LIMIT_SHARES", "N_LIMIT_SHARES", friction.LIMIT_SHARES)
     constants = define_constants(NUMBER_NAMES, COUNT_NAMES) | Definitions(counts) | sliders
     constants |= define_quadrature("DRIVE_GAUSS", spring.GAUSS_RULE)
     if isinstance(function_graph.joint, MeasuredDrive):
         return constants | Definitions({}, {"MIDLINE_IS_DATA": 1})
     nodes = sum(
-        len(f.result_expressions) for f in function_graph.functions if f.name == "given_nodes"
+        len(f.result_expressions) for f in function_graph.functions if f.name == "midline_nodes"
     ) // len(SplineNode._fields)
-    return constants | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
+    return constants | Definitions({}, {"MIDLINE_NODES": nodes} if nodes else {})
 
 
 NATIVE_PART = NativeDefinition(

@@ -30,29 +30,29 @@ def make_tables_header() -> str:
         macros = {
             "LOG_2": _round_to_bits(log_2, 42),
             "LOG_2_LOW": float(log_2 - Decimal(_round_to_bits(log_2, 42))),
-            "PLACES_PER_LOG_2": float(1 / per_place),
-            "LOG_2_PER_PLACE": _round_to_bits(per_place, 42),
-            "LOG_2_PER_PLACE_LOW": float(per_place - Decimal(_round_to_bits(per_place, 42))),
-            "ERF_PER_PLACE": float(_ERF_NODES_PER_UNIT),
-            "TURNS": float(1 / quarter),
+            "INTERVALS_PER_LOG_2": float(1 / per_place),
+            "LOG_2_PER_INTERVAL": _round_to_bits(per_place, 42),
+            "LOG_2_PER_INTERVAL_LOW": float(per_place - Decimal(_round_to_bits(per_place, 42))),
+            "ERF_NODES_PER_UNIT": float(_ERF_NODES_PER_UNIT),
+            "QUARTERS_PER_RADIAN": float(1 / quarter),
         }
         arrays = {
-            "QUARTER[4]": [[value] for value in _split_number(quarter)],
-            f"POWERS[{TABLE_INTERVALS}][2]": [
+            "QUARTER_TURN[4]": [[value] for value in _split_number(quarter)],
+            f"EXP_TABLE[{TABLE_INTERVALS}][2]": [
                 _split_in_two((k * per_place).exp()) for k in range(TABLE_INTERVALS)
             ],
-            f"LOGS[{TABLE_INTERVALS}][3]": list(_log_rows()),
-            f"EXPM1[{_EXPM1_TERM_COUNT}]": [[1 / factorial(n + 2)] for n in range(_EXPM1_TERM_COUNT)],
-            f"ERF[{_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1}][{_ERF_TERM_COUNT}]": list(_erf_rows()),
-            f"SINE[{_N_SINE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_SINE)],
-            f"COSINE[{_N_SINE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_SINE)],
+            f"LOG_TABLE[{TABLE_INTERVALS}][3]": list(_log_rows()),
+            f"EXPM1_SERIES[{_EXPM1_TERM_COUNT}]": [[1 / factorial(n + 2)] for n in range(_EXPM1_TERM_COUNT)],
+            f"ERF_TABLE[{_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1}][{_ERF_TERM_COUNT}]": list(_erf_rows()),
+            f"SINE_SERIES[{_N_SINE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_SINE)],
+            f"COSINE_SERIES[{_N_SINE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_SINE)],
         }
     counts = {
-        "PLACES": TABLE_INTERVALS,
+        "TABLE_INTERVALS": TABLE_INTERVALS,
         "LOG_BITS": LOG_MANTISSA_BITS,
-        "N_EXPM1": _EXPM1_TERM_COUNT,
-        "N_ERF": _ERF_TERM_COUNT,
-        "N_WAVE": _N_SINE,
+        "N_EXPM1_TERMS": _EXPM1_TERM_COUNT,
+        "N_ERF_TERMS": _ERF_TERM_COUNT,
+        "N_SINE_TERMS": _N_SINE,
     }
     return "\n".join(
         [

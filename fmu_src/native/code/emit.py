@@ -14,8 +14,8 @@ _BINARY_FORMATS = {
     ca.OP_SUB: "{0} - {1}",
     ca.OP_MUL: "{0} * {1}",
     ca.OP_DIV: "{0} / {1}",
-    ca.OP_POW: "same_pow({0}, {1})",
-    ca.OP_CONSTPOW: "same_pow({0}, {1})",
+    ca.OP_POW: "portable_pow({0}, {1})",
+    ca.OP_CONSTPOW: "portable_pow({0}, {1})",
     ca.OP_LT: "{0} < {1} ? 1.0 : 0.0",
     ca.OP_LE: "{0} <= {1} ? 1.0 : 0.0",
     ca.OP_EQ: "{0} == {1} ? 1.0 : 0.0",
@@ -26,7 +26,7 @@ _BINARY_FORMATS = {
     ca.OP_FMIN: "{0} < {1} ? {0} : {1}",
     ca.OP_FMAX: "{0} > {1} ? {0} : {1}",
     ca.OP_ATAN2: "atan2({0}, {1})",
-    ca.OP_HYPOT: "root_of_squares({0}, {1})",
+    ca.OP_HYPOT: "scaled_hypot({0}, {1})",
     ca.OP_COPYSIGN: "copysign({0}, {1})",
 }
 _UNARY_FORMATS = {
@@ -36,18 +36,18 @@ _UNARY_FORMATS = {
     ca.OP_TWICE: "2.0 * {0}",
     ca.OP_INV: "1.0 / {0}",
     ca.OP_SQRT: "sqrt({0})",
-    ca.OP_EXP: "same_exp({0})",
-    ca.OP_LOG: "same_log({0})",
-    ca.OP_EXPM1: "exp_less_one({0})",
-    ca.OP_LOG1P: "same_log1p({0})",
-    ca.OP_SIN: "same_sin({0})",
-    ca.OP_COS: "same_cos({0})",
+    ca.OP_EXP: "portable_exp({0})",
+    ca.OP_LOG: "portable_log({0})",
+    ca.OP_EXPM1: "fast_expm1({0})",
+    ca.OP_LOG1P: "portable_log1p({0})",
+    ca.OP_SIN: "portable_sin({0})",
+    ca.OP_COS: "portable_cos({0})",
     ca.OP_TAN: "tan({0})",
     ca.OP_ASIN: "asin({0})",
     ca.OP_ACOS: "acos({0})",
     ca.OP_ATAN: "atan({0})",
-    ca.OP_TANH: "same_tanh({0})",
-    ca.OP_ERF: "same_erf({0})",
+    ca.OP_TANH: "portable_tanh({0})",
+    ca.OP_ERF: "portable_erf({0})",
     ca.OP_FABS: "fabs({0})",
     ca.OP_FLOOR: "floor({0})",
     ca.OP_NOT: "{0} == 0.0 ? 1.0 : 0.0",
@@ -59,14 +59,14 @@ _DERIVATIVE_FORMATS = {
     ca.OP_SIGN: "({0} > 0.0 ? 1.0 : 0.0) - ({0} < 0.0 ? 1.0 : 0.0)",
 }
 
-C_HELPERS = """/* expm1, at less cost where nothing cancels. */
-static inline double exp_less_one(double x)
+C_HELPERS = """/* exp(x) - 1; where the difference does not cancel by the faster exponential. */
+static inline double fast_expm1(double x)
 {
-    return x < -0.7 || x > 0.7 ? same_exp(x) - 1.0 : same_expm1(x);
+    return x < -0.7 || x > 0.7 ? portable_exp(x) - 1.0 : portable_expm1(x);
 }
 
-/* Far from 1 the squares are those of smaller or larger numbers. */
-static inline double root_of_squares(double a, double b)
+/* sqrt(a^2 + b^2); very large or small numbers are scaled so that the squares do not over- or underflow. */
+static inline double scaled_hypot(double a, double b)
 {
     const double sum = a * a + b * b;
     if (sum > 1e-280 && sum < 1e280)

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from jointfmu import __version__
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
+from jointfmu.version import __version__
 
 from ...folders import find_fmu_parts, find_source_folder
 from ...joint_parts.c_text import format_array, format_number, format_string
@@ -93,22 +93,26 @@ def _read_handwritten_files(model: Model, definition: NativeDefinition) -> dict[
     paths = list_runtime_files((*definition.shared_files, "elementary"))
     joint_files = [path for path in find_source_folder(model).iterdir() if path.suffix in (".c", ".h")]
     header = [path.name for path in joint_files if path.suffix == ".h"]
-    files = {"kind.h": "".join(f'#include "{name}"\n' for name in header)} if header else {}
+    files = {"joint_model.h": "".join(f'#include "{name}"\n' for name in header)} if header else {}
     return files | {path.name: path.read_text(encoding="utf-8") for path in sorted([*paths, *joint_files])}
 
 
 def _format_model_header(model: Model, parameters: object, history_size: int) -> str:
     """Text of model.h: sizes of the model and indices of its inputs."""
-    macros = f"#define N_STATES {model.state_count}\n#define MOVES 1\n" if model.is_time_dependent else ""
+    macros = (
+        f"#define N_STATES {model.state_count}\n#define IS_TIME_DEPENDENT 1\n"
+        if model.is_time_dependent
+        else ""
+    )
     fields = list(model.parameter_fields())
     if "lag_a" in fields:
         first = 1 + len(model.inputs) + len(model.outputs)
-        macros += f"#define LAGS {first + fields.index('lag_a')}\n"
+        macros += f"#define FIRST_LAG_PARAMETER {first + fields.index('lag_a')}\n"
     if model.find_event_times:
-        macros += f"#define N_EVENTS {len(model.find_event_times(parameters))}\n"
+        macros += f"#define N_TIME_EVENTS {len(model.find_event_times(parameters))}\n"
     input_names = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
     if history_size:
-        macros += f"#define N_MEMORY {history_size}\n"
+        macros += f"#define N_HISTORY {history_size}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
 #define JOINTFMU_MODEL_H
 
@@ -147,12 +151,14 @@ def format_variables_c(model: Model) -> str:
         + "}"
         for o in model.outputs
     ]
-    nominals = format_array("const double nominals[N_STATES]", [format_number(v.nominal) for v in states])
+    nominals = format_array(
+        "const double state_nominals[N_STATES]", [format_number(v.nominal) for v in states]
+    )
     return (
         '#include "variables.h"\n\n#include <math.h>\n\n'
         + format_array("const Variable variables[N_VALUES]", rows)
         + "\n"
-        + format_array("const unsigned char depends[N_OUTPUTS][N_INPUTS + N_STATES]", links)
+        + format_array("const unsigned char output_dependencies[N_OUTPUTS][N_INPUTS + N_STATES]", links)
         + (nominals if states else "")
     )
 

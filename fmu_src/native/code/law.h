@@ -16,34 +16,35 @@ enum {
 {% endfor %}
 {% if tabulated %}
 
-/* An interval of a parameter that other parameters decide. */
+/* Parameter whose interval depends on other parameters; `parameter_limit_bounds` computes the interval. */
 typedef struct {
-    int parameter; /* its place in the list of parameters */
-    unsigned char low_open, high_open;
+    int parameter;                     /* index in the list of parameters */
+    unsigned char low_open, high_open; /* 1: the bound itself is not allowed */
     const char *doc;
-} Limit;
-extern const Limit limits[{{ [counts.N_LIMITS, 1] | max }}];
+} ParameterLimit;
+extern const ParameterLimit limited_parameters[{{ [counts.N_PARAMETER_LIMITS, 1] | max }}];
 
-/* A way to leave the tables: an input or output outside its interval. */
+/* Input or output with a range of validity; `validity_bounds` computes the range. Outside of it a warning is logged. */
 typedef struct {
-    int variable; /* its place in the list of inputs and outputs */
+    int variable; /* index in the list of inputs and outputs */
     const char *doc;
-} Warning;
-{{ warnings }}
+} ValidityLimit;
+{{ validity_limits }}
 {% endif %}
 {% for name in arrays %}
 extern const double {{ name }};
 {% endfor %}
 
-/* y = name(x); c are the constants: parameters, fixed ones, then what law_constants computes. */
+/* Each function computes y from the arguments x. c are the constants of the joint: parameters, parameters that are not
+ * FMU variables, then the expressions of both that `law_constants` computes. */
 {% for name in prototypes %}
 void {{ name }}(const double *x, const double *c, double *y);
 {% endfor %}
 {% if series %}
-typedef void Law(const double *x, const double *c, double *y);
+typedef void LawFunction(const double *x, const double *c, double *y);
 {% endif %}
 {% for name in series %}
-extern Law *const {{ name }}[N_LAW_SWITCHES + 1];
+extern LawFunction *const {{ name }}[N_LAW_RANGE_BOUNDS + 1]; /* one for each range of log-areas */
 {% endfor %}
 
 {{ helpers }}

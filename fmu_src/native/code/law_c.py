@@ -15,7 +15,7 @@ from .emit import C_HELPERS, format_function
 
 _MAX_INLINE_LINES = 150
 """Largest number of lines of an inlined function [1]: functions evaluated in every step are short."""
-_REGIME_FUNCTIONS = ("law_load", "law_table", "law_state")
+_REGIME_FUNCTIONS = ("law_load", "law_totals", "law_state")
 """Name prefixes of functions that exist once for each regime of the contact law."""
 
 
@@ -38,19 +38,24 @@ def format_law(function_graph: Graph, model: Model, native_part: NativeDefinitio
         else:
             bodies.append(text)
             prototypes.append(name)
-    bodies += [format_array(f"Law *const {name}[N_LAW_SWITCHES + 1]", rows) for name, rows in series.items()]
+    bodies += [
+        format_array(f"LawFunction *const {name}[N_LAW_RANGE_BOUNDS + 1]", rows)
+        for name, rows in series.items()
+    ]
     definitions = shared_definitions(native_part.shared_files) | native_part.make_definitions(
         function_graph, model
     )
     variables = [v.name for v in (*model.inputs, *model.outputs)]
-    warnings = [
+    validity_limits = [
         f"{{{variables.index(o.variable_name)}, {format_string(o.doc)}}}" for o in model.validity_limits
     ]
     header = load_template(Path(__file__).with_name("law.h")).render(
         counts={**_list_sizes(function_graph, model, native_part, count), **definitions.counts},
         macros={name: format_number(value) for name, value in definitions.macros.items()},
         tabulated=native_part.is_tabulated,
-        warnings=format_array("static const Warning warnings[N_WARNINGS]", warnings),
+        validity_limits=format_array(
+            "static const ValidityLimit validity_limits[N_VALIDITY_LIMITS]", validity_limits
+        ),
         arrays=definitions.arrays,
         prototypes=prototypes,
         series=series,
@@ -95,16 +100,21 @@ def _list_sizes(
     sizes = {"N_CONSTANTS": len(function_graph.parameter_symbols) + len(function_graph.constants)}
     if not native_part.is_tabulated:
         return sizes
-    sizes |= {"N_LIMITS": len(function_graph.limits), "N_WARNINGS": len(model.validity_limits)}
-    if "law_head" in output_counts:
+    sizes |= {
+        "N_PARAMETER_LIMITS": len(function_graph.limits),
+        "N_VALIDITY_LIMITS": len(model.validity_limits),
+    }
+    if "law_distribution" in output_counts:
         sizes |= {
-            "N_LAW_HEAD": output_counts["law_head"],
-            "N_LAW_ENDS": output_counts["law_ends"],
-            "N_LAW_SWITCHES": output_counts["law_switches"],
-            "N_LAW_TABLE": output_counts["law_table_0"],
+            "N_LAW_DISTRIBUTION": output_counts["law_distribution"],
+            "N_LAW_REGIME_ENDS": output_counts["law_regime_ends"],
+            "N_LAW_RANGE_BOUNDS": output_counts["law_range_bounds"],
+            "N_LAW_TOTALS": output_counts["law_totals_0"],
             "N_LAW_STATE": output_counts.get("law_state_0", 0) // 3,
         }
-    return sizes | {f"AT_{name.upper()}": place for name, place in native_part.history_layout.offsets.items()}
+    return sizes | {
+        f"HISTORY_{name.upper()}": offset for name, offset in native_part.history_layout.offsets.items()
+    }
 
 
 def _format_limits(function_graph: Graph) -> str:
@@ -115,4 +125,6 @@ def _format_limits(function_graph: Graph) -> str:
         f"{format_string(m.doc)}}}"
         for m in function_graph.limits
     ]
-    return format_array(f"const Limit limits[{max(len(rows), 1)}]", rows or ['{0, 0, 0, ""}'])
+    return format_array(
+        f"const ParameterLimit limited_parameters[{max(len(rows), 1)}]", rows or ['{0, 0, 0, ""}']
+    )

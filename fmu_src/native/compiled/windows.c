@@ -1,11 +1,11 @@
-/* What the Windows library needs beside the system's C runtime, which has snprintf only inside Microsoft's
- * headers. */
+/* Functions that the C runtime library of Windows does not export: snprintf, which Microsoft defines in its headers
+ * only, and sincos. */
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
 
-int __stdio_common_vsprintf(unsigned long long options, char *buffer, size_t size, const char *format,
-                            void *locale, va_list values);
+int __stdio_common_vsprintf(unsigned long long options, char *buffer, size_t size, const char *format, void *locale,
+                            va_list values);
 int snprintf(char *buffer, size_t size, const char *format, ...);
 void sincos(double x, double *sine, double *cosine);
 
@@ -13,16 +13,17 @@ int snprintf(char *buffer, size_t size, const char *format, ...)
 {
     va_list values;
     va_start(values, format);
-    const int length = __stdio_common_vsprintf(2 /* as C99 has it */, buffer, size, format, NULL, values);
+    const int length =
+        __stdio_common_vsprintf(2 /* option: return value as in C99 */, buffer, size, format, NULL, values);
     va_end(values);
     return length;
 }
 
-/* sin and cos at once, which the compiler expects and the system does not have. The second argument is read
- * again, as the two calls would be made one of this function. */
+/* Sine and cosine, which the compiler merges into a call of this function. The argument of the cosine is volatile: else
+ * the compiler would replace the two calls here by a call of this function itself. */
 void sincos(double x, double *sine, double *cosine)
 {
-    const volatile double again = x;
+    const volatile double copy = x;
     *sine = sin(x);
-    *cosine = cos(again);
+    *cosine = cos(copy);
 }

@@ -17,9 +17,9 @@ from jointfmu_fmu_src.building import build
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.picture import CELL_OVERLAP, _cell_sizes, draw_plan
 from jointfmu_tools.joints.bolted_joint.report import picture_figure
-from jointfmu_tools.laboratory.describe import list_modules
-from jointfmu_tools.ramps import ramp
-from jointfmu_tools.report.course import LoadHistory
+from jointfmu_tools.pages.laboratory.describe import list_modules
+from jointfmu_tools.pages.report.course import LoadHistory
+from jointfmu_tools.run.ramps import ramp
 from natives import SAME as SAME_FLAVOURS
 from natives import Host, close, jacobian, near, package
 from scipy.integrate import cumulative_simpson

@@ -10,13 +10,13 @@ import pytest
 from clients import needs
 from conftest import Fmu, here_alone, refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.drawing import vdi2230
-from jointfmu_tools.drawing.tables import read_property_classes, read_threads
+from jointfmu_tools.common.shown import list_entries
 from jointfmu_tools.fem.bolted_contact import BoltedContact
+from jointfmu_tools.inputs.drawing import vdi2230
+from jointfmu_tools.inputs.drawing.tables import read_property_classes, read_threads
 from jointfmu_tools.joints.bolted_joint.new import layout, plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.report import friction_results
-from jointfmu_tools.shown import list_entries
-from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.problem import state_problem
 
 from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
@@ -259,7 +259,7 @@ def test_options_of_the_bolts(capsys):
 
 
 def test_zhao_2018_gets_the_same_height(capsys, tmp_path):
-    from jointfmu_tools import fractal
+    from jointfmu_tools.inputs import fractal
 
     path = tmp_path / "plate.toml"
     made(capsys, *PLATE, *FACES, *LOAD, "--law", "zhao2018", path=path)

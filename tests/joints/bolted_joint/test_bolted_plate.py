@@ -12,7 +12,7 @@ from clients import needs
 from conftest import refused_line
 from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_tools import cli
-from jointfmu_tools.commands.assembly import with_assembly
+from jointfmu_tools.cli.commands.assembly import with_assembly
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout

@@ -13,19 +13,19 @@ from conftest import REFINEMENT, Fmu, here_alone, refused_line
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import page
 from jointfmu_tools import cli
+from jointfmu_tools.common.shown import format_quantity
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
-from jointfmu_tools.fields.joint_parameters import insert_field
-from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.fitting import branches
+from jointfmu_tools.inputs.fields.joint_parameters import insert_field
+from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fitting import branches
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
 from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
-from jointfmu_tools.report.course import LoadHistory
-from jointfmu_tools.shown import format_quantity
-from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.pages.report.course import LoadHistory
+from jointfmu_tools.studies.uncertainty import propagate
+from jointfmu_tools.studies.uncertainty.problem import state_problem
 from oracles.joint_elements import pole_deviations
 
 from jointfmu.joints import KINDS

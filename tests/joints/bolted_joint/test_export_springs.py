@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jointfmu_tools.export import ansys, keywords, tables
-from jointfmu_tools.export.mesh import NodePairs, read_pairs
-from jointfmu_tools.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
+from jointfmu_tools.exchange.export import ansys, keywords, tables
+from jointfmu_tools.exchange.export.mesh import NodePairs, read_pairs
+from jointfmu_tools.exchange.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
 from jointfmu_tools.joints.bolted_joint.export import (
     TOTAL_OUTPUTS,
     springs_of_joint,

@@ -6,19 +6,23 @@ import numpy as np
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build
-from jointfmu_tools import PARTS, cli, plots
-from jointfmu_tools.fields import nodal_result, reduction
-from jointfmu_tools.fields.joint_parameters import insert_field, pressure_shape
-from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
-from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RATIO_RANGE, LoadCase, SumFunctions
+from jointfmu_tools import cli
+from jointfmu_tools.common import plots
+from jointfmu_tools.exchange.modelica import library
+from jointfmu_tools.inputs.fields import nodal_result, reduction
+from jointfmu_tools.inputs.fields.joint_parameters import insert_field, pressure_shape
+from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
+from jointfmu_tools.inputs.fields.sums import (
+    MAX_COMPRESSION_RATIO,
+    PRELOAD_RATIO_RANGE,
+    LoadCase,
+    SumFunctions,
+)
 from jointfmu_tools.joints.bolted_joint.published import pressure_between_bolts
-from jointfmu_tools.modelica import library
-from jointfmu_tools.ramps import ramp
+from jointfmu_tools.run.ramps import ramp
 from oracles import contact_patches
 
-from jointfmu.joints import KINDS
-from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
 from jointfmu.mechanics.footprint import bolts
@@ -211,20 +215,10 @@ def test_a_force_more_than_one_per_cent_off_is_refused(factor):
 
 
 def test_other_joints_have_no_field():
-    with pytest.raises(ValueError, match=r"joint = 'gear_contact' has no field"):
+    with pytest.raises(
+        ValueError, match=r"joint = 'gear_contact' has no pressure field; expected 'bolted_joint'"
+    ):
         insert_field(load_default("gear_contact"), FIELD, PRELOAD, "test")
-
-
-def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
-    """Whatever joint has the part `field` gets its own parameter set with the field."""
-    toy = replace(KIND, name="toy", models=())
-    monkeypatch.setitem(KINDS, "toy", toy)
-    monkeypatch.setitem(PARTS, "toy", PARTS[KIND.name])
-    few = ContactField(*(a[:50] for a in _parts(FIELD)))
-    file, found = insert_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
-    assert (file.joint, found.node_count) == ("toy", 50)
-    assert isinstance(file.values, toy.parameters)
-    assert len(file.values.pattern.share) == 50
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.export.exports import require_content
+from jointfmu_tools.exchange.export.exports import require_content
 from jointfmu_tools.joints.gear_mesh.new import InvoluteGearPair
-from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty import propagate
+from jointfmu_tools.studies.uncertainty.problem import state_problem
 from test_modelica import EXACT, move, simulate, top
 
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch, pairs_in_contact

@@ -24,9 +24,9 @@ from jointfmu_tools.joints.harmonic_drive.friction import (
 )
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from jointfmu_tools.joints.harmonic_drive.report import compare_with_catalogue
-from jointfmu_tools.report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET
-from jointfmu_tools.report.joint import write_joint_report
-from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.pages.report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET
+from jointfmu_tools.pages.report.joint import write_joint_report
+from jointfmu_tools.studies.uncertainty.problem import state_problem
 from oracles.drive_friction import (
     DRIVES,
     JOINTS,

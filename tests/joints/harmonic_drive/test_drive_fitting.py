@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.fitting import decay
-from jointfmu_tools.fitting.backbone import Backbone
-from jointfmu_tools.fitting.hysteresis import Oscillator
+from jointfmu_tools.inputs.fitting import decay
+from jointfmu_tools.inputs.fitting.backbone import Backbone
+from jointfmu_tools.inputs.fitting.hysteresis import Oscillator
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
-from jointfmu_tools.ramps import ramp
+from jointfmu_tools.run.ramps import ramp
 from oracles import curve_measurements
 from oracles import drive_measurements as measurements
 from oracles.joint_measurements import save
@@ -342,8 +342,8 @@ def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_the_modelica_record_is_the_midline(law):
+    from jointfmu_tools.exchange.modelica.records import to_curve
     from jointfmu_tools.joints.harmonic_drive.modelica import COMPONENT
-    from jointfmu_tools.modelica.records import to_curve
 
     file = load_default("harmonic_drive", law)
     (record,) = COMPONENT.make_records(file, [()])

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from jointfmu_fmu_src.partners.laws import GRAVITY
-from jointfmu_tools.modelica import library
-from jointfmu_tools.modelica.records import make_identifier
+from jointfmu_tools.exchange.modelica import library
+from jointfmu_tools.exchange.modelica.records import make_identifier
 from jointfmu_tools.systems.master import Slave
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution

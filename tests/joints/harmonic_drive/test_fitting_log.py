@@ -7,8 +7,9 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli, columns
-from jointfmu_tools.fitting import outcome
+from jointfmu_tools import cli
+from jointfmu_tools.common import columns
+from jointfmu_tools.inputs.fitting import outcome
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from matplotlib.figure import Figure

@@ -7,11 +7,11 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools.common.pressure import judge_file
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.pressure import judge_file
-from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty import propagate
+from jointfmu_tools.studies.uncertainty.problem import state_problem
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS

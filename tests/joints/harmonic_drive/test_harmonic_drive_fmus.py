@@ -13,8 +13,8 @@ from conftest import made_once
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
 from jointfmu_tools.joints.harmonic_drive.efficiency import make_python_test_rig
 from jointfmu_tools.joints.harmonic_drive.job import LABORATORY
-from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.ramps import ramp
+from jointfmu_tools.pages.laboratory.assemble import write_laboratory
+from jointfmu_tools.run.ramps import ramp
 from jointfmu_tools.systems.master import Slave
 from natives import Host, close, jacobian
 from scipy.integrate import cumulative_simpson, quad

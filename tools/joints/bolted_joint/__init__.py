@@ -1,14 +1,13 @@
 """Tool modules of the bolted joint."""
 
-from ...joint_parts import ToolParts
+from ...common.joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("export", "field", "fit", "modelica", "new", "published", "reduced", "report"),
+    ("export", "fit", "modelica", "new", "published", "reduced", "report"),
     checks="job",
     figures="job",
     laboratory="job",
     ringing="job",
-    frequencies="field",
     pressure="field",
 )

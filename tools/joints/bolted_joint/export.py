@@ -19,15 +19,15 @@ from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.quantity import Array, quantity_field
 
-from ...export.exports import Exports, LoadCurve
-from ...export.placing import Springs
+from ...exchange.export.exports import Exports, LoadCurve
+from ...exchange.export.placing import Springs
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
-    from ...export.mesh import NodePairs
-    from ...export.placing import Placement
-    from ...export.tables import LoadTable
+    from ...exchange.export.mesh import NodePairs
+    from ...exchange.export.placing import Placement
+    from ...exchange.export.tables import LoadTable
 
 TOTAL_OUTPUTS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
 """Outputs of the joint that the springs and dashpots of all nodes must add up to."""
@@ -191,7 +191,7 @@ def tabulate_normal_force(
 
     Raises ValueError if nothing is in contact or the pressure reaches the hardness.
     """
-    from ...export.tables import LoadTable, decimate_curve
+    from ...exchange.export.tables import LoadTable, decimate_curve
 
     start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]

@@ -1,22 +1,19 @@
-"""Layout and contact pressures of a bolted joint, also for a computed pressure field."""
+"""Layout, contact pressures and elastic bodies of a bolted joint, also for a computed pressure field."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, bolt_pressures, preload_pressure
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, pressure_distribution
-from jointfmu.mechanics.footprint.distribution import MergedDistribution, NodalField, PressureDistribution
+from jointfmu.mechanics.footprint.distribution import NodalField, PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ...drawing.vdi2230 import proof_load
-from ...fem.validation import MeasuredFrequencies
-from ...fields.bolted_interface import FieldAdapter
-from ...pressure import NominalPressure
+from ...common.pressure import NominalPressure
+from ...inputs.drawing.vdi2230 import proof_load
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
@@ -93,44 +90,26 @@ PRESSURE = NominalPressure(
 )
 
 
-def _field_pressures(
-    joint: Bolted,
-    pressure_shape: PressureDistribution | MergedDistribution,
-    preload: ArrayLike,
-    moment: ArrayLike,
-) -> Array:
-    """Nodal pressures [Pa] at a preload, without a further loss by embedding.
-
-    A field is computed for the preload that remains after embedding.
-    """
-    return preload_pressure(replace(joint, embedding=0.0), pressure_shape, preload, moment)
-
-
-def _with_elastic_sides(
+def insert_elastic_bodies(
     file: ParameterFile,
     assembly: "Assembly",
     preload: float,
     attachment: str,
     pressure_shape: PressureDistribution,
 ) -> ParameterFile:
+    """Parameter file with elastic bodies: the file of an interface with the bodies of an assembly.
+
+    preload        : [N] per bolt
+    attachment     : name of the attachment
+    pressure_shape : pressure shape of all nodes
+    """
     from .new.plate_finite_elements import compute_joint_of_assembly
 
     return compute_joint_of_assembly(file, lambda: assembly, preload, attachment, pressure_shape).file
 
 
-def _joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
-    from .new.plate_finite_elements import joint_facts
+def joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
+    """{name: (value, unit, meaning)} of the complete joint at a preload [N] per bolt."""
+    from .new import plate_finite_elements
 
-    return joint_facts(file, preload)
-
-
-FIELD = FieldAdapter(
-    nodal_pressures=_field_pressures,
-    tangential_stiffness_ratio=lambda joint: joint.shear_stiffness_ratio(),
-    bolt_layout=PlaneLayout.from_joint,
-    insert_elastic_bodies=_with_elastic_sides,
-    describe_joint=_joint_facts,
-)
-
-
-FREQUENCIES = MeasuredFrequencies(reference_file="zhao2018_modes", assembly_file="box_specimen_by_frequency")
+    return plate_finite_elements.joint_facts(file, preload)

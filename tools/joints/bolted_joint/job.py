@@ -13,12 +13,12 @@ from scipy.integrate import cumulative_simpson
 from jointfmu.joints.bolted_joint.law import bolt_pattern
 from jointfmu.parameters import load_default
 
-from ...job.checks import relative_deviation
-from ...laboratory.part import ContactMap, LaboratoryModel, MeasuredCurve, PublishedQuantity
-from ...published.reference import Point
-from ...ramps import ramp
-from ...ramps.ramp import RampResult
-from ...report.figure import Figure, Panel, Series
+from ...pages.laboratory.part import ContactMap, LaboratoryModel, MeasuredCurve, PublishedQuantity
+from ...pages.report.figure import Figure, Panel, Series
+from ...run.ramps import ramp
+from ...run.ramps.ramp import RampResult
+from ...studies.checks import relative_deviation
+from ...studies.published.reference import Point
 from ...systems.master import Slave
 from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
 from .picture import draw_plan

@@ -1,7 +1,7 @@
 /* Map of the contact pressure for the page. Rows of four numbers, one for each point: position x, y [m], share of the
  * area [1], pressure [Pa] at the present inputs. */
 #include "instance.h"
-#include "tabulated.h"
+#include "tabulated_joint.h"
 
 static int row_count; /* rows that are in use */
 
@@ -13,19 +13,19 @@ __attribute__((visibility("default"))) int lab_map_size(void)
 /* NULL: the inputs are refused. */
 __attribute__((visibility("default"))) const double *lab_map(Instance *m)
 {
-    static double map[MOST_POINTS][4];
+    static double map[MAX_POINTS][4];
     if (instance_evaluate(m) != OK)
         return NULL;
-    const double *inputs = m->now.values + FIRST_INPUT;
-    const Contact *contact = &m->joint->kind.contact;
+    const double *inputs = m->state.values + FIRST_INPUT;
+    const Contact *contact = &m->joint->model.contact;
     row_count = 0;
-    for (int i = 0; i < MOST_POINTS && contact->weight[i][0] > 0.0; i++) {
+    for (int i = 0; i < MAX_POINTS && contact->weight[i][0] > 0.0; i++) {
         double *row = map[row_count++];
         row[2] = contact->weight[i][0];
         row[0] = contact->weight[i][1] / row[2];
         row[1] = contact->weight[i][2] / row[2];
         const double opening = inputs[INPUT_S_REL_Z] + inputs[INPUT_THETA_X] * row[1] - inputs[INPUT_THETA_Y] * row[0];
-        curve_at(&m->joint->curve, contact->preload.approach[i] - opening, 0, &row[3]);
+        curve_evaluate(&m->joint->curve, contact->preload.approach[i] - opening, 0, &row[3]);
     }
     return map[0];
 }

@@ -10,8 +10,8 @@ from jointfmu.contact.surface import domain_extension
 from jointfmu.joints.bolted_joint.law import BoltedJoint, bolt_pattern, preload_pressure, row_forces
 from jointfmu.mechanics.footprint.bolts import bolt_pressures, frame_cells, pressure_distribution
 
-from ...fractal import rms_height
-from ...published.computed import CalibrationFit, PublishedNumbers
+from ...inputs.fractal import rms_height
+from ...studies.published.computed import CalibrationFit, PublishedNumbers
 
 
 def largest_pressure(joint: BoltedJoint, preload: float) -> float:

@@ -27,8 +27,8 @@ from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
 from jointfmu.quantity import Array, flatten_parameters
 
-from ...batch.approach import columns, discrete_gauss, held, tabulate
-from ...uncertainty.problem import ReducedCurves
+from ...studies.batch.approach import columns, discrete_gauss, held, tabulate
+from ...studies.uncertainty.problem import ReducedCurves
 from .report import loss_factor
 
 EQUAL = 6

@@ -21,9 +21,9 @@ from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
 
-from ...report.course import LoadHistory
-from ...report.figure import ComparisonRow, Figure
-from ...shown import format_quantity
+from ...common.shown import format_quantity
+from ...pages.report.course import LoadHistory
+from ...pages.report.figure import ComparisonRow, Figure
 from .field import PlaneLayout
 from .picture import draw_plan, draw_section
 from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces

@@ -1,6 +1,6 @@
 """Tool modules of the gear contact."""
 
-from ...joint_parts import ToolParts
+from ...common.joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 from jointfmu.joints.gear_contact import KIND
 from jointfmu.joints.gear_contact.spring import ContactParameters, GearContactSpring
 
-from ...export.exports import Exports, LoadCurve
-from ...laboratory.part import LaboratoryModel
-from ...pressure import FLANK_PRESSURE
+from ...common.pressure import FLANK_PRESSURE
+from ...exchange.export.exports import Exports, LoadCurve
+from ...pages.laboratory.part import LaboratoryModel
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
-    from ...export.tables import LoadTable
+    from ...exchange.export.tables import LoadTable
 
 
 def _contact_curve(gear: ContactParameters) -> "tuple[Curve, Sequence[str]]":
@@ -21,7 +21,7 @@ def _contact_curve(gear: ContactParameters) -> "tuple[Curve, Sequence[str]]":
 
 
 def _load_table(gear: ContactParameters, _: None, max_error: float) -> "LoadTable":
-    from ...export.tables import tabulate_load
+    from ...exchange.export.tables import tabulate_load
 
     return tabulate_load(GearContactSpring.tabulate(gear).curve, gear.A_0, max_error)
 

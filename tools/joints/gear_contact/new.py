@@ -1,8 +1,8 @@
 """`jointfmu new` for a gear contact: two tooth flanks of equal width, from curvatures and surface finish."""
 
-from ...drawing.faces import FACE_OPTIONS
-from ...drawing.part import DrawingOptions, NewJoint, NewJointCommand
-from ...joint_parts import Option
+from ...common.options import Option
+from ...inputs.drawing.faces import FACE_OPTIONS
+from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
@@ -10,10 +10,10 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     from jointfmu.joints.gear_contact import KIND
     from jointfmu.joints.gear_contact.spring import GearContactSpring
 
-    from ...drawing import faces
-    from ...drawing.faces import hertz_line_contact
-    from ...drawing.part import ParameterSheet
-    from ...drawing.reading import parse_number
+    from ...inputs.drawing import faces
+    from ...inputs.drawing.faces import hertz_line_contact
+    from ...inputs.drawing.part import ParameterSheet
+    from ...inputs.drawing.reading import parse_number
 
     sheet = ParameterSheet(KIND.name, "roughness")
     faces.add_faces(sheet, options)
@@ -47,7 +47,7 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
 
 
 def _parse_curvature(radius_text: str) -> float:
-    from ...drawing.reading import parse_number
+    from ...inputs.drawing.reading import parse_number
 
     if radius_text.strip().lower() in ("inf", "flat"):
         return 0.0

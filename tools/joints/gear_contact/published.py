@@ -9,7 +9,7 @@ from jointfmu.contact.interface import evaluate_at_largest_spot
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.joints.gear_contact.spring import GearContact
 
-from ...published.computed import PublishedNumbers
+from ...studies.published.computed import PublishedNumbers
 
 
 def is_claim_met(contact: GearContact, of: str, over: str) -> bool:

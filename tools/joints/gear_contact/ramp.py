@@ -12,11 +12,11 @@ from jointfmu.joints.gear_contact.spring import ContactParameters, GearContact, 
 from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
-from ...batch.approach import columns, held, tabulate
-from ...job.checks import integrate_logarithmically, relative_deviation
-from ...ramps.ramp import RampResult
-from ...report.figure import Figure, Panel, Series
-from ...uncertainty.problem import ReducedCurves
+from ...pages.report.figure import Figure, Panel, Series
+from ...run.ramps.ramp import RampResult
+from ...studies.batch.approach import columns, held, tabulate
+from ...studies.checks import integrate_logarithmically, relative_deviation
+from ...studies.uncertainty.problem import ReducedCurves
 
 
 def _check_approach(folder: Path, result: RampResult) -> tuple[str, float]:

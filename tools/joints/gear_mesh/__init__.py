@@ -1,6 +1,6 @@
 """Tool modules of the gear mesh."""
 
-from ...joint_parts import ToolParts
+from ...common.joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,

@@ -9,11 +9,11 @@ from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import MeshParameters, tabulate_pair
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 
-from ...export.exports import Exports, LoadCurve
-from ...pressure import FLANK_PRESSURE
+from ...common.pressure import FLANK_PRESSURE
+from ...exchange.export.exports import Exports, LoadCurve
 
 if TYPE_CHECKING:
-    from ...export.tables import LoadTable
+    from ...exchange.export.tables import LoadTable
 
 
 def _contact_curve(mesh: MeshParameters) -> tuple[Curve, Sequence[str]]:
@@ -21,7 +21,7 @@ def _contact_curve(mesh: MeshParameters) -> tuple[Curve, Sequence[str]]:
 
 
 def _load_table(mesh: MeshParameters, _: None, max_error: float) -> "LoadTable":
-    from ...export.tables import LoadTable, tabulate_law
+    from ...exchange.export.tables import LoadTable, tabulate_law
 
     pair, closing = tabulate_pair(mesh)
     i = int(np.argmin(np.abs(pair.displacement - closing)))

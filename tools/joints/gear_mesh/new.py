@@ -8,12 +8,11 @@ from jointfmu.contact.surface import ElasticConstants, contact_modulus
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 
-from ...command_line.common import option_flag
-from ...drawing import faces
-from ...drawing.faces import FACE_OPTIONS, hertz_line_contact
-from ...drawing.part import DrawingOptions, NewJoint, NewJointCommand, ParameterSheet
-from ...drawing.reading import parse_number
-from ...joint_parts import Option
+from ...common.options import Option, option_flag
+from ...inputs.drawing import faces
+from ...inputs.drawing.faces import FACE_OPTIONS, hertz_line_contact
+from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand, ParameterSheet
+from ...inputs.drawing.reading import parse_number
 
 E_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""

@@ -25,11 +25,11 @@ from jointfmu.joints.gear_mesh.spring import (
 from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
-from ...batch.approach import Rows, columns, tabulate
-from ...job.checks import integrate_logarithmically, relative_deviation
-from ...ramps.ramp import RampResult
-from ...report.figure import Figure, Panel, Series
-from ...uncertainty.problem import ReducedCurves
+from ...pages.report.figure import Figure, Panel, Series
+from ...run.ramps.ramp import RampResult
+from ...studies.batch.approach import Rows, columns, tabulate
+from ...studies.checks import integrate_logarithmically, relative_deviation
+from ...studies.uncertainty.problem import ReducedCurves
 
 _CLOSED_FORCE = 10.0
 """Force [N] of a tooth pair above which its contact is closed, with the default parameters."""

@@ -1,16 +1,14 @@
 """Tool modules of the harmonic drive."""
 
-from ...joint_parts import ToolParts
+from ...common.joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("catalogue", "fit", "modelica", "new", "published", "reduced", "report"),
+    ("fit", "modelica", "new", "published", "reduced", "report"),
     checks="job",
     figures="job",
     laboratory="job",
     ringing="job",
     export="load",
     pressure="load",
-    interface="load",
-    transmission="load",
 )

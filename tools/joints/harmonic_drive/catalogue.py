@@ -18,7 +18,7 @@ from typing import TypeAlias
 
 from jointfmu.quantity.units import conversion_factor
 
-from ...catalogue import Catalogue, CatalogueColumn, CatalogueEntry, SourcedNumber
+from ...inputs.catalogue import CatalogueColumn, CatalogueEntry, SourcedNumber
 from .friction import add_friction_estimates, collect_published
 
 STIFFNESS_COLUMNS = (
@@ -235,6 +235,3 @@ def _read_table(name: str) -> list[dict[str, str]]:
 
 def _normalise_name(name: str) -> str:
     return re.sub(r"[\s_/-]+", "-", name.strip().lower())
-
-
-CATALOGUE = Catalogue(columns=COLUMNS, entries=list_drives)

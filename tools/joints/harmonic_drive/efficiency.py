@@ -11,7 +11,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
-from ...catalogue import CatalogueEntry
+from ...inputs.catalogue import CatalogueEntry
 from ...systems.master import Slave
 from .catalogue import list_drives
 from .friction import friction_parameters

@@ -27,8 +27,8 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, friction_limits, viscous_torque
 from jointfmu.quantity import Array
 
-from ...catalogue import CatalogueEntry, SourcedNumber
-from ...command_line.common import option_flag
+from ...common.options import option_flag
+from ...inputs.catalogue import CatalogueEntry, SourcedNumber
 
 CONFIDENCE_LEVEL = 0.95
 """Probability that a single drive lies inside its prediction interval [1]."""

@@ -11,13 +11,13 @@ from scipy.integrate import cumulative_simpson
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.drive import HARMONICS
 
-from ...job.checks import relative_deviation
-from ...laboratory.part import Example, LaboratoryModel, PublishedQuantity, TransmissionView
-from ...published.reference import Point
-from ...published.validation import ValidatedPoint
-from ...ramps import ramp
-from ...ramps.ramp import RampResult
-from ...report.figure import Figure, Panel, Series, published_series
+from ...pages.laboratory.part import Example, LaboratoryModel, PublishedQuantity, TransmissionView
+from ...pages.report.figure import Figure, Panel, Series, published_series
+from ...run.ramps import ramp
+from ...run.ramps.ramp import RampResult
+from ...studies.checks import relative_deviation
+from ...studies.published.reference import Point
+from ...studies.published.validation import ValidatedPoint
 from ...systems.master import Slave
 from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
 from . import efficiency

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
-from ...catalogue import SourcedNumber
-from ...command_line.common import option_flag
-from ...drawing.part import DrawingOptions, NewJoint, NewJointCommand
-from ...drawing.reading import parse_number, parse_temperature
-from ...joint_parts import Option
+from ...common.options import Option, option_flag
+from ...inputs.catalogue import SourcedNumber
+from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
+from ...inputs.drawing.reading import parse_number, parse_temperature
 from .catalogue import COLUMNS, STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive
 from .friction import (
     CATALOGUE_SPEED,

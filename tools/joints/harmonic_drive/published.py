@@ -10,7 +10,7 @@ from jointfmu.contact.laws import kogut_etsion
 from jointfmu.contact.surface import hardness_coefficient
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 
-from ...published.computed import CalibrationFit, PublishedNumbers
+from ...studies.published.computed import CalibrationFit, PublishedNumbers
 
 
 def K_TS(

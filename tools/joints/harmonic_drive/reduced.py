@@ -13,9 +13,9 @@ from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, Ta
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.quantity import Array
 
-from ...batch import approach
-from ...batch.approach import columns
-from ...uncertainty.problem import ReducedCurves
+from ...studies.batch import approach
+from ...studies.batch.approach import columns
+from ...studies.uncertainty.problem import ReducedCurves
 
 RAMP = 33
 """Torques [1] between which K_WTS is a polynomial in asinh(T/T_s)."""

@@ -17,9 +17,17 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
-from ...catalogue import CatalogueEntry, SourcedNumber
-from ...report.course import LoadHistory
-from ...report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET, ComparisonRow, Figure, Panel, Series
+from ...inputs.catalogue import CatalogueEntry, SourcedNumber
+from ...pages.report.course import LoadHistory
+from ...pages.report.figure import (
+    ROLE_INDEPENDENT,
+    ROLE_PREDICTED,
+    ROLE_SET,
+    ComparisonRow,
+    Figure,
+    Panel,
+    Series,
+)
 from .catalogue import COLUMNS, STIFFNESS_NAMES, find_drive
 from .efficiency import DriveTestRig, hysteresis_loss, lost_motion, make_python_test_rig
 from .fit.drive import CatalogueRow

@@ -13,7 +13,7 @@ from jointfmu_fmu_src.native.page import render_variables_page
 
 from jointfmu.files.outputs import ARCHIVE, check_outputs
 
-from ...host import is_needed_to_run
+from ...run.host import is_needed_to_run
 from .code import generate_sources
 from .model import SystemModel
 from .proof import make_proof_files

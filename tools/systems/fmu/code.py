@@ -20,7 +20,7 @@ from .model import SystemComponent, SystemModel
 _COMMON_FILES = list_runtime_files(("elementary",))
 _SHARED_STEMS = {path.stem for path in _COMMON_FILES} - {"joint", "variables"} | {"elementary_tables"}
 """Stems of files that all components share."""
-_JOINT_FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "outside", "warning")
+_JOINT_FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "find_warnings", "describe_warning")
 _DEFINITION_PATTERN = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
 )
@@ -99,11 +99,13 @@ def _format_model_header(system_model: SystemModel) -> str:
         "N_OUTPUTS": len(system_model.outputs),
         "N_PARAMETERS": sum(len(p.variable_parameters) for p in system_model.components),
         "N_COMPONENTS": len(system_model.components),
-        "N_WIRES": wires,
-        "N_ROWS": wires + len(system_model.components),
+        "N_CONNECTIONS": wires,
+        "N_COMPONENT_VALUES": wires + len(system_model.components),
     }
-    definitions = {"N_STATES": 2 * len(system_model.bodies), "MOVES": 1, "IMPLICIT": 1}
-    definitions |= {name: value for name, value in (("N_EVENTS", events), ("N_MEMORY", memory)) if value}
+    definitions = {"N_STATES": 2 * len(system_model.bodies), "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
+    definitions |= {
+        name: value for name, value in (("N_TIME_EVENTS", events), ("N_HISTORY", memory)) if value
+    }
     macros = "".join(f"#define {name} {value}\n" for name, value in definitions.items())
     enumerators = ", ".join(f"{name} = {value}" for name, value in counts.items())
     body = f"{macros}\nenum {{ {enumerators} }};"
@@ -135,9 +137,9 @@ def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -
         wires += [str(reference[f"{component.name}.{v.name}"]) for v in model.outputs]
         events = _event_count(component)
         if events:
-            declared.append(f"void {prefix}joint_events(Joint *joint, double *times);\n")
+            declared.append(f"void {prefix}joint_event_times(Joint *joint, double *times);\n")
         functions = [f"{prefix}joint_{name}" for name in _JOINT_FUNCTIONS]
-        functions.append(f"{prefix}joint_events" if events else "NULL")
+        functions.append(f"{prefix}joint_event_times" if events else "NULL")
         counts = [len(model.inputs), len(model.outputs), model.state_count, events, *offset.values()]
         rows.append("{" + ", ".join([format_string(component.name), *functions, *map(str, counts)]) + "}")
         inputs, outputs = len(model.inputs), len(model.outputs)
@@ -155,7 +157,7 @@ def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -
         '#include "system.h"\n\n'
         + "".join(dict.fromkeys(declared))
         + "\n"
-        + format_array("const unsigned short wires[N_WIRES]", wires)
+        + format_array("const unsigned short connections[N_CONNECTIONS]", wires)
         + "\n"
         + format_array("const Component components[N_COMPONENTS]", rows)
     )

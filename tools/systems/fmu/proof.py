@@ -15,12 +15,12 @@ from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialize_xml
 
-from jointfmu import __version__
 from jointfmu.joints.model import Model
+from jointfmu.version import __version__
 
-from ...host import unpack_fmu
-from ...proof import exchange
-from ...proof.task import Task
+from ...run.host import unpack_fmu
+from ...run.proof import exchange
+from ...run.proof.task import Task
 
 OUTPUT_TOLERANCE = 5e-3
 """Tolerance of an output over its scale [1], as stated in docs/systems_explanation.md."""

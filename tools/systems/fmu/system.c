@@ -3,77 +3,77 @@
 #include <math.h>
 #include <string.h>
 
-/* Numbers of doubles that a component's own joint takes. */
-static size_t room_of(const Component *c)
+/* Size of the joint of a component, in doubles; even, for alignment. */
+static size_t joint_doubles(const Component *c)
 {
     return (c->size() + 2 * sizeof(double) - 1) / (2 * sizeof(double)) * 2;
 }
 
 size_t joint_size(void)
 {
-    size_t room = 0;
+    size_t doubles = 0;
     for (size_t i = 0; i < N_COMPONENTS; i++)
-        room += room_of(&components[i]);
-    return sizeof(Joint) + room * sizeof(double);
+        doubles += joint_doubles(&components[i]);
+    return sizeof(Joint) + doubles * sizeof(double);
 }
 
-/* A reason with the component's name before it. */
-static void name_it(const Component *c, const Text *inner, Text *why)
+/* Append a message with the name of the component before it. */
+static void append_with_name(const Component *c, const Text *component_reason, Text *reason)
 {
-    text_print(why, "%s: %s", c->name, inner->line);
+    text_append_format(reason, "%s: %s", c->name, component_reason->line);
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
+bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 {
-    double *room = joint->room;
+    double *memory = joint->component_joints;
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
-        Text inner;
-        text_clear(&inner);
-        joint->part[i] = (Joint *)room;
-        room += room_of(c);
-        if (!c->tabulate(joint->part[i], parameters + c->parameters, &inner)) {
-            name_it(c, &inner, why);
+        Text component_reason;
+        text_clear(&component_reason);
+        joint->component[i] = (Joint *)memory;
+        memory += joint_doubles(c);
+        if (!c->tabulate(joint->component[i], parameters + c->first_parameter, &component_reason)) {
+            append_with_name(c, &component_reason, reason);
             return false;
         }
     }
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
+                    Text *reason)
 {
     size_t body = 0;
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
-        const unsigned short *from = wires + c->wire, *to = from + c->n_inputs;
-        double *row = joint->rows + c->row, *found = row + FIRST_INPUT + c->n_inputs;
-        row[0] = inputs[-FIRST_INPUT];
+        const unsigned short *sources = connections + c->first_connection, *targets = sources + c->n_inputs;
+        double *values = joint->values + c->first_value, *component_outputs = values + FIRST_INPUT + c->n_inputs;
+        values[0] = inputs[-FIRST_INPUT];
         for (size_t k = 0; k < c->n_inputs; k++) {
-            const unsigned ref = from[k];
-            row[FIRST_INPUT + k] = !ref                ? 0.0
-                                   : ref < FIRST_OUTPUT ? inputs[ref - FIRST_INPUT]
-                                                        : outputs[ref - FIRST_OUTPUT];
+            const unsigned ref = sources[k];
+            values[FIRST_INPUT + k] = !ref                 ? 0.0
+                                      : ref < FIRST_OUTPUT ? inputs[ref - FIRST_INPUT]
+                                                           : outputs[ref - FIRST_OUTPUT];
         }
         if (c->n_states) {
-            found[0] = outputs[body];
-            found[1] = outputs[N_BODIES + body];
+            component_outputs[0] = outputs[body];
+            component_outputs[1] = outputs[N_BODIES + body];
             body++;
         }
-        Text inner;
-        text_clear(&inner);
-        if (!c->evaluate(joint->part[i], row + FIRST_INPUT, memory + c->memory, after + c->memory, found,
-                         &inner)) {
-            name_it(c, &inner, why);
+        Text component_reason;
+        text_clear(&component_reason);
+        if (!c->evaluate(joint->component[i], values + FIRST_INPUT, history + c->first_history,
+                         history_end + c->first_history, component_outputs, &component_reason)) {
+            append_with_name(c, &component_reason, reason);
             return false;
         }
         for (size_t k = c->n_states; k < c->n_outputs; k++)
-            outputs[to[k] - FIRST_OUTPUT] = found[k];
+            outputs[targets[k] - FIRST_OUTPUT] = component_outputs[k];
     }
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
     size_t body = 0;
@@ -81,66 +81,65 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     memcpy(result, seed + N_INPUTS, N_STATES * sizeof *result);
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
-        const unsigned short *from = wires + c->wire, *to = from + c->n_inputs;
-        const double *row = joint->rows + c->row;
-        double *slope = joint->slopes + c->row, *found = slope + c->n_inputs + c->n_states;
-        bool moves = false;
+        const unsigned short *sources = connections + c->first_connection, *targets = sources + c->n_inputs;
+        const double *values = joint->values + c->first_value;
+        double *rate = joint->rates + c->first_value, *output_rates = rate + c->n_inputs + c->n_states;
+        bool has_rate = false;
         for (size_t k = 0; k < c->n_inputs; k++) {
-            const unsigned ref = from[k];
-            slope[k] = !ref                ? 0.0
-                       : ref < FIRST_OUTPUT ? seed[ref - FIRST_INPUT]
-                                            : result[ref - FIRST_OUTPUT];
-            moves |= slope[k] != 0.0;
+            const unsigned ref = sources[k];
+            rate[k] = !ref ? 0.0 : ref < FIRST_OUTPUT ? seed[ref - FIRST_INPUT] : result[ref - FIRST_OUTPUT];
+            has_rate |= rate[k] != 0.0;
         }
         if (c->n_states) {
-            slope[c->n_inputs] = result[body];
-            slope[c->n_inputs + 1] = result[N_BODIES + body];
-            moves |= result[body] != 0.0 || result[N_BODIES + body] != 0.0;
+            rate[c->n_inputs] = result[body];
+            rate[c->n_inputs + 1] = result[N_BODIES + body];
+            has_rate |= result[body] != 0.0 || result[N_BODIES + body] != 0.0;
             body++;
         }
-        if (moves)
-            c->derivative(joint->part[i], row + FIRST_INPUT, memory + c->memory, after ? after + c->memory : NULL,
-                          slope, found);
+        if (has_rate)
+            c->derivative(joint->component[i], values + FIRST_INPUT, history + c->first_history,
+                          history_end ? history_end + c->first_history : NULL, rate, output_rates);
         for (size_t k = c->n_states; k < c->n_outputs; k++)
-            result[to[k] - FIRST_OUTPUT] = moves ? found[k] : 0.0;
+            result[targets[k] - FIRST_OUTPUT] = has_rate ? output_rates[k] : 0.0;
     }
 }
 
-unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)
+unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *outputs)
 {
-    unsigned found = 0;
+    unsigned bits = 0;
     (void)inputs, (void)outputs;
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
-        const double *row = joint->rows + c->row + FIRST_INPUT;
-        found |= c->outside(joint->part[i], row, row + c->n_inputs) << c->warnings;
+        const double *values = joint->values + c->first_value + FIRST_INPUT;
+        bits |= c->find_warnings(joint->component[i], values, values + c->n_inputs) << c->first_warning_bit;
     }
-    return found;
+    return bits;
 }
 
-void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
+void joint_describe_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
 {
     (void)inputs, (void)outputs;
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
-        const double *row = joint->rows + c->row + FIRST_INPUT;
-        if (c->outside(joint->part[i], row, row + c->n_inputs) << c->warnings & bit) {
-            Text inner;
-            text_clear(&inner);
-            c->warning(joint->part[i], row, row + c->n_inputs, bit >> c->warnings, &inner);
-            name_it(c, &inner, text);
+        const double *values = joint->values + c->first_value + FIRST_INPUT;
+        if (c->find_warnings(joint->component[i], values, values + c->n_inputs) << c->first_warning_bit & bit) {
+            Text component_reason;
+            text_clear(&component_reason);
+            c->describe_warning(joint->component[i], values, values + c->n_inputs, bit >> c->first_warning_bit,
+                                &component_reason);
+            append_with_name(c, &component_reason, text);
             return;
         }
     }
 }
 
-#if N_EVENTS
-void joint_events(Joint *joint, double *times)
+#if N_TIME_EVENTS
+void joint_event_times(Joint *joint, double *times)
 {
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
-        if (c->events)
-            c->events(joint->part[i], times);
+        if (c->event_times)
+            c->event_times(joint->component[i], times);
         times += c->n_events;
     }
 }

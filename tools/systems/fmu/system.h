@@ -1,7 +1,7 @@
-/* A system of components as one model: loads over time, joints, bodies, and the wires between them.
+/* A system as one model: components (loads over time, joints, bodies) and the connections between them.
  *
- * A component is a model with functions of its own (joint.h). It looks at a row of values, its time, inputs and
- * outputs side by side; each input is fed by a value of the system, or is zero. */
+ * Each component has its own functions (joint.h) and an array of values: time, inputs, outputs. An input has the value
+ * of a variable of the system, or is zero. */
 #ifndef JOINTFMU_SYSTEM_H
 #define JOINTFMU_SYSTEM_H
 
@@ -11,52 +11,53 @@
 typedef struct {
     const char *name;
     size_t (*size)(void);
-    bool (*tabulate)(Joint *joint, const double *parameters, Text *why);
-    bool (*evaluate)(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
-                     Text *why);
-    void (*derivative)(Joint *joint, const double *inputs, const double *memory, const double *after,
+    bool (*tabulate)(Joint *joint, const double *parameters, Text *reason);
+    bool (*evaluate)(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
+                     Text *reason);
+    void (*derivative)(Joint *joint, const double *inputs, const double *history, const double *history_end,
                        const double *seed, double *result);
-    unsigned (*outside)(Joint *joint, const double *inputs, const double *outputs);
-    void (*warning)(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text);
-    void (*events)(Joint *joint, double *times); /* NULL: there are none */
+    unsigned (*find_warnings)(Joint *joint, const double *inputs, const double *outputs);
+    void (*describe_warning)(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text);
+    void (*event_times)(Joint *joint, double *times); /* NULL: no time events */
     unsigned n_inputs, n_outputs, n_states, n_events;
-    unsigned parameters; /* number of the first one in the system's */
-    unsigned memory;     /* place of its own in the system's */
-    unsigned row;        /* place of its values: time, inputs, outputs */
-    unsigned wire;       /* place of its inputs, then its outputs, in `wires` */
-    unsigned warnings;   /* bit of its first warning */
+    unsigned first_parameter;   /* index of its first parameter among those of the system */
+    unsigned first_history;     /* index of its first history variable among those of the system */
+    unsigned first_value;       /* index of its values in `Joint.values`: time, inputs, outputs */
+    unsigned first_connection;  /* index of its inputs, then its outputs, in `connections` */
+    unsigned first_warning_bit; /* number of the bit of its first warning */
 } Component;
 
-/* In the order in which they are evaluated; bodies come last and have the states of their own number. */
+/* Components in the order of evaluation. Bodies are last; the states of the system are those of the bodies in this
+ * order. */
 extern const Component components[N_COMPONENTS];
-/* What feeds each input: value reference, 0 for nothing; and where each output goes. */
-extern const unsigned short wires[N_WIRES];
+/* Value references in the system: of each input of a component the source (0: zero), of each output the variable. */
+extern const unsigned short connections[N_CONNECTIONS];
 
-/* What an implicit step needs (implicit.c); in the heap, as it grows with the system. */
+/* Work arrays of an implicit step (implicit.c); on the heap, because their size grows with the system. */
 typedef struct {
-    double at[2][FIRST_PARAMETER]; /* values at the middle and at the end of a step */
-    double seed[N_INPUTS + N_STATES], change[N_OUTPUTS];
-    double tangents[N_BODIES][N_STATES]; /* of accelerations by places and speeds */
-    bool tangents_known;
-    double shrinks; /* by which a correction of Newton's method was smaller than the one before */
-    double matrix[N_STATES][N_STATES], rest[N_STATES]; /* of Newton's method */
+    double stage_values[2][FIRST_PARAMETER]; /* values of the system at middle and end of a step */
+    double seed[N_INPUTS + N_STATES], sensitivity[N_OUTPUTS];
+    double acceleration_tangents[N_BODIES][N_STATES]; /* derivatives with respect to positions and speeds */
+    bool tangents_are_current;
+    double correction_ratio; /* size of the last correction of Newton's method over the one before */
+    double matrix[N_STATES][N_STATES], residual[N_STATES]; /* linear system of Newton's method */
     unsigned short pivot[N_STATES];
-    double scale[N_BODIES]; /* of the speeds */
-    double tolerance;       /* of them, relative */
-    double states[4][N_STATES + N_BODIES];
-    double accelerations[2 * N_BODIES], known[2 * N_BODIES]; /* at the middle and the end of a step */
-    double memory[4][N_MEMORY + 1];
-    double times[N_EVENTS + 1];
-    size_t worst; /* number of the acceleration that Newton's method changed most */
-    Text why;     /* of the last evaluation, if it was refused */
-} Work;
+    double speed_scale[N_BODIES];          /* speed that the tolerance refers to [m/s, rad/s] */
+    double tolerance;                      /* relative tolerance of the speeds */
+    double states[4][N_STATES + N_BODIES]; /* positions, speeds and accelerations at the ends of steps */
+    double accelerations[2 * N_BODIES], whole_step_accelerations[2 * N_BODIES]; /* at middle and end of a step */
+    double history[4][N_HISTORY + 1];
+    double times[N_TIME_EVENTS + 1];
+    size_t largest_correction; /* index of the acceleration with the largest last correction */
+    Text refusal;              /* reason why a joint refused the last evaluation, or empty */
+} StepWork;
 
 struct Joint {
-    Joint *part[N_COMPONENTS];
-    double rows[N_ROWS];   /* values of all components, as the last evaluation left them */
-    double slopes[N_ROWS]; /* their derivatives along a seed */
-    Work work;
-    double room[]; /* of the components' own joints */
+    Joint *component[N_COMPONENTS];
+    double values[N_COMPONENT_VALUES]; /* of all components, in the last evaluation */
+    double rates[N_COMPONENT_VALUES];  /* derivatives of the values along a seed */
+    StepWork work;
+    double component_joints[]; /* memory of the components' joints */
 };
 
 #endif

@@ -3,141 +3,142 @@
 
 #include "instance.h"
 
-/* Refusals: the line says which value is wrong and what is allowed. */
+/* Errors in values: the message has name, value and allowed values. */
 
-static Status refuse(const Instance *m, const Text *why)
+static Status log_refusal(const Instance *m, const Text *reason)
 {
-    instance_report(m, ERROR, LOG_ERRORS, why->line);
+    instance_log(m, ERROR, LOG_ERRORS, reason->line);
     return ERROR;
 }
 
-static bool inside(const Variable *v, double value)
+/* Whether a variable has an allowed value. */
+static bool is_inside(const Variable *v, double value)
 {
     if (value > v->low && value < v->high)
         return true;
     return isfinite(value) && ((value == v->low && !v->low_open) || (value == v->high && !v->high_open));
 }
 
-static void add_outside(Text *text, const Variable *v, double value, int digits)
+static void append_outside_interval(Text *text, const Variable *v, double value, int digits)
 {
-    text_quantity(text, v->name, value, digits, v->unit);
-    text_print(text, " is outside %s: %s", v->interval, v->doc);
+    text_append_quantity(text, v->name, value, digits, v->unit);
+    text_append_format(text, " is outside %s: %s", v->interval, v->doc);
 }
 
 /* Parameters and tables */
 
-static void check_parameter(Text *why, const Variable *v, double value)
+static void check_parameter(Text *reason, const Variable *v, double value)
 {
-    const bool in = inside(v, value);
-    if (in && !(v->whole && value != floor(value)))
+    const bool is_in_interval = is_inside(v, value);
+    if (is_in_interval && !(v->is_integer && value != floor(value)))
         return;
-    if (why->length)
-        text_add(why, "; ");
-    if (in) {
-        text_quantity(why, v->name, value, 6, v->unit);
-        text_add(why, " is not a whole number, allowed are 1, 2, 3, ...");
+    if (reason->length)
+        text_append(reason, "; ");
+    if (is_in_interval) {
+        text_append_quantity(reason, v->name, value, 6, v->unit);
+        text_append(reason, " is not a whole number, allowed are 1, 2, 3, ...");
     } else {
-        add_outside(why, v, value, 10);
+        append_outside_interval(reason, v, value, 10);
     }
 }
 
-/* Make the tables those of the present parameters. */
-static bool tabulate(Instance *m)
+/* Check the parameters and compute the tables, if the parameters have changed. */
+static bool update_tables(Instance *m)
 {
-    const double *parameters = m->now.values + FIRST_PARAMETER;
-    if (m->tables_right && memcmp(m->tabulated, parameters, sizeof m->tabulated) == 0) {
+    const double *parameters = m->state.values + FIRST_PARAMETER;
+    if (m->tables_are_valid && memcmp(m->tabulated_parameters, parameters, sizeof m->tabulated_parameters) == 0) {
         m->parameters_changed = false;
         return true;
     }
-    Text why = {0};
+    Text reason = {0};
     for (size_t i = 0; i < N_PARAMETERS; i++)
-        check_parameter(&why, &variables[FIRST_PARAMETER + i], parameters[i]);
-    const bool again = m->tables_right, allowed = why.length == 0;
-    if (allowed)
-        m->tables_right = joint_tabulate(m->joint, parameters, &why);
-    if (!allowed || !m->tables_right)
-        return refuse(m, &why) == OK;
-    memcpy(m->tabulated, parameters, sizeof m->tabulated);
+        check_parameter(&reason, &variables[FIRST_PARAMETER + i], parameters[i]);
+    const bool had_tables = m->tables_are_valid, are_allowed = reason.length == 0;
+    if (are_allowed)
+        m->tables_are_valid = joint_tabulate(m->joint, parameters, &reason);
+    if (!are_allowed || !m->tables_are_valid)
+        return log_refusal(m, &reason) == OK;
+    memcpy(m->tabulated_parameters, parameters, sizeof m->tabulated_parameters);
     m->parameters_changed = false;
-    if (again)
-        instance_report(m, OK, LOG_EVENTS, "tables evaluated again for changed parameters");
+    if (had_tables)
+        instance_log(m, OK, LOG_EVENTS, "tables evaluated again for changed parameters");
     return true;
 }
 
 /* Outputs */
 
-static Status refuse_input(const Instance *m, size_t i)
+static Status log_input_refusal(const Instance *m, size_t i)
 {
-    Text why;
-    text_clear(&why);
-    add_outside(&why, &variables[FIRST_INPUT + i], m->now.values[FIRST_INPUT + i], 6);
-    return refuse(m, &why);
+    Text reason;
+    text_clear(&reason);
+    append_outside_interval(&reason, &variables[FIRST_INPUT + i], m->state.values[FIRST_INPUT + i], 6);
+    return log_refusal(m, &reason);
 }
 
-static Status refuse_outputs(const Instance *m)
+static Status log_output_refusal(const Instance *m)
 {
-    Text why;
-    text_clear(&why);
-    const char *between = "";
-    size_t bad = 0;
-    while (isfinite(m->now.values[FIRST_OUTPUT + bad]))
-        bad++;
+    Text reason;
+    text_clear(&reason);
+    const char *separator = "";
+    size_t first_infinite = 0;
+    while (isfinite(m->state.values[FIRST_OUTPUT + first_infinite]))
+        first_infinite++;
     for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
-        if (m->now.values[i] != 0.0) {
-            text_add(&why, between);
-            text_quantity(&why, variables[i].name, m->now.values[i], 6, variables[i].unit);
-            between = ", ";
+        if (m->state.values[i] != 0.0) {
+            text_append(&reason, separator);
+            text_append_quantity(&reason, variables[i].name, m->state.values[i], 6, variables[i].unit);
+            separator = ", ";
         }
-    text_print(&why, ": too large, %s is not finite", variables[FIRST_OUTPUT + bad].name);
-    return refuse(m, &why);
+    text_append_format(&reason, ": too large, %s is not finite", variables[FIRST_OUTPUT + first_infinite].name);
+    return log_refusal(m, &reason);
 }
 
-static void warn(Instance *m, unsigned outside)
+static void log_warnings(Instance *m, unsigned warning_bits)
 {
-    const double *values = m->now.values;
-    for (unsigned bit = 1; bit && bit <= outside; bit <<= 1)
-        if (outside & bit) {
+    const double *values = m->state.values;
+    for (unsigned bit = 1; bit && bit <= warning_bits; bit <<= 1)
+        if (warning_bits & bit) {
             Text text = {0};
-            joint_warning(m->joint, values + FIRST_INPUT, values + FIRST_OUTPUT, bit, &text);
-            instance_report(m, WARNING, LOG_WARNINGS, text.line);
+            joint_describe_warning(m->joint, values + FIRST_INPUT, values + FIRST_OUTPUT, bit, &text);
+            instance_log(m, WARNING, LOG_WARNINGS, text.line);
         }
-    m->now.warned |= outside;
+    m->state.reported_warnings |= warning_bits;
 }
 
 Status instance_evaluate(Instance *m)
 {
-    if (!m->dirty)
+    if (!m->outputs_outdated)
         return OK;
-    if (m->parameters_changed && !tabulate(m))
+    if (m->parameters_changed && !update_tables(m))
         return ERROR;
-    const double *inputs = m->now.values + FIRST_INPUT;
-    double *outputs = m->now.values + FIRST_OUTPUT;
+    const double *inputs = m->state.values + FIRST_INPUT;
+    double *outputs = m->state.values + FIRST_OUTPUT;
     for (size_t i = 0; i < N_INPUTS; i++)
-        if (!inside(&variables[FIRST_INPUT + i], inputs[i]))
-            return refuse_input(m, i);
-    Text why;
-    text_clear(&why);
-    if (!joint_evaluate(m->joint, inputs, memory_of(m), m->tried, outputs, &why))
-        return refuse(m, &why);
-    bool finite = true;
+        if (!is_inside(&variables[FIRST_INPUT + i], inputs[i]))
+            return log_input_refusal(m, i);
+    Text reason;
+    text_clear(&reason);
+    if (!joint_evaluate(m->joint, inputs, path_start_history(m), m->trial_history, outputs, &reason))
+        return log_refusal(m, &reason);
+    bool all_finite = true;
     for (size_t i = 0; i < N_OUTPUTS; i++)
-        finite &= fabs(outputs[i]) < INFINITY;
-    if (!finite)
-        return refuse_outputs(m);
-    const unsigned outside = joint_outside(m->joint, inputs, outputs) & ~m->now.warned;
-    if (outside)
-        warn(m, outside);
-    m->dirty = false;
+        all_finite &= fabs(outputs[i]) < INFINITY;
+    if (!all_finite)
+        return log_output_refusal(m);
+    const unsigned warning_bits = joint_find_warnings(m->joint, inputs, outputs) & ~m->state.reported_warnings;
+    if (warning_bits)
+        log_warnings(m, warning_bits);
+    m->outputs_outdated = false;
     return OK;
 }
 
-void memory_accept(Instance *m)
+void path_accept_inputs(Instance *m)
 {
-    Path *path = &m->now.path;
-    if (!N_MEMORY || memory_of(m) != path->memory[path->last])
-        return; /* they are accepted already */
-    path->last = 1u - path->last;
-    memcpy(path->memory[path->last], m->tried, sizeof m->tried);
-    memcpy(path->knowns, m->now.values + FIRST_KNOWN, sizeof path->knowns);
-    path->accepted = 1;
+    AcceptedPath *path = &m->state.path;
+    if (!N_HISTORY || path_start_history(m) != path->history[path->end_index])
+        return; /* the present inputs are the accepted ones */
+    path->end_index = 1u - path->end_index;
+    memcpy(path->history[path->end_index], m->trial_history, sizeof m->trial_history);
+    memcpy(path->variables, m->state.values + FIRST_PATH_VARIABLE, sizeof path->variables);
+    path->has_accepted_inputs = 1;
 }

@@ -1,7 +1,7 @@
-/* An instance of the FMU, the same for FMI 2 and FMI 3: values, modes, checks, steps, states and messages.
+/* Instance of the FMU, common to FMI 2 and FMI 3: values, modes, checks, steps, FMU states and log messages.
  *
- * Every function that takes `function` reports under that name of the FMI function that was called, and
- * an instance that is NULL is an error. Arrays may be NULL only if they have no elements. */
+ * `function` is the name of the FMI function that the host called; error messages begin with it. `m` is the instance; a
+ * NULL instance is an error. An array may be NULL only if it has no elements. */
 #ifndef JOINTFMU_INSTANCE_H
 #define JOINTFMU_INSTANCE_H
 
@@ -16,7 +16,7 @@
 /* The numbers are those of fmi2Status and fmi3Status. */
 typedef enum { OK, WARNING, DISCARD, ERROR } Status;
 
-/* Modes of an instance, and the two kinds of instances; a set of them says where a function is allowed. */
+/* Modes of an instance and the two interface types of FMI, one bit each. A set of them says where a call is allowed. */
 enum {
     INSTANTIATED = 1u << 0,
     CONFIGURATION = 1u << 1,
@@ -29,200 +29,204 @@ enum {
     MODEL_EXCHANGE = 1u << 8,
     CO_SIMULATION = 1u << 9,
 
-    BOTH = MODEL_EXCHANGE | CO_SIMULATION,
+    BOTH_INTERFACES = MODEL_EXCHANGE | CO_SIMULATION,
     ANY_MODE = TERMINATED | (TERMINATED - 1u),
     READABLE = INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP | TERMINATED,
     STATES_SETTABLE = INSTANTIATED | CONFIGURATION | INITIALIZATION | EVENT | CONTINUOUS_TIME,
     SETTABLE = STATES_SETTABLE | STEP | RECONFIGURATION
 };
 
-/* Categories of messages. */
+/* Log categories, one bit each. */
 enum { LOG_ERRORS = 1u << 0, LOG_WARNINGS = 1u << 1, LOG_EVENTS = 1u << 2 };
 
-/* How messages reach the host. */
-typedef struct Reporter Reporter;
-struct Reporter {
-    void (*deliver)(const Reporter *to, const char *name, Status status, const char *category,
-                    const char *line);
-    void (*callback)(void); /* the host's function, of the type that `deliver` knows */
-    void *environment;
+/* Logger of the host: its callback, and the function that calls it with the signature of its FMI version. */
+typedef struct Logger Logger;
+struct Logger {
+    void (*log_message)(const Logger *logger, const char *name, Status status, const char *category, const char *line);
+    void (*callback)(void); /* the host's function, of the type that `log_message` knows */
+    void *environment;      /* of the host, passed to the callback */
 };
 
-/* What a joint with memory went through. */
+/* Last accepted load step of a joint with history: history variables at its start and end, arguments at its end. */
 typedef struct {
-    double memory[2][N_MEMORY + 1]; /* before and after the way to the accepted inputs; one more, for C */
-    double knowns[N_PATH];          /* accepted: values from FIRST_KNOWN on */
-    unsigned last;                  /* 1: memory[1] is the one after, else memory[0] */
-    unsigned accepted;              /* 0: no inputs are, and memory[last] is the only one */
-} Path;
+    double history[2][N_HISTORY + 1];   /* [end_index] at the end, the other one at the start; C has no empty arrays */
+    double variables[N_PATH_VARIABLES]; /* values from FIRST_PATH_VARIABLE on, at the end */
+    unsigned end_index;                 /* 0 or 1 */
+    unsigned has_accepted_inputs;       /* 0: the next load step starts at history[end_index], at any inputs */
+} AcceptedPath;
 
-/* All that a host can save and restore; outputs and tables follow from it. */
+/* FMU state that a host can save and restore; outputs and tables follow from it. */
 typedef struct {
-    double values[N_VALUES]; /* by value reference; [0] is the time */
-    double slopes[N_INPUTS]; /* derivatives of the inputs in the next step (FMI 2) */
-    double start, stop;      /* times; stop is infinite where the host defines none */
-    double tolerance;        /* relative, of the host; 0: it states none */
-    double last_inputs[N_INPUTS], last_rate, last_size; /* of the last step, if there are states */
-    unsigned kind, mode;
-    unsigned warned; /* bits of joint_outside that were reported */
-    unsigned logs;   /* categories that are delivered */
-    Status last_step;
-    Path path;
-} State;
+    double values[N_VALUES];            /* by value reference; [0] is the time */
+    double input_derivatives[N_INPUTS]; /* time derivatives of the inputs in the next step (FMI 2) */
+    double start_time, stop_time;       /* [s]; the stop time is infinite if the host defines none */
+    double tolerance;                   /* relative, set by the host; 0: not set */
+    double previous_inputs[N_INPUTS], previous_acceleration,
+        previous_step_size; /* of the last step, with states only */
+    unsigned interface_type, mode;
+    unsigned reported_warnings; /* bits of `joint_find_warnings` that were logged */
+    unsigned log_categories;    /* categories that the host wants */
+    Status last_step_status;
+    AcceptedPath path;
+} InstanceState;
 
 typedef struct {
-    State now;
-    State kept;              /* to go back to where a step is refused; one that is read from bytes */
-    double tried[N_MEMORY + 1]; /* memory after the way of the last evaluation */
-    double tabulated[N_PARAMETERS]; /* parameters of the tables */
-    double seed[N_INPUTS + N_STATES], change[N_OUTPUTS]; /* of a derivative */
+    InstanceState state;
+    InstanceState backup;                /* state before a step, restored if the step fails; also read from bytes */
+    double trial_history[N_HISTORY + 1]; /* history variables at the end of the last evaluation */
+    double tabulated_parameters[N_PARAMETERS];                /* parameters for which the tables hold */
+    double seed[N_INPUTS + N_STATES], sensitivity[N_OUTPUTS]; /* of a directional derivative */
     Joint *joint;
-    bool dirty;              /* outputs are not those of the present inputs and parameters */
-    bool parameters_changed; /* perhaps: a parameter was set since the last evaluation */
-    bool tables_right;       /* the tables are those of `tabulated` */
+    bool outputs_outdated;   /* an input, state or parameter changed since the last evaluation */
+    bool parameters_changed; /* a parameter was set since the last evaluation, perhaps to the same value */
+    bool tables_are_valid;   /* the tables are those of `tabulated_parameters` */
     bool logging_on;         /* as at instantiation */
-    unsigned version;        /* of FMI: 2 or 3 */
-    Reporter reporter;
+    unsigned fmi_version;    /* 2 or 3 */
+    Logger logger;
     char name[];
 } Instance;
 
-/* Life: instance.c */
+/* Life cycle: instance.c */
 
-/* NULL with a message if the host's name or token is wrong. */
-Instance *instance_new(const char *function, unsigned version, unsigned kind, const char *name,
-                       const char *token, bool logging_on, Reporter reporter);
-/* Say why there is no new instance, and give NULL. */
-Instance *instance_not_made(const char *function, const char *name, Reporter reporter, const char *what);
+/* NULL, with a message, if the host's instance name or token is wrong. */
+Instance *instance_create(const char *function, unsigned fmi_version, unsigned interface_type, const char *name,
+                          const char *token, bool logging_on, Logger logger);
+/* Log why no instance was created; returns NULL. */
+Instance *instance_refuse_creation(const char *function, const char *name, Logger logger, const char *problem);
 void instance_free(Instance *m);
-/* Back to the state after instantiation, where that is allowed and without asking. */
-Status instance_restart(Instance *m, const char *function);
+/* Set the state after instantiation: checks the mode first, or does not. */
+Status instance_reset_if_allowed(Instance *m, const char *function);
 void instance_reset(Instance *m);
-/* Whether an instance of a kind and an FMI version can be in `mode`, which is exactly one. */
-bool instance_can_be_in(unsigned kind, unsigned version, unsigned mode);
-/* Change the mode. */
-void instance_enter(Instance *m, unsigned mode);
-/* The same for the functions that do no more, where they are allowed. */
-Status instance_change(Instance *m, const char *function, unsigned where, unsigned mode);
+/* Whether `mode` is a single mode that an interface type has in an FMI version. */
+bool instance_mode_is_possible(unsigned interface_type, unsigned fmi_version, unsigned mode);
+void instance_set_mode(Instance *m, unsigned mode);
+/* Set the mode if the present one is among the allowed ones. */
+Status instance_enter_mode(Instance *m, const char *function, unsigned allowed_modes, unsigned mode);
 Status instance_set_time(Instance *m, const char *function, double time);
-/* Set tolerance (0: none is stated) and times of the experiment, before initialization. */
-Status instance_set_experiment(Instance *m, const char *function, double tolerance, double start,
-                               bool stop_defined, double stop);
-Status instance_select_logs(Instance *m, const char *function, bool on, size_t n,
-                            const char *const categories[]);
-void instance_report(const Instance *m, Status status, unsigned category, const char *line);
-/* Report "FUNCTION: what happened; what was expected" and give ERROR; a format of text_print. */
-Status instance_refuse(const Instance *m, const char *function, const char *format, ...);
+/* Set the tolerance (0: not given) and the times of the experiment, before initialization. */
+Status instance_set_experiment(Instance *m, const char *function, double tolerance, double start, bool stop_defined,
+                               double stop);
+Status instance_set_log_categories(Instance *m, const char *function, bool on, size_t n,
+                                   const char *const categories[]);
+void instance_log(const Instance *m, Status status, unsigned category, const char *line);
+/* Log the error "FUNCTION: what happened; what was expected", formatted by `text_append_format`; returns ERROR. */
+Status instance_log_error(const Instance *m, const char *function, const char *format, ...);
 
-/* Checks; each reports what is wrong and gives false. */
-bool instance_forbids(const Instance *m, const char *function, unsigned where);
-static inline bool instance_allows(const Instance *m, const char *function, unsigned where)
+/* Checks of calls: each logs what is wrong and returns false. */
+
+/* Error message of `instance_check_mode`; returns false. */
+bool instance_report_wrong_mode(const Instance *m, const char *function, unsigned allowed_modes);
+static inline bool instance_check_mode(const Instance *m, const char *function, unsigned allowed_modes)
 {
-    return (m && (m->now.mode & where) && (m->now.kind & where)) || instance_forbids(m, function, where);
+    return (m && (m->state.mode & allowed_modes) && (m->state.interface_type & allowed_modes)) ||
+           instance_report_wrong_mode(m, function, allowed_modes);
 }
-static inline bool instance_has(const Instance *m, const char *function, const char *what,
-                                const void *pointer)
+static inline bool instance_check_pointer(const Instance *m, const char *function, const char *name,
+                                          const void *pointer)
 {
-    return pointer || instance_refuse(m, function, "%s is NULL; expected a pointer", what) == OK;
+    return pointer || instance_log_error(m, function, "%s is NULL; expected a pointer", name) == OK;
 }
-static inline bool instance_counts(const Instance *m, const char *function, const char *what, size_t given,
-                                   size_t expected)
+static inline bool instance_check_count(const Instance *m, const char *function, const char *name, size_t count,
+                                        size_t expected)
 {
-    return given == expected || instance_refuse(m, function, "%zu %s; expected %zu", given, what, expected) == OK;
+    return count == expected || instance_log_error(m, function, "%zu %s; expected %zu", count, name, expected) == OK;
 }
 
-/* Values as hosts set and read them: values.c */
+/* Get and set variables: values.c */
 
-Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                    const double values[]);
-Status instance_get(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[]);
-/* Booleans: int in FMI 2, bool in FMI 3. */
-Status instance_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                             const void *values);
+Status instance_set_values(Instance *m, const char *function, const uint32_t refs[], size_t n, const double values[]);
+Status instance_get_values(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[]);
+/* Values of Boolean variables: an array of int in FMI 2, of bool in FMI 3. */
+Status instance_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n, const void *values);
 Status instance_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n, void *values);
-/* Give a parameter a value. */
-void instance_put(Instance *m, uint32_t ref, double value);
-/* What this FMU has none of: right with n = 0 only. */
-#define NO_SUCH_TYPE "variables of a type that this FMU does not have"
-Status instance_none(const Instance *m, const char *function, unsigned where, const char *what, size_t n);
-Status instance_set_slopes(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                           const int32_t orders[], const double values[]);
-/* Derivative of outputs `unknowns` along `seed` in inputs `knowns`. */
-Status instance_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
-                           const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
-/* Its transpose: derivative of the sum of seed[i] * unknowns[i] by each of `knowns`. */
-Status instance_adjoint(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
-                        const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
+/* Set a parameter; if it changes, the next load step starts at the accepted inputs. */
+void instance_set_parameter(Instance *m, uint32_t ref, double value);
+/* Access to something that this FMU does not have: an error unless n = 0. `name` is its name in the message. */
+#define UNSUPPORTED_TYPE "variables of a type that this FMU does not have"
+Status instance_check_empty(const Instance *m, const char *function, unsigned allowed_modes, const char *name,
+                            size_t n);
+Status instance_set_input_derivatives(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                                      const int32_t orders[], const double values[]);
+/* Directional derivative of the outputs `unknowns` along `seed`, given for the inputs and states `knowns`. */
+Status instance_directional_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
+                                       const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
+/* Adjoint derivative: of the sum of seed[i] * unknowns[i], with respect to each of `knowns`. */
+Status instance_adjoint_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
+                                   const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
 
-/* Outputs, tables for their parameters, the path: evaluate.c */
+/* Outputs, tables and the accepted path: evaluate.c */
 
-/* Make the outputs right for the present inputs and parameters; reports a refusal and gives ERROR. */
+/* Evaluate tables and outputs if they are outdated; logs an error and returns ERROR if the joint refuses. */
 Status instance_evaluate(Instance *m);
 
-/* A joint whose outputs depend on the path of its inputs has a memory; N_MEMORY is 0 for all others.
+/* Joints with history variables (N_HISTORY > 0): their outputs depend on the path of the inputs.
  *
- * Inputs may be tried at will: outputs are functions of them and of the path up to the inputs that were
- * accepted last. Accepted are those at the end of initialization, of a step, of an integrator step, of an
- * event, and the path goes straight from one to the next. At accepted inputs the outputs stay those of the way
- * that led there, until others are accepted; joint_derivative may go on from there. */
+ * The path consists of straight load steps between accepted inputs. Inputs are accepted at the end of initialization,
+ * of a communication step, of an integrator step and of an event. Between them the host may try any inputs: outputs
+ * are functions of the present inputs and of the path up to the inputs accepted last. At the accepted inputs
+ * themselves, the outputs remain those at the end of the load step to them until other inputs are accepted;
+ * derivatives may be those of a further motion from there. */
 
 /* Whether the present inputs are the accepted ones. */
-static inline bool memory_rests(const Instance *m)
+static inline bool path_inputs_are_accepted(const Instance *m)
 {
-    const Path *path = &m->now.path;
-    bool rests = N_MEMORY && path->accepted;
-    for (size_t i = 0; i < N_PATH && rests; i++)
-        rests = m->now.values[FIRST_KNOWN + i] == path->knowns[i];
-    return rests;
+    const AcceptedPath *path = &m->state.path;
+    bool is_equal = N_HISTORY && path->has_accepted_inputs;
+    for (size_t i = 0; i < N_PATH_VARIABLES && is_equal; i++)
+        is_equal = m->state.values[FIRST_PATH_VARIABLE + i] == path->variables[i];
+    return is_equal;
 }
 
-/* The memory from which the path goes on to the present inputs. */
-static inline const double *memory_of(const Instance *m)
+/* History variables at the start of the load step to the present inputs. */
+static inline const double *path_start_history(const Instance *m)
 {
-    const Path *path = &m->now.path;
-    return path->memory[memory_rests(m) ? 1u - path->last : path->last];
+    const AcceptedPath *path = &m->state.path;
+    return path->history[path_inputs_are_accepted(m) ? 1u - path->end_index : path->end_index];
 }
 
-/* The memory at the present inputs, if they are accepted; else NULL. */
-static inline const double *memory_after(const Instance *m)
+/* History variables at the present inputs if these are accepted; else NULL. */
+static inline const double *path_end_history(const Instance *m)
 {
-    return memory_rests(m) ? m->now.path.memory[m->now.path.last] : NULL;
+    return path_inputs_are_accepted(m) ? m->state.path.history[m->state.path.end_index] : NULL;
 }
 
 /* Accept the inputs of the last evaluation. */
-void memory_accept(Instance *m);
-/* Let the path begin at the accepted inputs: what changes from now on does not change the way that led there. */
-static inline void memory_settle(Instance *m)
+void path_accept_inputs(Instance *m);
+/* Start the next load step at the accepted inputs, even if it leads to the same inputs: a change of parameters does not
+ * repeat the load step before. */
+static inline void path_restart(Instance *m)
 {
-    m->now.path.accepted = 0;
+    m->state.path.has_accepted_inputs = 0;
 }
 
 /* Initialization and steps of co-simulation: step.c */
 
-/* Check parameters and inputs and leave initialization mode. */
+/* Check parameters and inputs, accept the inputs and leave initialization mode. */
 Status instance_initialize(Instance *m, const char *function);
-/* Evaluate, and accept the inputs: the path of a joint with memory goes on from them. */
-Status instance_accept(Instance *m);
-/* The same in an event, with parameters that were changed in it; and the time of the next one, if there is any. */
-Status instance_update_event(Instance *m, bool *defined, double *next);
-Status instance_step(Instance *m, const char *function, double time, double size);
+/* Evaluate the outputs and accept the inputs. */
+Status instance_accept_inputs(Instance *m);
+/* Accept the inputs at an event, where parameters may have changed; find the time of the next event, if there is
+ * one. */
+Status instance_update_discrete_states(Instance *m, bool *next_defined, double *next_time);
+Status instance_do_step(Instance *m, const char *function, double time, double size);
 
-/* Continuous states: continuous.c; of a system implicit.c has the first */
+/* Continuous states: continuous.c. Systems have their own `instance_integrate`, in implicit.c. */
 
-/* Move the states over a step of co-simulation, from a state that is accepted; outputs are to be evaluated after
- * it. A refusal is reported and may leave anything: the caller goes back. */
-Status instance_advance(Instance *m, double size);
-Status instance_set_states(Instance *m, const char *function, const double x[], size_t n);
-Status instance_get_states(Instance *m, const char *function, double x[], size_t n);
-Status instance_get_rates(Instance *m, const char *function, double x[], size_t n);
-Status instance_get_nominals(Instance *m, const char *function, unsigned where, double x[], size_t n);
+/* Integrate the states over a communication step, from accepted inputs. The outputs are outdated after it. On ERROR,
+ * which is logged, the state of the instance is undefined: the caller restores it. */
+Status instance_integrate(Instance *m, double size);
+Status instance_set_continuous_states(Instance *m, const char *function, const double x[], size_t n);
+Status instance_get_continuous_states(Instance *m, const char *function, double x[], size_t n);
+Status instance_get_state_derivatives(Instance *m, const char *function, double x[], size_t n);
+Status instance_get_nominals(Instance *m, const char *function, unsigned allowed_modes, double x[], size_t n);
 
-/* States of the FMU outside of an instance, and as bytes: snapshot.c */
+/* FMU states of the host, and their serialization: snapshot.c */
 
 Status state_save(const Instance *m, const char *function, void **saved);
 Status state_restore(Instance *m, const char *function, const void *saved);
 Status state_free(const Instance *m, const char *function, void **saved);
-Status state_size(const Instance *m, const char *function, const void *saved, size_t *size);
-Status state_write(const Instance *m, const char *function, const void *saved, void *bytes, size_t size);
-Status state_read(Instance *m, const char *function, const void *bytes, size_t size, void **saved);
+Status state_serialized_size(const Instance *m, const char *function, const void *saved, size_t *size);
+Status state_serialize(const Instance *m, const char *function, const void *saved, void *bytes, size_t size);
+Status state_deserialize(Instance *m, const char *function, const void *bytes, size_t size, void **saved);
 
 #endif

@@ -1,9 +1,9 @@
-/* What a joint gives to the FMI layers. It has no state beside its tables, and what it keeps to be found sooner:
- * equal parameters, inputs and memory give equal outputs. Arrays are in the order of the variable list.
+/* Functions of a joint that the FMI layers call. A joint has no state except its tables, and results kept for speed:
+ * equal parameters, inputs and history variables give equal outputs. Arrays are in the order of the variables.
  *
- * The memory of a joint are N_MEMORY numbers, all zero where nothing moved yet; it lies in the instance
- * (memory.h), which says when a path is gone. A joint without memory looks at none, one
- * without events defines no joint_events. */
+ * The N_HISTORY history variables are in the instance (instance.h), which also decides which inputs are accepted. They
+ * are zero in the virgin state. A joint without history ignores these arguments; one without time events does not
+ * define `joint_event_times`. */
 #ifndef JOINTFMU_JOINT_H
 #define JOINTFMU_JOINT_H
 
@@ -14,30 +14,31 @@
 
 typedef struct Joint Joint;
 
-/* Size of a Joint [bytes]; it is zeroed memory before the first call of joint_tabulate. */
+/* Size of a Joint [bytes]; its memory is zero before the first call of `joint_tabulate`. */
 size_t joint_size(void);
 
-/* Evaluate the law for these parameters (each inside its own interval) into the tables.
- * false: refused, `why` names the thing, the value and what is allowed. */
-bool joint_tabulate(Joint *joint, const double *parameters, Text *why);
+/* Compute the tables for parameters, each of which is inside its own interval.
+ * false: refused; `reason` has name, value and allowed values. */
+bool joint_tabulate(Joint *joint, const double *parameters, Text *reason);
 
-/* Outputs at the end of the straight path from a memory to inputs that are finite and inside their intervals, and
- * the memory there. false: refused, with the reason. */
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
-                    Text *why);
+/* Outputs, and history variables `history_end`, at the end of a straight load step from the history variables
+ * `history` to inputs that are finite and inside their intervals. false: refused, with the reason. */
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
+                    Text *reason);
 
-/* Exact derivative of the outputs along `seed`, at the inputs and with the memory of the last joint_evaluate; at a
- * corner the mean of both sides. Where the inputs are accepted `after` is the memory that it gave, else NULL. */
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+/* Exact derivative of the outputs along `seed`, at the inputs and history of the last `joint_evaluate`; at a corner the
+ * mean of both sides. `history_end`: that of the last evaluation if its inputs are accepted, so that a further motion
+ * may start from it; else NULL. */
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result);
 
-/* Ways in which the last evaluated state lies outside the tables, a bit each; 0 inside. */
-unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs);
+/* Validity limits that the last evaluation exceeds, one bit each; 0: none. */
+unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *outputs);
 
-/* The warning of one such bit (1, 2, 4, ...). */
-void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text);
+/* Text of the warning of one such bit (1, 2, 4, ...). */
+void joint_describe_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text);
 
-/* The N_EVENTS times [s] at which the outputs' course over time has a corner, in any order. */
-void joint_events(Joint *joint, double *times);
+/* The N_TIME_EVENTS times [s] at which the outputs over time have a corner, in any order. */
+void joint_event_times(Joint *joint, double *times);
 
 #endif

@@ -1,4 +1,4 @@
-/* One line of text, built from pieces without allocation and independent of the locale. */
+/* One line of text, assembled without allocation and independent of the locale. */
 #ifndef JOINTFMU_TEXT_H
 #define JOINTFMU_TEXT_H
 
@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 typedef struct {
-    char line[768]; /* zero-terminated; what does not fit is left out */
+    char line[768]; /* zero-terminated; text that does not fit is dropped */
     size_t length;
 } Text;
 
@@ -15,14 +15,14 @@ static inline void text_clear(Text *text)
     text->line[0] = '\0';
     text->length = 0;
 }
-void text_add(Text *text, const char *piece);
-/* A number with so many significant digits, as "%.{digits}g" prints it in the C locale. */
-void text_number(Text *text, double value, int digits);
-/* Pieces as printf has them: %s, %zu, %g and %.3g, and %q for a string of the host in quotation marks: its first
- * 80 bytes, what is not printable ASCII as '?'. */
-void text_print(Text *text, const char *format, ...);
-void text_print_list(Text *text, const char *format, va_list values);
-/* "NAME = VALUE UNIT" */
-void text_quantity(Text *text, const char *name, double value, int digits, const char *unit);
+void text_append(Text *text, const char *piece);
+/* Append a number with `digits` significant digits, as "%.{digits}g" prints it in the C locale. */
+void text_append_number(Text *text, double value, int digits);
+/* Append formatted text, as printf: %s, %zu, %g and %.3g; and %q for a string of the host in quotation marks: its first
+ * 80 bytes, with '?' for a byte that is not printable ASCII. */
+void text_append_format(Text *text, const char *format, ...);
+void text_append_format_list(Text *text, const char *format, va_list values);
+/* Append "NAME = VALUE UNIT". */
+void text_append_quantity(Text *text, const char *name, double value, int digits, const char *unit);
 
 #endif

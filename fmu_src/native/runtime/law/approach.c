@@ -1,127 +1,138 @@
-/* Repeats `approach_curve` of the package: the table for every parameter set; the laws in it are generated. */
+/* Repeats `tabulate_approach` in curve.py of the package, for one parameter set; the functions of the law are
+ * generated. */
 #include "approach.h"
 
 #include <math.h>
 #include <string.h>
 
-_Static_assert(N_LAW_TABLE == 4, "load and normal stiffness with slopes");
+_Static_assert(N_LAW_TOTALS == 4, "load and normal stiffness with slopes");
 _Static_assert(CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
-enum { STATE_ROWS = 3 * N_LAW_STATE + 1 }; /* state, its slopes, theirs, F'' - m F' */
+enum {
+    LAW_STATE_RESULTS = 3 * N_LAW_STATE + 1
+}; /* law state, its first and second derivatives with respect to u, F'' - m F' */
 
-/* A node of the table: the curve and the state beside. */
+/* Node of the table: pressure and law state over the approach. */
 typedef struct {
-    Node curve, state[APPROACH_STATES];
-} Point;
+    Node curve, state[LAW_STATE_SIZE];
+} TableNode;
 
-/* How the contact closes: from separation to the node at zero approach, so that the approach does not start
- * at minus infinity. */
-static bool close(Approach *approach, Curve *curve, const Point *end)
+/* Add the closing of the contact, from first contact to the node at zero approach, see `closing_pressure` in curve.py:
+ * without it the approach would start at minus infinity. The law state is constant there. */
+static bool tabulate_closing(ApproachTable *approach, Curve *curve, const TableNode *end)
 {
     for (int i = 0; i <= CLOSING_STEPS; i++) {
-        const double at[4] = {end->curve.y, end->curve.s, end->curve.bend, (double)i / (double)CLOSING_STEPS};
+        const double arguments[4] = {end->curve.y, end->curve.stiffness, end->curve.stiffness_slope,
+                                     (double)i / (double)CLOSING_STEPS};
         double y[4];
-        closing(at, NULL, y);
-        const Node node = {.x = y[0], .y = y[1], .s = y[2], .bend = y[3]};
+        closing_pressure(arguments, NULL, y);
+        const Node node = {.x = y[0], .y = y[1], .stiffness = y[2], .stiffness_slope = y[3]};
         if (i == 0)
-            curve_piece(curve, node);
-        else if (!curve_add(curve, node))
+            curve_begin_piece(curve, node);
+        else if (!curve_add_node(curve, node))
             return false;
-        memset(approach->state[i], 0, sizeof approach->state[i]);
+        memset(approach->state_polynomial[i], 0, sizeof approach->state_polynomial[i]);
         for (int q = 0; q < N_LAW_STATE; q++)
-            approach->state[i][q][0] = end->state[q].y;
+            approach->state_polynomial[i][q][0] = end->state[q].y;
     }
     return true;
 }
 
-static Point point_at(const Spots *spots, const double *c, double u, double left, double right, double x)
+/* Node at the log-area u and the approach x. Derivatives are one-sided at the ends of a regime of the stiffness. */
+static TableNode table_node(const SpotDistribution *spots, const double *c, double u, double regime_start,
+                            double regime_end, double x)
 {
-    double y[N_LAW_TABLE], side[N_LAW_TABLE], law[STATE_ROWS];
-    const double inside = fmin(fmax(u, left + ONE_SIDED_OFFSET), right - ONE_SIDED_OFFSET);
-    spots_table(spots, c, u, y);
-    if (inside != u)
-        spots_table(spots, c, inside, side);
+    double y[N_LAW_TOTALS], one_sided[N_LAW_TOTALS], state[LAW_STATE_RESULTS];
+    const double one_sided_u = fmin(fmax(u, regime_start + ONE_SIDED_OFFSET), regime_end - ONE_SIDED_OFFSET);
+    spot_totals(spots, c, u, y);
+    if (one_sided_u != u)
+        spot_totals(spots, c, one_sided_u, one_sided);
     else
-        memcpy(side, y, sizeof side);
-    const double k = y[2] / spots->area, rate = side[2] / side[1]; /* du/dx */
-    Point point = {.curve = {.x = x, .y = y[0] / spots->area, .s = k, .bend = k * side[3] / side[1]}};
-    law_state[spots_regime(spots, inside)](&inside, c, law);
-    const double steepening = spots->m * side[1] + law[STATE_ROWS - 1];       /* F'' */
-    const double turn = (side[3] - side[2] * steepening / side[1]) / side[1]; /* slope of `rate` in u */
+        memcpy(one_sided, y, sizeof one_sided);
+    const double k = y[2] / spots->nominal_area, rate = one_sided[2] / one_sided[1]; /* du/dx */
+    TableNode node = {.curve = {.x = x,
+                                .y = y[0] / spots->nominal_area,
+                                .stiffness = k,
+                                .stiffness_slope = k * one_sided[3] / one_sided[1]}};
+    law_state[find_law_range(spots, one_sided_u)](&one_sided_u, c, state);
+    const double load_curvature = spots->size_exponent * one_sided[1] + state[LAW_STATE_RESULTS - 1]; /* F'' */
+    const double rate_slope = (one_sided[3] - one_sided[2] * load_curvature / one_sided[1]) /
+                              one_sided[1]; /* derivative of `rate` with respect to u */
     for (int q = 0; q < N_LAW_STATE; q++) {
-        const double slope = law[N_LAW_STATE + q], bend = law[2 * N_LAW_STATE + q];
-        point.state[q] = (Node){
+        const double slope = state[N_LAW_STATE + q], curvature = state[2 * N_LAW_STATE + q];
+        node.state[q] = (Node){
             .x = x,
-            .y = law[q] + (u - inside) * slope,
-            .s = slope * rate,
-            .bend = (bend * rate + slope * turn) * rate,
+            .y = state[q] + (u - one_sided_u) * slope,
+            .stiffness = slope * rate,
+            .stiffness_slope = (curvature * rate + slope * rate_slope) * rate,
         };
     }
-    return point;
+    return node;
 }
 
-/* Approach between two log-areas [m]. */
-static double rise(const Spots *spots, const double *c, double u, double half)
+/* Increment of the approach [m] over log-areas from u to u + 2 half, by Gauss-Legendre quadrature. */
+static double approach_increment(const SpotDistribution *spots, const double *c, double u, double half)
 {
-    double sum = 0.0, y[N_LAW_TABLE];
+    double sum = 0.0, y[N_LAW_TOTALS];
     for (int i = 0; i < N_APPROACH_GAUSS; i++) {
-        spots_table(spots, c, u + half * (1.0 + APPROACH_GAUSS[i]), y);
+        spot_totals(spots, c, u + half * (1.0 + APPROACH_GAUSS[i]), y);
         sum += APPROACH_GAUSS_WEIGHTS[i] * y[1] / y[2];
     }
     return half * sum;
 }
 
-/* One regime of the stiffness, from the approach x on, where it ends is written; false: the table is full. */
-static bool add_piece(Approach *approach, Curve *curve, const Spots *spots, const double *c, double left,
-                      double right, int steps, double *x)
+/* Add the nodes of one regime of the stiffness; x is the approach at its start, and at its end after the call.
+ * false: the table is full. */
+static bool add_piece(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c,
+                      double regime_start, double regime_end, int steps, double *x)
 {
-    const double pairs = ceil(0.5 * steps * (right - left));
+    const double pairs = ceil(0.5 * steps * (regime_end - regime_start));
     if (!(pairs < (double)CURVE_NODES))
         return false;
     const int n = 2 * (int)fmax(pairs, 1.0);
-    const double step = (right - left) / n;
-    Point from = point_at(spots, c, left, left, right, *x);
+    const double step = (regime_end - regime_start) / n;
+    TableNode from = table_node(spots, c, regime_start, regime_start, regime_end, *x);
     if (curve->n == 0) {
-        approach->closed = from.curve.y;
-        if (!close(approach, curve, &from))
+        approach->closing_end_pressure = from.curve.y;
+        if (!tabulate_closing(approach, curve, &from))
             return false;
     }
-    curve_piece(curve, from.curve);
+    curve_begin_piece(curve, from.curve);
     for (int i = 0; i < n; i++) {
-        const double u = i + 1 == n ? right : left + (i + 1) * step;
-        *x += rise(spots, c, left + i * step, 0.5 * step);
-        const Point to = point_at(spots, c, u, left, right, *x);
-        if (!curve_add(curve, to.curve))
+        const double u = i + 1 == n ? regime_end : regime_start + (i + 1) * step;
+        *x += approach_increment(spots, c, regime_start + i * step, 0.5 * step);
+        const TableNode to = table_node(spots, c, u, regime_start, regime_end, *x);
+        if (!curve_add_node(curve, to.curve))
             return false;
         for (int q = 0; q < N_LAW_STATE; q++)
-            curve_polynomial(&from.state[q], &to.state[q], approach->state[curve->n - 2][q]);
+            hermite_polynomial(&from.state[q], &to.state[q], approach->state_polynomial[curve->n - 2][q]);
         from = to;
     }
     return true;
 }
 
-bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, const double *c, int steps,
-                       Text *why)
+bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c, int steps,
+                       Text *reason)
 {
-    const double first = spots->onset + same_log(CLOSING_AREA_RATIO);
-    double last = first, slope, ends[N_LAW_ENDS + 2], y[N_LAW_TABLE], x = 0.0;
-    if (!spots_solve(spots, c, spots->hardness, &last, &slope, why))
+    const double first = spots->stiffness_onset + portable_log(CLOSING_AREA_RATIO);
+    double last = first, slope, ends[N_LAW_REGIME_ENDS + 2], y[N_LAW_TOTALS], x = 0.0;
+    if (!solve_largest_spot(spots, c, spots->hardness, &last, &slope, reason))
         return false;
     if (!(last > first)) {
-        spots_table(spots, c, first, y);
-        text_print(why,
-                   "the law has no stiffness below %.3g Pa, above the hardness %.3g Pa: the surface (D, G) "
-                   "leaves only plastic spots",
-                   y[0] / spots->area, spots->hardness);
+        spot_totals(spots, c, first, y);
+        text_append_format(reason,
+                           "the law has no stiffness below %.3g Pa, above the hardness %.3g Pa: the surface (D, G) "
+                           "leaves only plastic spots",
+                           y[0] / spots->nominal_area, spots->hardness);
         return false;
     }
-    approach->first = first;
-    approach->last = last;
+    approach->first_log_area = first;
+    approach->last_log_area = last;
     int pieces = 0;
     ends[0] = first;
-    for (int i = 0; i < spots->n_ends; i++)
-        if (spots->ends[i] > first && spots->ends[i] < last)
-            ends[++pieces] = spots->ends[i];
+    for (int i = 0; i < spots->n_regime_ends; i++)
+        if (spots->regime_ends[i] > first && spots->regime_ends[i] < last)
+            ends[++pieces] = spots->regime_ends[i];
     ends[++pieces] = last;
     curve_begin(curve, 0.0);
     for (int i = 0; i < pieces; i++)
@@ -131,16 +142,16 @@ bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, con
     return true;
 }
 
-bool approach_exact(const Spots *spots, const double *c, double pressure, double u, double *value,
-                    double *slope, Text *why)
+bool evaluate_law_state(const SpotDistribution *spots, const double *c, double pressure, double u, double *value,
+                        double *slope, Text *reason)
 {
-    double rate, law[STATE_ROWS];
-    if (!spots_solve(spots, c, pressure, &u, &rate, why))
+    double rate, state[LAW_STATE_RESULTS];
+    if (!solve_largest_spot(spots, c, pressure, &u, &rate, reason))
         return false;
-    law_state[spots_regime(spots, u)](&u, c, law);
+    law_state[find_law_range(spots, u)](&u, c, state);
     for (int q = 0; q < N_LAW_STATE; q++) {
-        value[q] = law[q];
-        slope[q] = law[N_LAW_STATE + q] / (rate * pressure);
+        value[q] = state[q];
+        slope[q] = state[N_LAW_STATE + q] / (rate * pressure);
     }
     return true;
 }

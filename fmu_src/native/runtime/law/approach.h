@@ -1,36 +1,40 @@
-/* The curve of pressure over approach of an interface: the integral of dp/k from separation, and what the
- * law has beside at the same approach (law_state), on the segments of the curve. */
+/* Table of an interface law over the approach: the curve of the pressure, whose approach is the integral of dp/k, and
+ * the law state (`law_state`: further quantities of the law) on the segments of the curve. */
 #ifndef JOINTFMU_APPROACH_H
 #define JOINTFMU_APPROACH_H
 
 #include "curve.h"
-#include "spots.h"
+#include "spot_distribution.h"
 
-enum { APPROACH_STATES = N_LAW_STATE > 0 ? N_LAW_STATE : 1 }; /* an array has an element */
+enum { LAW_STATE_SIZE = N_LAW_STATE > 0 ? N_LAW_STATE : 1 }; /* C has no empty arrays */
 
 typedef struct {
-    double closed;      /* pressure [Pa] at the end of the closing, at zero approach */
-    double first, last; /* log-areas of the largest spot there and at the end of the table */
-    double state[CURVE_NODES][APPROACH_STATES][6]; /* of 1, t, ... t^5; in the closing that at its end */
-} Approach;
+    double closing_end_pressure; /* pressure [Pa] at zero approach, where the closing of the contact ends */
+    double first_log_area,
+        last_log_area; /* log-area of the largest spot at zero approach and at the end of the table */
+    double state_polynomial[CURVE_NODES][LAW_STATE_SIZE]
+                           [6]; /* coefficients of 1, t, ... t^5 on each segment; constant in the closing */
+} ApproachTable;
 
-/* Build with so many steps per unit of log-area; false: refused with a reason, or the table is full. */
-bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, const double *c, int steps,
-                       Text *why);
+/* Tabulate with `steps` steps per unit of log-area. false: refused, with a reason, or without one if the table is
+ * full. */
+bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c, int steps,
+                       Text *reason);
 
-/* The state and its slope in the approach inside the table, at t of a segment. */
-static inline void approach_state(const Approach *approach, const Curve *curve, int segment, double t,
-                                  double *value, double *slope)
+/* Law state and its derivative with respect to the approach, at t of a segment of the table. */
+static inline void interpolate_law_state(const ApproachTable *approach, const Curve *curve, int segment, double t,
+                                         double *value, double *slope)
 {
     for (int q = 0; q < N_LAW_STATE; q++) {
-        const double *a = approach->state[segment][q];
-        value[q] = curve_value(a, t);
-        slope[q] = curve_slope(a, t) * curve->per[segment];
+        const double *a = approach->state_polynomial[segment][q];
+        value[q] = polynomial_value(a, t);
+        slope[q] = polynomial_slope(a, t) * curve->inverse_length[segment];
     }
 }
 
-/* The state under a pressure and its slope in the pressure by the law itself; `u` is a first guess. */
-bool approach_exact(const Spots *spots, const double *c, double pressure, double u, double *value,
-                    double *slope, Text *why);
+/* Law state at a pressure, and its derivative with respect to the pressure, from the law instead of the table; `u` is a
+ * first guess of the log-area. */
+bool evaluate_law_state(const SpotDistribution *spots, const double *c, double pressure, double u, double *value,
+                        double *slope, Text *reason);
 
 #endif

@@ -1,12 +1,13 @@
-/* Repeats `Curve` and `assemble` of the package, with faster ways to find a segment. */
+/* Repeats `Curve` and `assemble_curve` in curve.py of the package, with a faster search for the segment. */
 #include "curve.h"
 
 #include <math.h>
 
-void curve_polynomial(const Node *p, const Node *q, double *a)
+void hermite_polynomial(const Node *p, const Node *q, double *a)
 {
     const double h = q->x - p->x;
-    const double s0 = p->s * h, c0 = p->bend * h * h, s1 = q->s * h, c1 = q->bend * h * h;
+    const double s0 = p->stiffness * h, c0 = p->stiffness_slope * h * h, s1 = q->stiffness * h,
+                 c1 = q->stiffness_slope * h * h;
     const double rise = q->y - p->y;
     a[0] = p->y;
     a[1] = s0;
@@ -22,89 +23,94 @@ void curve_begin(Curve *curve, double error)
     curve->error = error;
 }
 
-void curve_piece(Curve *curve, Node node)
+void curve_begin_piece(Curve *curve, Node node)
 {
     if (curve->n == 0) {
         curve->x[0] = node.x;
         curve->n = 1;
     }
-    curve->last[2] = node;
-    curve->piece = 1;
+    curve->recent_nodes[2] = node;
+    curve->piece_nodes = 1;
 }
 
-static void deviation(Curve *curve, double exact, double rough)
+/* Update the largest relative error; it is half the deviation between the fine and the coarse curve. */
+static void update_error(Curve *curve, double fine, double coarse)
 {
-    const double relative = 0.5 * fabs(rough - exact) / exact;
+    const double relative = 0.5 * fabs(coarse - fine) / fine;
     if (relative > curve->error)
         curve->error = relative;
 }
 
-/* The last two segments against one segment in their place, at their quarter points. */
-static void measure(Curve *curve)
+/* Compare the last two segments with one segment through their outer nodes, at their quarter points. */
+static void measure_error(Curve *curve)
 {
-    const Node *last = curve->last;
+    const Node *last = curve->recent_nodes;
     double coarse[6];
-    curve_polynomial(&last[0], &last[2], coarse);
+    hermite_polynomial(&last[0], &last[2], coarse);
     const double length = last[2].x - last[0].x;
     for (int k = 0; k < 2; k++) {
-        const double *fine = curve->a[curve->n - 3 + k];
+        const double *a = curve->coefficients[curve->n - 3 + k];
         const double h = last[k + 1].x - last[k].x;
         for (int i = 1; i < 4; i++) {
-            const double t = 0.25 * i, far = (last[k].x - last[0].x + t * h) / length;
-            if (curve_value(fine, t) > 0.0)
-                deviation(curve, curve_value(fine, t), curve_value(coarse, far));
-            if (curve_slope(fine, t) > 0.0)
-                deviation(curve, curve_slope(fine, t) / h, curve_slope(coarse, far) / length);
+            const double t = 0.25 * i, coarse_t = (last[k].x - last[0].x + t * h) / length;
+            if (polynomial_value(a, t) > 0.0)
+                update_error(curve, polynomial_value(a, t), polynomial_value(coarse, coarse_t));
+            if (polynomial_slope(a, t) > 0.0)
+                update_error(curve, polynomial_slope(a, t) / h, polynomial_slope(coarse, coarse_t) / length);
         }
     }
 }
 
-bool curve_add(Curve *curve, Node node)
+bool curve_add_node(Curve *curve, Node node)
 {
     if (curve->n == CURVE_NODES)
         return false;
-    curve->last[0] = curve->last[1];
-    curve->last[1] = curve->last[2];
-    curve->last[2] = node;
-    curve_polynomial(&curve->last[1], &curve->last[2], curve->a[curve->n - 1]);
+    curve->recent_nodes[0] = curve->recent_nodes[1];
+    curve->recent_nodes[1] = curve->recent_nodes[2];
+    curve->recent_nodes[2] = node;
+    hermite_polynomial(&curve->recent_nodes[1], &curve->recent_nodes[2], curve->coefficients[curve->n - 1]);
     curve->x[curve->n++] = node.x;
-    if (++curve->piece % 2 == 1)
-        measure(curve);
+    if (++curve->piece_nodes % 2 == 1)
+        measure_error(curve);
     return true;
 }
 
-/* A node from the polynomial of a segment, at its beginning (t = 0) or end (1). */
-static Node node_of(const Curve *curve, int i, double t)
+/* Node at the start (t = 0) or end (t = 1) of a segment, from its polynomial. */
+static Node end_node(const Curve *curve, int i, double t)
 {
     const double h = curve->x[i + 1] - curve->x[i];
-    return (Node){.x = curve->x[i + (t > 0.0)], .y = curve_value(curve->a[i], t), .s = curve_slope(curve->a[i], t) / h};
+    return (Node){.x = curve->x[i + (t > 0.0)],
+                  .y = polynomial_value(curve->coefficients[i], t),
+                  .stiffness = polynomial_slope(curve->coefficients[i], t) / h};
 }
 
-static void finish_segment(Curve *curve, int i)
+/* Coefficients of `curve_estimate_inverse`; linear interpolation if the cubic would not be monotone. */
+static void set_segment_inverse(Curve *curve, int i)
 {
-    const double *a = curve->a[i];
-    const double rise = curve_value(a, 1.0) - a[0], begin = a[1], end = curve_slope(a, 1.0);
-    const bool bent = rise > 0.0 && begin > 0.125 * rise && end > 0.125 * rise;
-    curve->per[i] = 1.0 / (curve->x[i + 1] - curve->x[i]);
-    curve->inverse[i].per_load = rise > 0.0 ? 1.0 / rise : 0.0;
-    curve->inverse[i].begin = bent ? rise / begin : 1.0;
-    curve->inverse[i].end = bent ? rise / end : 1.0;
+    const double *a = curve->coefficients[i];
+    const double rise = polynomial_value(a, 1.0) - a[0], start_slope = a[1], end_slope = polynomial_slope(a, 1.0);
+    const bool is_monotone = rise > 0.0 && start_slope > 0.125 * rise && end_slope > 0.125 * rise;
+    curve->inverse_length[i] = 1.0 / (curve->x[i + 1] - curve->x[i]);
+    curve->inverse[i].inverse_load_rise = rise > 0.0 ? 1.0 / rise : 0.0;
+    curve->inverse[i].start_slope = is_monotone ? rise / start_slope : 1.0;
+    curve->inverse[i].end_slope = is_monotone ? rise / end_slope : 1.0;
 }
 
-/* Buckets of the loads from the second segment on, as fine as their number allows. */
-static void finish_loads(Curve *curve)
+/* Buckets for the search of a load from the second segment on, as fine as their number allows. */
+static void set_load_buckets(Curve *curve)
 {
-    curve->first_bits = 0;
+    curve->first_bucket = 0;
     if (curve->n == 2)
         return;
-    curve->shift = 40;
-    while (curve_load_bucket(curve, curve->end.y) - curve_load_bucket(curve, curve->a[1][0]) >= CURVE_BUCKETS)
-        curve->shift++;
-    curve->first_bits = curve_load_bucket(curve, curve->a[1][0]);
+    curve->bucket_shift = 40;
+    while (curve_bucket_of_load(curve, curve->end.y) - curve_bucket_of_load(curve, curve->coefficients[1][0]) >=
+           CURVE_BUCKETS)
+        curve->bucket_shift++;
+    curve->first_bucket = curve_bucket_of_load(curve, curve->coefficients[1][0]);
     int segment = 1;
     curve->load_bucket[0] = 1;
     for (unsigned k = 0; k < CURVE_BUCKETS; k++) {
-        while (segment < curve->n - 2 && curve_load_bucket(curve, curve->a[segment + 1][0]) <= k)
+        while (segment < curve->n - 2 && curve_bucket_of_load(curve, curve->coefficients[segment + 1][0]) <= k)
             segment++;
         curve->load_bucket[k + 1] = (unsigned short)segment;
     }
@@ -113,67 +119,68 @@ static void finish_loads(Curve *curve)
 void curve_finish(Curve *curve)
 {
     const double first = curve->x[0], length = curve->x[curve->n - 1] - first;
-    curve->first = node_of(curve, 0, 0.0);
-    curve->end = node_of(curve, curve->n - 2, 1.0);
-    curve->per_bucket = (double)CURVE_BUCKETS / length;
+    curve->start = end_node(curve, 0, 0.0);
+    curve->end = end_node(curve, curve->n - 2, 1.0);
+    curve->buckets_per_displacement = (double)CURVE_BUCKETS / length;
     int segment = 0;
     for (int k = 0; k <= CURVE_BUCKETS; k++) {
         while (segment < curve->n - 2 && curve->x[segment + 1] - first <= k * (length / (double)CURVE_BUCKETS))
             segment++;
-        curve->bucket[k] = (unsigned short)segment;
+        curve->displacement_bucket[k] = (unsigned short)segment;
     }
     for (int i = 0; i < curve->n - 1; i++)
-        finish_segment(curve, i);
-    finish_loads(curve);
+        set_segment_inverse(curve, i);
+    set_load_buckets(curve);
 }
 
-static double inside(const Curve *curve, double x)
+/* Nearest displacement of the table. */
+static double clip_to_table(const Curve *curve, double x)
 {
-    return x < curve->first.x ? curve->first.x : (x > curve->end.x ? curve->end.x : x);
+    return x < curve->start.x ? curve->start.x : (x > curve->end.x ? curve->end.x : x);
 }
 
-void curve_at(const Curve *curve, double x, int order, double *y)
+void curve_evaluate(const Curve *curve, double x, int order, double *y)
 {
-    const double at = inside(curve, x);
-    const int i = curve_segment(curve, at);
-    curve_derivatives(curve, i, (at - curve->x[i]) * curve->per[i], order, y);
-    if (x != at) {
-        y[0] += (x - at) * y[1];
+    const double inside = clip_to_table(curve, x);
+    const int i = curve_find_segment(curve, inside);
+    segment_derivatives(curve, i, (inside - curve->x[i]) * curve->inverse_length[i], order, y);
+    if (x != inside) {
+        y[0] += (x - inside) * y[1];
         for (int k = 2; k <= order; k++)
             y[k] = 0.0;
     }
 }
 
-double curve_inverse_safe(const Curve *curve, double load)
+double curve_inverse_safeguarded(const Curve *curve, double load)
 {
-    const Node *first = &curve->first, *end = &curve->end;
-    if (load <= first->y)
-        return first->s == 0.0 ? first->x : first->x + (load - first->y) / first->s;
+    const Node *start = &curve->start, *end = &curve->end;
+    if (load <= start->y)
+        return start->stiffness == 0.0 ? start->x : start->x + (load - start->y) / start->stiffness;
     if (load >= end->y)
-        return end->x + (load - end->y) / end->s;
-    const int i = curve_segment_of_load(curve, load);
-    const double *a = curve->a[i];
-    double low = 0.0, high = 1.0, t = curve_guess(curve, i, load);
+        return end->x + (load - end->y) / end->stiffness;
+    const int i = curve_find_segment_of_load(curve, load);
+    const double *a = curve->coefficients[i];
+    double low = 0.0, high = 1.0, t = curve_estimate_inverse(curve, i, load);
     for (int k = 0; k < MAX_ITERATIONS; k++) {
-        const double rest = load - curve_value(a, t), s = curve_slope(a, t);
-        if (rest > 0.0)
+        const double residual = load - polynomial_value(a, t), s = polynomial_slope(a, t);
+        if (residual > 0.0)
             low = t;
         else
             high = t;
-        const double step = s > 0.0 ? t + rest / s : -1.0;
-        const bool newton = step >= low && step <= high;
-        const double next = newton ? step : 0.5 * (low + high);
+        const double step = s > 0.0 ? t + residual / s : -1.0;
+        const bool is_newton_step = step >= low && step <= high;
+        const double next = is_newton_step ? step : 0.5 * (low + high);
         const double change = fabs(next - t);
         t = next;
-        if (change <= (newton ? NEWTON_TOLERANCE : 4e-16) * t)
+        if (change <= (is_newton_step ? NEWTON_TOLERANCE : 4e-16) * t)
             break;
     }
     return curve->x[i] + t * (curve->x[i + 1] - curve->x[i]);
 }
 
-void energy_tabulate(Energy *energy, const Curve *curve)
+void tabulate_energy(CurveEnergy *energy, const Curve *curve)
 {
-    energy->at[0] = 0.0;
+    energy->node_energy[0] = 0.0;
     for (int i = 0; i + 1 < curve->n; i++)
-        energy->at[i + 1] = energy_inside(energy, curve, i, 1.0);
+        energy->node_energy[i + 1] = segment_energy(energy, curve, i, 1.0);
 }

@@ -1,5 +1,5 @@
-/* Exponential and logarithm by a table of 32 places and a short polynomial (P. T. P. Tang, ACM Trans. Math.
- * Softw. 15 and 16), with a second double for what the first one loses where the result needs it. */
+/* Exponential and logarithm by a table of 32 intervals and a short polynomial (P. T. P. Tang, ACM Trans. Math. Softw.
+ * 15 and 16). Where the result needs it, a number is the sum of two doubles. */
 #include "elementary.h"
 
 #include <math.h>
@@ -8,12 +8,12 @@
 
 #include "elementary_tables.h" /* generated */
 
-/* Added and subtracted: rounds to a whole number. */
-#define SHIFTER 0x1.8p52
+/* Adding and subtracting it rounds a double to an integer. */
+#define ROUNDING_SHIFT 0x1.8p52
 
 typedef struct {
     double high, low;
-} Pair;
+} DoubleDouble;
 
 static inline uint64_t bits_of(double x)
 {
@@ -29,50 +29,53 @@ static inline double from_bits(uint64_t bits)
     return x;
 }
 
-/* The first 26 bits of a number: products of two such are exact. */
-static inline double first_half(double x)
+/* Number with its 26 leading bits only: products of two such numbers are exact. */
+static inline double high_bits(double x)
 {
     return from_bits(bits_of(x) & 0xfffffffff8000000);
 }
 
-static inline Pair sum_of(double a, double b)
+/* a + b and its round-off. */
+static inline DoubleDouble two_sum(double a, double b)
 {
     const double sum = a + b, part = sum - a;
-    return (Pair){sum, (a - (sum - part)) + (b - part)};
+    return (DoubleDouble){sum, (a - (sum - part)) + (b - part)};
 }
 
-/* The same where the first one is not the smaller one, or zero. */
-static inline Pair larger_first(double a, double b)
+/* The same, if |a| >= |b| or a is zero. */
+static inline DoubleDouble fast_two_sum(double a, double b)
 {
     const double sum = a + b;
-    return (Pair){sum, (a - sum) + b};
+    return (DoubleDouble){sum, (a - sum) + b};
 }
 
-/* exp(high + low); low is small beside 1. */
+/* exp(high + low), with |low| much smaller than 1. */
 static double exponential(double high, double low)
 {
     if (!(high < 800.0))
         return high > 0.0 ? INFINITY : high;
     if (high < -800.0)
         return 0.0;
-    const double k = (high * PLACES_PER_LOG_2 + SHIFTER) - SHIFTER;
-    const double r = ((high - k * LOG_2_PER_PLACE) - k * LOG_2_PER_PLACE_LOW) + low;
-    const int whole = (int)k, place = whole & (PLACES - 1), power = (whole - place) / PLACES;
+    const double k = (high * INTERVALS_PER_LOG_2 + ROUNDING_SHIFT) - ROUNDING_SHIFT;
+    const double r = ((high - k * LOG_2_PER_INTERVAL) - k * LOG_2_PER_INTERVAL_LOW) + low;
+    const int whole = (int)k, interval = whole & (TABLE_INTERVALS - 1), power = (whole - interval) / TABLE_INTERVALS;
     const double square = r * r;
     const double last = (1.0 / 24.0 + r * (1.0 / 120.0)) + square * (1.0 / 720.0 + r * (1.0 / 5040.0));
-    const double more = POWERS[place][1] + r + square * (0.5 + r * (1.0 / 6.0)) + square * square * last;
+    const double more = EXP_TABLE[interval][1] + r + square * (0.5 + r * (1.0 / 6.0)) + square * square * last;
     const int half = power / 2;
-    const double one = from_bits((uint64_t)(1023 + half) << 52), other = from_bits((uint64_t)(1023 + power - half) << 52);
-    return (POWERS[place][0] + POWERS[place][0] * more) * one * other;
+    const double one = from_bits((uint64_t)(1023 + half) << 52),
+                 other = from_bits((uint64_t)(1023 + power - half) << 52);
+    return (EXP_TABLE[interval][0] + EXP_TABLE[interval][0] * more) * one * other;
 }
 
-/* A positive finite number as 2^k z, z near the number c of a row: 1/c of few bits, log(c) as two doubles. */
+/* Positive finite number as 2^k z, z near the number c of a row of LOG_TABLE: 1/c with few bits, log(c) as two
+ * doubles. */
 typedef struct {
     double k, r, r_low; /* r + r_low is z/c - 1 */
     const double *row;
-} Place;
+} ReducedLogArgument;
 
-static inline Place place_of(double x)
+static inline ReducedLogArgument reduce_log_argument(double x)
 {
     int power = 0;
     if (x < 0x1p-1022) {
@@ -81,180 +84,182 @@ static inline Place place_of(double x)
     }
     const uint64_t bits = bits_of(x), from = bits - LOG_BEGIN;
     const int raised = (int)((int64_t)from >> 52);
-    const double *row = LOGS[(from >> LOG_BITS) & (PLACES - 1)];
+    const double *row = LOG_TABLE[(from >> LOG_BITS) & (TABLE_INTERVALS - 1)];
     const double z = from_bits(bits - ((uint64_t)raised << 52));
     const double z_first = from_bits((bits_of(z) + 0x80000000) & 0xffffffff00000000);
-    const Pair r = sum_of(z_first * row[0] - 1.0, (z - z_first) * row[0]);
-    return (Place){(double)(power + raised), r.high, r.low, row};
+    const DoubleDouble r = two_sum(z_first * row[0] - 1.0, (z - z_first) * row[0]);
+    return (ReducedLogArgument){(double)(power + raised), r.high, r.low, row};
 }
 
 /* (log(1 + r) - r + r^2/2) / r^3 */
-static inline double series(double r)
+static inline double log_series(double r)
 {
-    const double square = r * r, last = (1.0 / 7.0 - r * 0.125) + square * ((1.0 / 9.0 - r * 0.1) + square * (1.0 / 11.0));
+    const double square = r * r,
+                 last = (1.0 / 7.0 - r * 0.125) + square * ((1.0 / 9.0 - r * 0.1) + square * (1.0 / 11.0));
     return ((1.0 / 3.0 - r * 0.25) + square * (0.2 - r * (1.0 / 6.0))) + square * square * last;
 }
 
-/* log(x) of a positive finite number; the second double holds what the first one lacks. */
-static inline Pair logarithm(double x)
+/* log(x) of a positive finite number as two doubles. */
+static inline DoubleDouble logarithm(double x)
 {
-    const Place at = place_of(x);
-    const double r = at.r, first = first_half(r), rest = r - first;
+    const ReducedLogArgument reduced = reduce_log_argument(x);
+    const double r = reduced.r, first = high_bits(r), rest = r - first;
     const double square = -0.5 * first * first, square_low = -0.5 * rest * (r + first);
-    const Pair a = larger_first(at.k * LOG_2 + at.row[1], r), b = larger_first(a.high, square);
-    const double low = a.low + b.low + (at.k * LOG_2_LOW + at.row[2]) + at.r_low + square_low + r * r * r * series(r);
-    return larger_first(b.high, low);
+    const DoubleDouble a = fast_two_sum(reduced.k * LOG_2 + reduced.row[1], r), b = fast_two_sum(a.high, square);
+    const double low = a.low + b.low + (reduced.k * LOG_2_LOW + reduced.row[2]) + reduced.r_low + square_low +
+                       r * r * r * log_series(r);
+    return fast_two_sum(b.high, low);
 }
 
-double same_exp(double x)
+double portable_exp(double x)
 {
     return exponential(x, 0.0);
 }
 
-double same_log(double x)
+double portable_log(double x)
 {
     if (!(x > 0.0))
         return x == 0.0 ? -INFINITY : NAN;
     if (!(x < INFINITY))
         return x;
-    const Place at = place_of(x);
-    const double small = at.k * LOG_2_LOW + at.row[2], r = at.r;
-    return (at.k * LOG_2 + at.row[1]) + (r + (small + r * r * (r * series(r) - 0.5)));
+    const ReducedLogArgument reduced = reduce_log_argument(x);
+    const double small = reduced.k * LOG_2_LOW + reduced.row[2], r = reduced.r;
+    return (reduced.k * LOG_2 + reduced.row[1]) + (r + (small + r * r * (r * log_series(r) - 0.5)));
 }
 
-/* of a positive finite x */
-static double power_of(double x, double y)
+/* x^y of a positive finite x. */
+static double positive_power(double x, double y)
 {
-    const Pair log_x = logarithm(x);
+    const DoubleDouble log_x = logarithm(x);
     const double high = y * log_x.high;
     if (!(fabs(high) < 800.0))
         return exponential(high, 0.0);
-    const double a = first_half(y), b = first_half(log_x.high), c = y - a, d = log_x.high - b;
+    const double a = high_bits(y), b = high_bits(log_x.high), c = y - a, d = log_x.high - b;
     return exponential(high, (((a * b - high) + a * d) + c * b) + c * d + y * log_x.low);
 }
 
-double same_pow(double x, double y)
+double portable_pow(double x, double y)
 {
     if (x > 0.0 && x < INFINITY && fabs(y) < INFINITY)
-        return power_of(x, y);
+        return positive_power(x, y);
     if (!(x < 0.0 && x > -INFINITY && fabs(y) < INFINITY && floor(y) == y))
-        return pow(x, y); /* 0, 1, infinity or none */
-    const double size = power_of(-x, y);
+        return pow(x, y); /* exact: 0, 1, infinity or NaN */
+    const double size = positive_power(-x, y);
     return floor(0.5 * y) == 0.5 * y ? size : -size;
 }
 
-double same_expm1(double x)
+double portable_expm1(double x)
 {
     if (!(fabs(x) < 0.5))
-        return same_exp(x) - 1.0;
+        return portable_exp(x) - 1.0;
     double sum = 0.0;
-    for (int n = N_EXPM1 - 1; n >= 0; n--)
-        sum = EXPM1[n] + x * sum;
+    for (int n = N_EXPM1_TERMS - 1; n >= 0; n--)
+        sum = EXPM1_SERIES[n] + x * sum;
     return x + x * x * sum;
 }
 
-double same_log1p(double x)
+double portable_log1p(double x)
 {
     const double u = 1.0 + x;
     if (!(u > 0.0 && u < INFINITY))
-        return same_log(u);
-    const Pair log_u = logarithm(u);
+        return portable_log(u);
+    const DoubleDouble log_u = logarithm(u);
     const double lost = fabs(x) < 1.0 ? x - (u - 1.0) : 1.0 - (u - x);
     return log_u.high + (log_u.low + lost / u);
 }
 
-double same_sinh(double x)
+double portable_sinh(double x)
 {
     const double size = fabs(x);
     if (size > 30.0) {
-        const double root = same_exp(0.5 * size);
+        const double root = portable_exp(0.5 * size);
         return copysign(0.5 * root * root, x);
     }
-    const double t = same_expm1(size);
+    const double t = portable_expm1(size);
     return copysign(0.5 * (t + t / (t + 1.0)), x);
 }
 
-double same_cosh(double x)
+double portable_cosh(double x)
 {
     const double size = fabs(x);
     if (size > 30.0)
-        return fabs(same_sinh(size));
-    const double e = same_exp(size);
+        return fabs(portable_sinh(size));
+    const double e = portable_exp(size);
     return 0.5 * (e + 1.0 / e);
 }
 
-double same_tanh(double x)
+double portable_tanh(double x)
 {
     if (fabs(x) > 20.0)
         return copysign(1.0, x);
-    const double t = same_expm1(2.0 * fabs(x));
+    const double t = portable_expm1(2.0 * fabs(x));
     return copysign(t / (t + 2.0), x);
 }
 
-double same_asinh(double x)
+double portable_asinh(double x)
 {
     const double size = fabs(x);
     if (!(size < 1e8))
-        return copysign(same_log(size) + (LOG_2 + LOG_2_LOW), x);
-    return copysign(same_log1p(size + size * size / (1.0 + sqrt(size * size + 1.0))), x);
+        return copysign(portable_log(size) + (LOG_2 + LOG_2_LOW), x);
+    return copysign(portable_log1p(size + size * size / (1.0 + sqrt(size * size + 1.0))), x);
 }
 
-double same_erf(double x)
+double portable_erf(double x)
 {
-    const double size = fabs(x), place = (size * ERF_PER_PLACE + SHIFTER) - SHIFTER;
+    const double size = fabs(x), interval = (size * ERF_NODES_PER_UNIT + ROUNDING_SHIFT) - ROUNDING_SHIFT;
     if (!(size < 6.0))
         return x != x ? x : copysign(1.0, x);
-    const double *a = ERF[(int)place], t = size - place * (1.0 / ERF_PER_PLACE);
+    const double *a = ERF_TABLE[(int)interval], t = size - interval * (1.0 / ERF_NODES_PER_UNIT);
     double sum = 0.0;
-    for (int n = N_ERF - 1; n > 0; n--)
+    for (int n = N_ERF_TERMS - 1; n > 0; n--)
         sum = a[n] + t * sum;
     return copysign(a[0] + t * sum, x);
 }
 
-/* x less its next multiple k of pi/2. */
-static inline Pair reduced(double x, double *k)
+/* x minus the nearest multiple k of pi/2. */
+static inline DoubleDouble reduce_to_quarter_turn(double x, double *k)
 {
-    *k = (x * TURNS + SHIFTER) - SHIFTER;
-    const Pair y = sum_of(x - *k * QUARTER[0], -*k * QUARTER[1]);
-    return sum_of(y.high, y.low - *k * QUARTER[2] - *k * QUARTER[3]);
+    *k = (x * QUARTERS_PER_RADIAN + ROUNDING_SHIFT) - ROUNDING_SHIFT;
+    const DoubleDouble y = two_sum(x - *k * QUARTER_TURN[0], -*k * QUARTER_TURN[1]);
+    return two_sum(y.high, y.low - *k * QUARTER_TURN[2] - *k * QUARTER_TURN[3]);
 }
 
-static inline double sine(Pair y)
+static inline double sine_near_zero(DoubleDouble y)
 {
     const double z = y.high * y.high;
     double sum = 0.0;
-    for (int n = N_WAVE - 1; n >= 0; n--)
-        sum = SINE[n] + z * sum;
+    for (int n = N_SINE_TERMS - 1; n >= 0; n--)
+        sum = SINE_SERIES[n] + z * sum;
     return y.high + (y.low * (1.0 - 0.5 * z) + y.high * z * sum);
 }
 
-static inline double cosine(Pair y)
+static inline double cosine_near_zero(DoubleDouble y)
 {
     const double z = y.high * y.high, half = 0.5 * z, first = 1.0 - half;
     double sum = 0.0;
-    for (int n = N_WAVE - 1; n >= 0; n--)
-        sum = COSINE[n] + z * sum;
+    for (int n = N_SINE_TERMS - 1; n >= 0; n--)
+        sum = COSINE_SERIES[n] + z * sum;
     return first + (((1.0 - first) - half) + (z * z * sum - y.high * y.low));
 }
 
 /* sin(x + quarters pi/2) */
-static double wave(double x, int quarters)
+static double shifted_sine(double x, int quarters)
 {
     double k;
     if (!(fabs(x) < INFINITY))
         return NAN;
-    const Pair y = reduced(x, &k);
+    const DoubleDouble y = reduce_to_quarter_turn(x, &k);
     const int quarter = ((int)(k - 4.0 * floor(0.25 * k)) + quarters) & 3;
-    const double value = quarter & 1 ? cosine(y) : sine(y);
+    const double value = quarter & 1 ? cosine_near_zero(y) : sine_near_zero(y);
     return quarter & 2 ? -value : value;
 }
 
-double same_sin(double x)
+double portable_sin(double x)
 {
-    return wave(x, 0);
+    return shifted_sine(x, 0);
 }
 
-double same_cos(double x)
+double portable_cos(double x)
 {
-    return wave(x, 1);
+    return shifted_sine(x, 1);
 }

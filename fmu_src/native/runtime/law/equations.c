@@ -1,15 +1,17 @@
-/* A model of equations, without tables: a partner of the joints in a system (inertia, mass, source), or a
- * joint that has none. The list of variables is one array, so that time, inputs and states stand in one row. */
+/* Joint functions of a model with explicit equations, without tables: a partner of the joints in a system (inertia,
+ * mass, source), or a joint without tables. Time, inputs and outputs are consecutive in one array of values: the
+ * arguments of `outputs` are read from it, from the time before the inputs to the states, which are the first
+ * outputs. */
 #include <string.h>
 
 #include "joint.h"
 #include "law.h"
 #include "variables.h"
 
-enum { N_KNOWNS = FIRST_OUTPUT + N_STATES };
+enum { N_ARGUMENTS = FIRST_OUTPUT + N_STATES };
 
 struct Joint {
-    double c[N_CONSTANTS]; /* the parameters, those that are fixed, then what follows from them alone */
+    double constants[N_CONSTANTS]; /* parameters, parameters that are no FMU variables, expressions of both */
 };
 
 size_t joint_size(void)
@@ -17,53 +19,53 @@ size_t joint_size(void)
     return sizeof(Joint);
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
+bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 {
-    (void)why;
-    memcpy(joint->c, parameters, N_PARAMETERS * sizeof(double));
-    memcpy(joint->c + N_PARAMETERS, data.fixed, N_FIXED * sizeof(double));
-    law_constants(joint->c, 0, joint->c + N_PARAMETERS + N_FIXED);
+    (void)reason;
+    memcpy(joint->constants, parameters, N_PARAMETERS * sizeof(double));
+    memcpy(joint->constants + N_PARAMETERS, data.hidden_parameters, N_HIDDEN_PARAMETERS * sizeof(double));
+    law_constants(joint->constants, 0, joint->constants + N_PARAMETERS + N_HIDDEN_PARAMETERS);
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
+                    Text *reason)
 {
-    double known[N_KNOWNS], found[N_OUTPUTS];
-    (void)memory, (void)after, (void)why;
-    memcpy(known, inputs - FIRST_INPUT, FIRST_OUTPUT * sizeof(double));
-    memcpy(known + FIRST_OUTPUT, out, N_STATES * sizeof(double));
-    outputs(known, joint->c, found);
-    memcpy(out, found, sizeof found);
+    double arguments[N_ARGUMENTS], results[N_OUTPUTS];
+    (void)history, (void)history_end, (void)reason;
+    memcpy(arguments, inputs - FIRST_INPUT, FIRST_OUTPUT * sizeof(double));
+    memcpy(arguments + FIRST_OUTPUT, out, N_STATES * sizeof(double));
+    outputs(arguments, joint->constants, results);
+    memcpy(out, results, sizeof results);
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)after;
-    double x[2 * N_KNOWNS];
-    (void)memory;
-    memcpy(x, inputs - FIRST_INPUT, N_KNOWNS * sizeof(double));
-    x[N_KNOWNS] = 0.0; /* the time stands still */
-    memcpy(x + N_KNOWNS + 1, seed, (N_KNOWNS - 1) * sizeof(double));
-    outputs_seed(x, joint->c, result);
+    (void)history_end;
+    double x[2 * N_ARGUMENTS];
+    (void)history;
+    memcpy(x, inputs - FIRST_INPUT, N_ARGUMENTS * sizeof(double));
+    x[N_ARGUMENTS] = 0.0; /* the derivative is at constant time */
+    memcpy(x + N_ARGUMENTS + 1, seed, (N_ARGUMENTS - 1) * sizeof(double));
+    outputs_seed(x, joint->constants, result);
 }
 
-#if N_EVENTS
-void joint_events(Joint *joint, double *times)
+#if N_TIME_EVENTS
+void joint_event_times(Joint *joint, double *times)
 {
-    events(NULL, joint->c, times);
+    event_times(NULL, joint->constants, times);
 }
 #endif
 
-unsigned joint_outside(Joint *joint, const double *inputs, const double *out)
+unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *out)
 {
     (void)joint, (void)inputs, (void)out;
     return 0;
 }
 
-void joint_warning(Joint *joint, const double *inputs, const double *out, unsigned bit, Text *text)
+void joint_describe_warning(Joint *joint, const double *inputs, const double *out, unsigned bit, Text *text)
 {
     (void)joint, (void)inputs, (void)out, (void)bit, (void)text;
 }

@@ -1,5 +1,5 @@
 """The toy joint, for the tools."""
 
-from jointfmu_tools.joint_parts import ToolParts
+from jointfmu_tools.common.joint_parts import ToolParts
 
 PARTS = ToolParts(__name__, ("export", "reduced"))

@@ -1,8 +1,8 @@
 """The spring as a table."""
 
 import numpy as np
-from jointfmu_tools.export.exports import Exports, LoadCurve
-from jointfmu_tools.export.tables import LoadTable
+from jointfmu_tools.exchange.export.exports import Exports, LoadCurve
+from jointfmu_tools.exchange.export.tables import LoadTable
 
 from jointfmu.joints.model import Variable
 

@@ -1,7 +1,7 @@
 """The spring for many samples at once: force over elongation."""
 
 import numpy as np
-from jointfmu_tools.uncertainty.problem import ReducedCurves
+from jointfmu_tools.studies.uncertainty.problem import ReducedCurves
 
 from .. import KIND
 

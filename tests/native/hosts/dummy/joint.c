@@ -13,15 +13,15 @@ size_t joint_size(void)
     return sizeof(Joint);
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
+bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 {
     joint->k = NAN; /* nothing is right until all is */
     if (parameters[0] > 1.9 && parameters[2] > 100.0) {
-        text_add(why, "D = ");
-        text_number(why, parameters[0], 10);
-        text_add(why, " is too rough for n = ");
-        text_number(why, parameters[2], 10);
-        text_add(why, ", allowed is D <= 1.9");
+        text_append(reason, "D = ");
+        text_append_number(reason, parameters[0], 10);
+        text_append(reason, " is too rough for n = ");
+        text_append_number(reason, parameters[2], 10);
+        text_append(reason, ", allowed is D <= 1.9");
         return false;
     }
     joint->k = parameters[1] * (parameters[3] != 0.0 ? 2.0 : 1.0);
@@ -29,13 +29,13 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
+                    Text *reason)
 {
     const double preload = inputs[0], phi = inputs[1];
-    (void)memory, (void)after;
+    (void)history, (void)history_end;
     if (phi == 42.0) {
-        text_add(why, "phi = 42 rad is not possible, allowed is any other angle");
+        text_append(reason, "phi = 42 rad is not possible, allowed is any other angle");
         return false;
     }
     outputs[0] = joint->k * (phi + phi * phi * phi) + preload;
@@ -44,28 +44,28 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)after;
-    (void)memory;
+    (void)history_end;
+    (void)history;
     result[0] = joint->k * (1.0 + 3.0 * inputs[1] * inputs[1]) * seed[1] + seed[0];
     result[1] = 2.0 * inputs[0] * seed[0];
     result[2] = 0.0;
 }
 
-unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)
+unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *outputs)
 {
     (void)joint;
     (void)outputs;
     return (inputs[1] > 10.0 ? 1u : 0u) | (inputs[0] > 1e6 ? 4u : 0u);
 }
 
-void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
+void joint_describe_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
 {
     (void)joint;
     (void)outputs;
-    text_add(text, bit == 1 ? "phi = " : "preload = ");
-    text_number(text, bit == 1 ? inputs[1] : inputs[0], 6);
-    text_add(text, " is beyond the tabulated law");
+    text_append(text, bit == 1 ? "phi = " : "preload = ");
+    text_append_number(text, bit == 1 ? inputs[1] : inputs[0], 6);
+    text_append(text, " is beyond the tabulated law");
 }

@@ -17,4 +17,4 @@ const Variable variables[N_VALUES] = {
     {"rigid", "", "whether one side is rigid: twice the stiffness", "true, false", 0.0, 1.0, 0, 0, 0, 1},
 };
 
-const unsigned char depends[N_OUTPUTS][N_INPUTS] = {{1, 1}, {1, 0}, {0, 0}};
+const unsigned char output_dependencies[N_OUTPUTS][N_INPUTS] = {{1, 1}, {1, 0}, {0, 0}};

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { N_FIXED = 0 };
+enum { N_HIDDEN_PARAMETERS = 0 };
 
 typedef struct {
     char magic[16];

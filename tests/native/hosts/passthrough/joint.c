@@ -11,32 +11,32 @@ size_t joint_size(void)
     return sizeof(Joint);
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
+bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 {
-    (void)why;
+    (void)reason;
     joint->gain = parameters[0];
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
+                    Text *reason)
 {
-    (void)memory, (void)after, (void)why;
+    (void)history, (void)history_end, (void)reason;
     for (int i = 0; i < N_OUTPUTS; i++)
         outputs[i] = joint->gain * inputs[i % N_INPUTS];
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)after;
-    (void)memory, (void)inputs;
+    (void)history_end;
+    (void)history, (void)inputs;
     for (int i = 0; i < N_OUTPUTS; i++)
         result[i] = joint->gain * seed[i % N_INPUTS];
 }
 
-unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)
+unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *outputs)
 {
     (void)joint;
     (void)inputs;
@@ -44,7 +44,7 @@ unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs
     return 0;
 }
 
-void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
+void joint_describe_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
 {
     (void)joint;
     (void)inputs;

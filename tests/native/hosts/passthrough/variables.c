@@ -13,4 +13,4 @@ const Variable variables[N_VALUES] = {
     {"gain", "", "outputs over inputs", "(0, 1e+06]", 0.0, 1e6, 1, 0, 0, 0},
 };
 
-const unsigned char depends[N_OUTPUTS][N_INPUTS] = {{1, 0}, {0, 1}};
+const unsigned char output_dependencies[N_OUTPUTS][N_INPUTS] = {{1, 0}, {0, 1}};

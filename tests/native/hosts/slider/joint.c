@@ -4,7 +4,7 @@
 
 #include "variables.h"
 
-enum { FORCE, PLACE, LOSS }; /* of the memory */
+enum { FORCE, PLACE, LOSS }; /* indices of the history variables */
 
 struct Joint {
     double k, limit;
@@ -15,53 +15,53 @@ size_t joint_size(void)
     return sizeof(Joint);
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
+bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 {
-    (void)why;
+    (void)reason;
     *joint = (Joint){parameters[0], parameters[1]};
     return true;
 }
 
-/* Force and loss after the way to u; the stiffness there. */
-static double move(const Joint *joint, double u, const double *memory, double *force, double *loss)
+/* Force and loss after the path to u; returns the stiffness there. */
+static double move(const Joint *joint, double u, const double *history, double *force, double *loss)
 {
-    const double trial = memory[FORCE] + joint->k * (u - memory[PLACE]);
+    const double trial = history[FORCE] + joint->k * (u - history[PLACE]);
     const bool slips = fabs(trial) > joint->limit;
     *force = slips ? copysign(joint->limit, trial) : trial;
-    *loss = memory[LOSS] + *force * (trial - *force) / joint->k;
+    *loss = history[LOSS] + *force * (trial - *force) / joint->k;
     return slips ? 0.0 : joint->k;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
-                    Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
+                    Text *reason)
 {
-    (void)why;
-    outputs[1] = move(joint, inputs[0], memory, &outputs[0], &outputs[2]);
-    after[FORCE] = outputs[0];
-    after[LOSS] = outputs[2];
-    after[PLACE] = inputs[0];
+    (void)reason;
+    outputs[1] = move(joint, inputs[0], history, &outputs[0], &outputs[2]);
+    history_end[FORCE] = outputs[0];
+    history_end[LOSS] = outputs[2];
+    history_end[PLACE] = inputs[0];
     outputs[0] += inputs[1];
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)after;
+    (void)history_end;
     double force, loss;
-    const double stiffness = move(joint, inputs[0], memory, &force, &loss);
+    const double stiffness = move(joint, inputs[0], history, &force, &loss);
     result[0] = stiffness * seed[0] + seed[1];
     result[1] = 0.0;
     result[2] = stiffness > 0.0 ? 0.0 : force * seed[0];
 }
 
-unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)
+unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *outputs)
 {
     (void)joint, (void)inputs, (void)outputs;
     return 0;
 }
 
-void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
+void joint_describe_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
 {
     (void)joint, (void)inputs, (void)outputs, (void)bit, (void)text;
 }

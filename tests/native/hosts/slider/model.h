@@ -1,4 +1,4 @@
 /* A joint with memory: a spring that slips, for tests of the runtime. */
-#define N_MEMORY 3
+#define N_HISTORY 3
 
 enum { N_INPUTS = 2, N_OUTPUTS = 3, N_PARAMETERS = 2 };

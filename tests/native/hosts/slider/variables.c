@@ -15,4 +15,4 @@ const Variable variables[N_VALUES] = {
     {"limit", "N", "force at which it slips", "[0, inf)", 0.0, INFINITY, 0, 1, 0, 0},
 };
 
-const unsigned char depends[N_OUTPUTS][N_INPUTS] = {{1, 1}, {1, 0}, {1, 0}};
+const unsigned char output_dependencies[N_OUTPUTS][N_INPUTS] = {{1, 1}, {1, 0}, {1, 0}};

@@ -1,7 +1,7 @@
 """Fit procedures of the bolted joint: stiffness over preload, and loops in shear."""
 
-from ....fitting.procedure import DAMPING_RATIO_OPTION, Procedure, lazy_fit
-from ....joint_parts import Option
+from ....common.options import Option
+from ....inputs.fitting.procedure import DAMPING_RATIO_OPTION, Procedure, lazy_fit
 
 SERIES_OPTION = Option(
     "series_stiffness",

@@ -30,12 +30,12 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import unit_sizes
 
-from ....fitting import hysteresis_fit
-from ....fitting.branches import Loops
-from ....fitting.hysteresis import HysteresisLaw
-from ....fitting.least_squares import Unknown, UnknownExchange
-from ....fitting.measurement import ColumnNames, Measurement, read_measurement
-from ....fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
+from ....inputs.fitting import hysteresis_fit
+from ....inputs.fitting.branches import Loops
+from ....inputs.fitting.hysteresis import HysteresisLaw
+from ....inputs.fitting.least_squares import Unknown, UnknownExchange
+from ....inputs.fitting.measurement import ColumnNames, Measurement, read_measurement
+from ....inputs.fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
 from .preload import FITTED_PARAMETERS as INTERFACE
 from .preload import SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
 

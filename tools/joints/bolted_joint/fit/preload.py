@@ -32,9 +32,16 @@ from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
-from .... import columns
-from ....fitting.least_squares import Solution, Unknown, select_start, solve
-from ....fitting.outcome import Facts, FitResult, Picture, correlation_note, fitted_parameters, make_unknowns
+from ....common import columns
+from ....inputs.fitting.least_squares import Solution, Unknown, select_start, solve
+from ....inputs.fitting.outcome import (
+    Facts,
+    FitResult,
+    Picture,
+    correlation_note,
+    fitted_parameters,
+    make_unknowns,
+)
 
 SERIES_STIFFNESS = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""

@@ -12,7 +12,7 @@ from jointfmu.mechanics.sliders import UNIFORM_DEVIATION, Foundation
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....modelica.records import (
+from ....exchange.modelica.records import (
     COMPUTED_DIGITS,
     InterpolationTable,
     ModelicaComponent,

@@ -1,8 +1,8 @@
 """`jointfmu new` for a bolted joint: two plates and their bolts, from a drawing."""
 
-from ....drawing.faces import FACE_OPTIONS
-from ....drawing.part import DrawingOptions, NewJoint, NewJointCommand
-from ....joint_parts import Option
+from ....common.options import Option
+from ....inputs.drawing.faces import FACE_OPTIONS
+from ....inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:

@@ -7,9 +7,9 @@ import numpy as np
 
 from jointfmu.quantity import Array
 
-from ....drawing.part import DrawingOptions
-from ....drawing.reading import parse_number, parse_numbers
-from ....drawing.tables import Thread, read_threads
+from ....inputs.drawing.part import DrawingOptions
+from ....inputs.drawing.reading import parse_number, parse_numbers
+from ....inputs.drawing.tables import Thread, read_threads
 
 _BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
 _GRID_PATTERN = re.compile(r"(\d+)x(\d+)")

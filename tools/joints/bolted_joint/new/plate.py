@@ -10,11 +10,11 @@ from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....drawing import faces, vdi2230
-from ....drawing.part import DrawingOptions, NewJoint, ParameterSheet
-from ....drawing.reading import parse_number, parse_numbers
-from ....drawing.tables import Thread, property_class_strength, thread_source
-from ....pressure import warn_overload
+from ....common.pressure import warn_overload
+from ....inputs.drawing import faces, vdi2230
+from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
+from ....inputs.drawing.reading import parse_number, parse_numbers
+from ....inputs.drawing.tables import Thread, property_class_strength, thread_source
 from ..report import friction_results
 from . import layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field

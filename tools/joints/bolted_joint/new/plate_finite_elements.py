@@ -17,9 +17,9 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.progress import set_step
 from jointfmu.quantity import Array, flatten_parameters
 
-from ....drawing.part import NewJoint
-from ....drawing.vdi2230 import ClampedPart
 from ....fem import require_fem_packages
+from ....inputs.drawing.part import NewJoint
+from ....inputs.drawing.vdi2230 import ClampedPart
 from . import ATTACHMENTS
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import numpy as np
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import (
+from ....exchange.modelica.records import (
     InterpolationTable,
     ModelicaComponent,
     ModelicaRecord,

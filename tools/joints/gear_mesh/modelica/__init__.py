@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, MeshParameters
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import (
+from ....exchange.modelica.records import (
     COMPUTED_DIGITS,
     ModelicaComponent,
     ModelicaRecord,

@@ -1,7 +1,7 @@
 """Fit procedures of the harmonic drive: torque-angle curve, loops, logs of a robot, row of a catalogue."""
 
-from ....fitting.procedure import Procedure, lazy_fit
-from ....joint_parts import Option
+from ....common.options import Option
+from ....inputs.fitting.procedure import Procedure, lazy_fit
 from ..catalogue import STIFFNESS_COLUMNS
 
 FITS = (

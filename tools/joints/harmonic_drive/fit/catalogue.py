@@ -19,9 +19,9 @@ from jointfmu.joints.harmonic_drive.prescribed_midline import DEFAULT_CORNER_RAT
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
-from ....catalogue import SourcedNumber
-from ....fitting.least_squares import EMPTY_SOLUTION, Solution, solve
-from ....fitting.outcome import Facts, FitResult, fitted_parameters, make_predictor, make_unknowns
+from ....inputs.catalogue import SourcedNumber
+from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution, solve
+from ....inputs.fitting.outcome import Facts, FitResult, fitted_parameters, make_predictor, make_unknowns
 from ..catalogue import STIFFNESS_NAMES
 from . import drive
 from .drive import CatalogueRow, angle_picture, stiffness, stiffness_picture

@@ -19,9 +19,9 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, build_parameter_set, check_fields, flat_fields, quantity_field
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
-from ....catalogue import SourcedNumber
-from ....fitting.measurement import ColumnNames
-from ....fitting.outcome import Picture
+from ....inputs.catalogue import SourcedNumber
+from ....inputs.fitting.measurement import ColumnNames
+from ....inputs.fitting.outcome import Picture
 
 STIFFNESS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "hu2023": ("K_FTS0", "drive_scale"),

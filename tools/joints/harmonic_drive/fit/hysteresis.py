@@ -21,12 +21,18 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
-from ....fitting import hysteresis_fit
-from ....fitting.branches import Loops
-from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
-from ....fitting.least_squares import Solution, Unknown, solve
-from ....fitting.measurement import read_measurement
-from ....fitting.outcome import FitResult, Picture, fitted_parameters, make_unknowns, undetermined_names
+from ....inputs.fitting import hysteresis_fit
+from ....inputs.fitting.branches import Loops
+from ....inputs.fitting.hysteresis import HysteresisLaw, NonlinearSpring
+from ....inputs.fitting.least_squares import Solution, Unknown, solve
+from ....inputs.fitting.measurement import read_measurement
+from ....inputs.fitting.outcome import (
+    FitResult,
+    Picture,
+    fitted_parameters,
+    make_unknowns,
+    undetermined_names,
+)
 from . import drive
 from .drive import COLUMN_NAMES, RAD_PER_ARCMIN
 from .log_reading import Samples

@@ -16,8 +16,8 @@ from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
-from ....fitting.least_squares import Solution
-from ....fitting.outcome import Facts, FitResult, Picture, fitted_parameters, undetermined_names
+from ....inputs.fitting.least_squares import Solution
+from ....inputs.fitting.outcome import Facts, FitResult, Picture, fitted_parameters, undetermined_names
 from . import hysteresis
 from .log_friction import (
     FittedLog,

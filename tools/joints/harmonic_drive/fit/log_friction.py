@@ -19,8 +19,8 @@ from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, frict
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....fitting.least_squares import Solution, solve
-from ....fitting.outcome import make_unknowns
+from ....inputs.fitting.least_squares import Solution, solve
+from ....inputs.fitting.outcome import make_unknowns
 from .log_reading import Samples
 
 

@@ -19,7 +19,7 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import KELVIN_AT_ZERO, UnitSizes, unit_sizes
 
-from .... import columns
+from ....common import columns
 
 SampleIndices: TypeAlias = NDArray[np.int_]
 """Indices of samples."""

@@ -13,12 +13,12 @@ from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
-from .... import columns
-from ....catalogue import SourcedNumber
-from ....fitting import backbone
-from ....fitting.least_squares import EMPTY_SOLUTION, Solution, solve
-from ....fitting.measurement import COLUMN_SYNONYMS
-from ....fitting.outcome import (
+from ....common import columns
+from ....inputs.catalogue import SourcedNumber
+from ....inputs.fitting import backbone
+from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution, solve
+from ....inputs.fitting.measurement import COLUMN_SYNONYMS
+from ....inputs.fitting.outcome import (
     Facts,
     FitResult,
     Picture,

@@ -16,7 +16,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields
 
-from ....modelica.records import (
+from ....exchange.modelica.records import (
     ModelicaComponent,
     ModelicaRecord,
     WorkingPoint,

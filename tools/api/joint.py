@@ -1,0 +1,272 @@
+"""The class Joint: parameters of a joint, its evaluation, plots, FMUs and reports."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from jointfmu.files.outputs import HTML_PAGE, PARAMETER_FILE, check_output, write_parameter_text
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Model, TabulatedJoint
+from jointfmu.parameters import ParameterFile, format_parameter_file
+
+from ..common import plots
+from ..common.judgement import find_rms_height
+from ..common.options import require_package
+from ..common.pressure import judge_file
+from ..common.shown import format_quantity, list_entries
+from ..run.engine import JointEngine, open_joint
+from ..run.ramps.ramp import broadcast_columns
+from .frame import Frame, Table, TableDisplay
+from .law import Law
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Facts = Mapping[str, tuple[float, str, str]]
+"""Additional results of a joint: {name: (value [SI], unit, meaning)}."""
+
+
+@dataclass(frozen=True, repr=False)
+class Joint(TableDisplay):
+    """A joint with its parameters. The object is immutable: `with_values` returns a new one.
+
+    file  : parameter file, with the source of each number
+    facts : additional results {name: (value [SI], unit, meaning)} of a joint from a drawing or a catalogue
+    notes : warnings from making the joint, one line each
+
+    >>> import jointfmu
+    >>> joint = jointfmu.load("GearContact")
+    >>> joint.values["e"]
+    0.2
+    """
+
+    file: ParameterFile
+    facts: Facts = field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    @property
+    def name(self) -> str:
+        """Name of the parameter set."""
+        return self.file.name
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """Parameters and start values of inputs: {structured name: value [SI]}."""
+        return {
+            **self.file.values_by_name,
+            **{f"inputs.{name}": value for name, value in self.file.inputs.items()},
+        }
+
+    @property
+    def fmus(self) -> dict[str, Model]:
+        """FMUs that can be built of the joint: {name: model}. Methods evaluate the first one by default."""
+        return {model.name: model for model in KINDS[self.file.joint].models}
+
+    @property
+    def law(self) -> Law:
+        """Interface law of the joint.
+
+        Raises ValueError if the joint has none, for example a drive given by a table or by catalogue lines.
+        """
+        parameters = KINDS[self.file.joint].extract_law(self.file.values)
+        if parameters is None:
+            raise ValueError(f"{self.name}: law = {self.file.law!r} is of no interface")
+        return Law(self.file.law, parameters, find_rms_height(self.file))
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the parameters and the stiffness, one line each."""
+        return [*self.notes, *judge_file(self.file).warnings]
+
+    @property
+    def parameters(self) -> Table:
+        """Table of all parameters with value, unit, meaning, kind and source."""
+        rows = [
+            (entry.name, *format_quantity(entry.value, entry.unit), entry.doc, entry.kind, entry.source)
+            for entry in list_entries(self.file)
+        ]
+        return Table(self._title, ("name", "value", "unit", "meaning", "kind", "source"), rows)
+
+    @property
+    def _title(self) -> str:
+        return f"{self.name}: {KINDS[self.file.joint].title}, law {self.file.law}"
+
+    def _table(self) -> Table:
+        """Printed table: facts and warnings, then the parameters without their meaning."""
+        texts = (
+            (name, " ".join(format_quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items()
+        )
+        facts = [f"{name} = {value.strip()}: {text}" for name, value, text in texts]
+        table = self.parameters
+        rows = [(name, value, unit, kind, source) for name, value, unit, _, kind, source in table.rows]
+        lines = [*facts, *(f"warning: {text}" for text in self.warnings)]
+        return Table(table.title, ("name", "value", "unit", "kind", "source"), rows, lines)
+
+    def with_values(self, values: Mapping[str, Any] | None = None, **more: Any) -> "Joint":
+        """Return the joint with changed parameters (SI units), names as in the property `values`.
+
+        Raises ValueError, one line, for an unknown name or a value outside its interval.
+
+        >>> import jointfmu
+        >>> jointfmu.load("GearContact").with_values(e=0.3).values["e"]
+        0.3
+        """
+        changes = {**(values or {}), **more}
+        inputs = {n.removeprefix("inputs."): changes.pop(n) for n in [*changes] if n.startswith("inputs.")}
+        known = {v.name for model in self.fmus.values() for v in model.inputs}
+        if unknown := [name for name in inputs if name not in known]:
+            raise ValueError(f"unknown input {unknown[0]!r}, allowed are {', '.join(sorted(known))}")
+        file = self.file.with_values(changes, "user", "set in Python")
+        origins = {f"inputs.{name}": "user" for name in inputs}
+        file = replace(
+            file,
+            inputs={**file.inputs, **inputs},
+            origins={**file.origins, **origins},
+            sources={**file.sources, **dict.fromkeys(origins, "set in Python")},
+        )
+        return replace(self, file=file, facts={}, notes=())
+
+    def model(self, fmu: str | None = None) -> Model:
+        """Model of one of the joint's FMUs: inputs, outputs, units. Raises ValueError for an unknown name."""
+        return KINDS[self.file.joint].find_model(fmu).with_parameters(self.file.joint, self.file.values)
+
+    @cached_property
+    def spring(self) -> TabulatedJoint:
+        """Tabulated load-displacement curves of the joint, from which all outputs are computed."""
+        return KINDS[self.file.joint].models[0].tabulate(self.file.values)
+
+    def evaluate(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
+        """Compute every output for given inputs. Each point is loaded on a straight path from rest.
+
+        fmu    : name of one of the joint's FMUs; default: the first
+        inputs : numbers or arrays (n) [SI]; inputs that are not named have their start values
+
+        Raises ValueError for an unknown input, a value outside its interval, or arrays of different lengths.
+
+        >>> import jointfmu
+        >>> plate = jointfmu.load("BoltedJoint")
+        >>> frame = plate.evaluate(preload=9e3, s_rel_x=[0.0, 1e-6])
+        >>> bool(frame["f_x"][1] < frame["f_x"][0] == 0.0)
+        True
+        """
+        return self._run(fmu, inputs, each_from_rest=True)
+
+    def follow(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
+        """Compute every output along a path of inputs from rest. Friction keeps its history along the path.
+
+        fmu    : name of one of the joint's FMUs; default: the first
+        inputs : numbers or arrays (n) [SI]; inputs that are not named have their start values
+
+        Raises ValueError for an unknown input, a value outside its interval, or arrays of different lengths.
+
+        >>> import jointfmu
+        >>> plate = jointfmu.load("BoltedJoint")
+        >>> path = plate.follow(preload=9e3, s_rel_x=[0.0, 5e-6, 0.0])
+        >>> bool(path["f_x"][2] > 0.0 and path["E_loss"][2] > 0.0)
+        True
+        """
+        return self._run(fmu, inputs, each_from_rest=False)
+
+    def _run(self, fmu: str | None, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool) -> Frame:
+        """Evaluate the points one after the other, with inputs broadcast to the same length."""
+        model = self.model(fmu)
+        names = [v.name for v in model.inputs]
+        if unknown := [name for name in inputs if name not in names]:
+            raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
+        columns = {name: np.ravel(np.asarray(value, dtype=np.float64)) for name, value in inputs.items()}
+        columns, _ = broadcast_columns(columns, model.name)
+        for variable in model.inputs:
+            outside = [x for x in columns.get(variable.name, ()) if not variable.interval.contains(x)]
+            if outside:
+                allowed = f"{variable.interval} {variable.unit}"
+                raise ValueError(f"{model.name}: {variable.name} = {outside[0]:g} is outside {allowed}")
+        if model.name not in self._engines:
+            self._engines[model.name] = open_joint(model, self.file)
+        found = self._engines[model.name].follow(columns, each_from_rest=each_from_rest)
+        units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}
+        shown = {n: found.columns[n] for n in units if n in columns or n not in names}
+        return Frame(shown, units, found.warnings)
+
+    @cached_property
+    def _engines(self) -> dict[str, JointEngine]:
+        """{FMU: opened joint}."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Fields alone: an opened joint belongs to its process."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+    @plots.apply_style()
+    def plot(self, fmu: str | None = None) -> "Figure":
+        """Draw the curves over the load, and hysteresis loops if the joint has any: a matplotlib figure."""
+        with require_package("draw"):
+            from ..pages.report.course import LoadHistory
+            from ..pages.report.figure import draw_panels
+            from ..pages.report.joint import loop_figure, ramp_figure
+        course = LoadHistory(self.model(fmu), self.file)
+        panels = list(ramp_figure(course).panels)
+        loops = course.compute_loops() if course.model.load_cycle else None
+        if loops and any(loop.energy_loss for loop in loops.loops):
+            panels += loop_figure(course, loops).panels
+        figure = plots.create_figure((4.4 * len(panels), 3.8))
+        draw_panels(figure, panels)
+        return figure
+
+    def save(self, path: str | Path, *, force: bool = False) -> Path:
+        """Write the parameter file (TOML), with the facts as comments at its head.
+
+        force : replace a file that jointfmu did not write, or that was edited
+
+        Raises ValueError if the file may not or cannot be written.
+        """
+        check_output(path, PARAMETER_FILE, force)
+        facts = [
+            f"# {name} = {value:.6g} {unit}: {text}\n" for name, (value, unit, text) in self.facts.items()
+        ]
+        head = "# Computed beside the parameters:\n" if facts else ""
+        write_parameter_text(path, head + "".join(facts) + format_parameter_file(self.file))
+        return Path(path)
+
+    def build(
+        self,
+        out: str | Path = "dist",
+        flavour: str | Sequence[str] = ("fmi2", "fmi3"),
+        *,
+        fmu: str | None = None,
+        name: str | None = None,
+        force: bool = False,
+    ) -> list[Path]:
+        """Build the joint's FMUs as OUT/FLAVOUR/NAME.fmu; returns the paths.
+
+        flavour : fmi2, fmi3, python, or several of them
+        fmu     : name of one FMU, a key of `fmus`; default: all
+        name    : model name of this one FMU, in place of its own
+        force   : replace FMUs of these names that jointfmu did not write
+
+        Raises ValueError for an unknown name or flavour, or a folder that cannot be written.
+        """
+        flavours = [flavour] if isinstance(flavour, str) else [*flavour]
+        names = [*self.fmus] if fmu is None else [self.model(fmu).name]
+        with require_package("build"):
+            from jointfmu_fmu_src import building
+
+            return building.build(names, flavours, self.file, Path(out), alias=name, force=force)
+
+    def report(self, path: str | Path, fmu: str | None = None, *, force: bool = False) -> Path:
+        """Write a page about the joint (HTML): curves, loops, sources of its numbers.
+
+        fmu   : FMU that the page describes; default: the first
+        force : replace a file that jointfmu did not write
+
+        Raises ValueError if the file may not or cannot be written.
+        """
+        check_output(path, HTML_PAGE, force)
+        with require_package("write a report"):
+            from ..pages.report.joint import write_joint_report
+        write_joint_report(Path(path), self.file, fmu)
+        return Path(path)

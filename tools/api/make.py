@@ -1,0 +1,301 @@
+"""Functions that make joints: from names, parameter files, drawings and measurements."""
+
+import inspect
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.kind import JointKind
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.parameters import load_parameter_file as load_file
+
+from ..common import plots
+from ..common.joint_parts import load_tool_module
+from ..common.options import Option
+from ..inputs.drawing.part import NewJoint, NewJointCommand
+from ..inputs.drawing.reading import parse_number
+from ..inputs.fitting.outcome import FitResult, draw_fit, figure_size, format_deviation
+from ..inputs.fitting.procedure import fit_procedures
+from ..joints.harmonic_drive.catalogue import list_drives
+from ..joints.harmonic_drive.new import NEW as NEW_DRIVE
+from .drive_joint import DriveJoint
+from .frame import Table, TableDisplay
+from .joint import Facts, Joint
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_MAKER_DOCSTRING = """Make {}.
+
+    Numbers have the unit stated below; a text may have its own unit: '0.8 um'. Write a size as (200, 100),
+    and different values for each side or bolt as [0.8, 1.6]. Lists, tuples and arrays are equivalent.
+
+{}
+
+    Raises ValueError, one line, for a missing or impossible value.
+
+    >>> import jointfmu
+    >>> {}
+"""
+_OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
+
+
+def create_joint(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
+    """Make the joint object of a parameter file."""
+    joint_class = DriveJoint if file.joint == "harmonic_drive" else Joint
+    return joint_class(file, facts or {}, tuple(notes))
+
+
+def load(source: str | Path) -> Joint:
+    """Load a joint from a parameter file (TOML), or by name.
+
+    source : path of a file; name of an FMU (`BoltedJoint`) or of a joint (`bolted_joint`), for its shipped
+        default; or name of a catalogue entry (`CSG-25-100`)
+
+    Raises ValueError, one line, for a wrong file or an unknown name.
+
+    >>> import jointfmu
+    >>> jointfmu.load("BoltedJoint").name
+    'box specimen of Zhao 2018'
+    """
+    name = str(source)
+    if name in MODELS or name in KINDS:
+        return create_joint(load_default(MODELS[name].joint if name in MODELS else name))
+    if Path(source).suffix == ".toml" or Path(source).is_file():
+        return create_joint(load_file(source))
+    if any(item.name.lower() == name.lower() for item in list_drives()):
+        with _use_python_names():
+            return make_from_drawing(NEW_DRIVE, {"catalogue": name})
+    raise ValueError(
+        f"{name!r} is not a parameter file (.toml) or a known name; allowed are "
+        f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
+    )
+
+
+def make_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str, object]) -> Joint:
+    """Make the joint of a drawing.
+
+    option_values : {option: value}, in the forms that `_to_command_line_value` accepts
+
+    Raises ValueError for an unknown or missing option, or an impossible value. The message names options as
+    on the command line.
+    """
+    options = {option.name: option for option in joint_command.options}
+    if unknown := [name for name in option_values if name not in options]:
+        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(options)}")
+    if missing := [
+        o.name for o in joint_command.options if o.is_required and option_values.get(o.name) is None
+    ]:
+        raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].help_text}")
+    new: NewJoint = joint_command.make_joint(
+        {name: _to_command_line_value(o, option_values.get(name)) for name, o in options.items()}
+    )
+    return create_joint(new.file, new.facts, new.warnings)
+
+
+@contextmanager
+def _use_python_names() -> Iterator[None]:
+    """Context that replaces option names of the command line in errors by argument names of Python."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(_OPTION_PATTERN.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
+
+
+def _to_command_line_value(option: Option, value: Any) -> object:
+    """Convert a value to its form on the command line: text, a list of texts, or a bool for a flag.
+
+    A size becomes one text such as 200x100. Raises ValueError for too many values, or an unknown choice.
+    """
+    if option.is_flag:
+        return bool(value)
+    if value is None:
+        return None
+    values = value.tolist() if isinstance(value, np.ndarray) else value
+    texts = [_format_value(v) for v in (values if isinstance(values, list | tuple) else [values])]
+    if option.separator and not (
+        option.is_list and any(sign in text for text in texts for sign in (",", option.separator))
+    ):
+        texts = [option.separator.join(texts)]
+    if not texts or (len(texts) > 1 and not option.is_list):
+        raise ValueError(f"{option.name} = {value!r} are {len(texts)} values, expected one")
+    if option.is_list:
+        return texts
+    if option.choices and texts[0] not in option.choices:
+        raise ValueError(f"{option.name} = {texts[0]!r}, allowed are {', '.join(option.choices)}")
+    return texts[0]
+
+
+def _format_value(value: Any) -> str:
+    """Format a number or a text; two numbers become a position X,Y."""
+    if isinstance(value, list | tuple | np.ndarray):
+        return ",".join(map(_format_value, value))
+    return repr(float(value)) if isinstance(value, float) else str(value)
+
+
+def create_maker(
+    name: str, kind: JointKind, example: str, first_option: str | None = None
+) -> Callable[..., Joint]:
+    """Create the public function that makes a joint from its drawing.
+
+    The signature and the docstring of the function list the options of the drawing.
+
+    name         : name of the function
+    example      : call of the function and its result, as in a doctest
+    first_option : option that may be passed as the first positional argument
+    """
+    drawing: NewJointCommand = load_tool_module(kind, "new").NEW  # type: ignore[union-attr]
+    positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
+
+    def make(*args: object, **options: object) -> Joint:
+        arguments = signature.bind(*args, **options).arguments
+        with _use_python_names():
+            return make_from_drawing(drawing, arguments)
+
+    ordered = sorted(drawing.options, key=lambda option: option.name != first_option)
+    parameters = [
+        inspect.Parameter(
+            option.name,
+            positional if option.name == first_option else keyword,
+            default=inspect.Parameter.empty if option.is_required else False if option.is_flag else None,
+        )
+        for option in ordered
+    ]
+    signature = inspect.Signature(parameters, return_annotation=Joint)
+    make.__name__ = make.__qualname__ = name
+    make.__module__ = "jointfmu"
+    make.__signature__ = signature  # type: ignore[attr-defined]
+    meanings = "\n".join(f"    {option.name} : {_option_help(option)}" for option in ordered)
+    make.__doc__ = _MAKER_DOCSTRING.format(drawing.description, meanings, example.replace("\n", "\n    "))
+    return make
+
+
+def _option_help(option: Option) -> str:
+    return f"{option.help_text}{': ' + ', '.join(option.choices) if option.choices else ''}"
+
+
+@dataclass(frozen=True, repr=False)
+class Fit(TableDisplay):
+    """Result of a fit. `joint` has the fitted parameters; the printed table has each with its uncertainty.
+
+    outcome : fitted parameters, their uncertainty, and facts about the fit
+
+    >>> import jointfmu
+    >>> fit = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9)
+    >>> fit.joint.build("dist", "python", fmu="HarmonicDriveCompliance")[0].name
+    'HarmonicDriveCompliance.fmu'
+    """
+
+    outcome: FitResult
+
+    @property
+    def joint(self) -> Joint:
+        """The joint with the fitted parameters."""
+        return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
+
+    def _table(self) -> Table:
+        rows = [
+            (
+                row["name"],
+                f"{row['value']:.6g}",
+                row["unit"],
+                "unknown"
+                if row["relative_deviation"] is None
+                else format_deviation(row["relative_deviation"]),
+                "yes" if row["determined"] else "no",
+            )
+            for row in self.outcome.unknown_rows()
+        ]
+        doubt = self.outcome.rejection_reason()
+        lines = [f"warning: the fit does not determine the joint: {doubt}"] if doubt else []
+        lines += [f"note: {line}" for line in self.outcome.warnings()]
+        return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
+
+    @plots.apply_style()
+    def plot(self) -> "Figure":
+        """Draw data, fitted law and residuals; returns a matplotlib figure."""
+        figure = plots.create_figure(figure_size(self.outcome))
+        draw_fit(figure, self.outcome)
+        return figure
+
+
+def _procedure_paths(
+    procedure: str, takes_several: bool, file: str | Path | Sequence[str | Path]
+) -> Path | list[Path]:
+    """Convert the argument `file` to what a procedure takes: one path, or a list of paths."""
+    if isinstance(file, str | Path):
+        return [Path(file)] if takes_several else Path(file)
+    if not takes_several:
+        raise ValueError(f"procedure {procedure!r} takes one file")
+    return [Path(path) for path in file]
+
+
+def _to_procedure_value(option: Option, value: Any) -> object:
+    """Convert an option to the form that the function of a procedure takes; numbers are in SI units."""
+    if value is None or not (option.is_number or option.default_unit):
+        return _to_command_line_value(option, value)
+    if option.default_unit and isinstance(value, str):
+        return parse_number(option.name, value, option.default_unit, option.default_unit, None)
+    if not isinstance(value, int | float | np.number):
+        raise ValueError(f"{option.name} = {value!r} is not a number: {option.help_text}")
+    return float(value)
+
+
+def fit(
+    procedure: str,
+    file: str | Path | Sequence[str | Path] | None = None,
+    *,
+    joint: str | None = None,
+    start: Joint | None = None,
+    free: str | Sequence[str] | None = None,
+    **options: object,
+) -> Fit:
+    """Fit a joint's parameters to a measurement or to catalogue values, as `jointfmu fit PROCEDURE` does.
+
+    procedure : catalogue, torque-angle, log, loop or preload
+    file      : measured data (CSV; the heading names columns and units), if the procedure needs data; a list
+                if it takes several files
+    joint     : name of the joint, as `bolted_joint`, if several joints have the procedure
+    start     : joint whose parameters are the start of the fit
+    free      : names of the parameters to fit, or one name
+    options   : options of the procedure, numbers in SI units
+
+    Raises ValueError for bad input, RuntimeError if the fit does not converge.
+
+    >>> import jointfmu
+    >>> drive = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9).joint
+    >>> drive.values["K1"]
+    4700.0
+    """
+    requested, available = joint or (start.file.joint if start else None), fit_procedures()
+    allowed = {
+        name: [other for other in choices if requested in (None, other)]
+        for name, choices in available.items()
+        if requested is None or requested in choices
+    }
+    if procedure not in allowed:
+        raise ValueError(f"procedure = {procedure!r}, allowed are {', '.join(allowed)}")
+    if len(joints := allowed[procedure]) > 1:
+        raise ValueError(f"procedure {procedure!r} is of several joints; expected joint = one of {joints}")
+    chosen = available[procedure][joints[0]]
+    if chosen.takes_file == (file is None):
+        raise ValueError(f"procedure {procedure!r} takes {'a' if chosen.takes_file else 'no'} file")
+    units = {option.unit_option for option in chosen.options}  # for text without a unit; numbers here are SI
+    declared = {option.name: option for option in chosen.options if option.name not in units}
+    if unknown := [name for name in options if name not in declared]:
+        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(declared)}")
+    if missing := [name for name, option in declared.items() if option.is_required and name not in options]:
+        raise ValueError(f"{', '.join(missing)} missing: {declared[missing[0]].help_text}")
+    data = () if file is None else (_procedure_paths(procedure, chosen.takes_several_files, file),)
+    names = [free] if isinstance(free, str) else free
+    with _use_python_names():
+        values = {
+            n: _to_procedure_value(option, options.get(n, option.default)) for n, option in declared.items()
+        }
+        return Fit(chosen.run(*data, start and start.file, names, **values))

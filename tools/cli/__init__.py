@@ -1,0 +1,64 @@
+"""The command line `jointfmu COMMAND`.
+
+Exit status 0: success; 1: a check failed; 2: bad input, with one line on standard error; 130: interrupted.
+"""
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status.
+
+    All imports of the package are inside this function. They take a second, and Ctrl-C must work meanwhile.
+    """
+    name = "jointfmu"
+    try:
+        from .parser import build_parser
+
+        words = list(sys.argv[1:] if argv is None else argv)
+        args = build_parser(words).parse_args(words)
+        name = f"jointfmu {args.command}"
+        return _run_command(args, name)
+    except (KeyboardInterrupt, ImportError) as error:
+        if not _is_interrupted(error):
+            raise
+        hint = f"; {error}" if isinstance(error, KeyboardInterrupt) and error.args else ""
+        print(f"{name}: interrupted{hint}", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        # Discard buffered output: otherwise the interpreter reports the broken pipe when it exits.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _is_interrupted(error: BaseException | None) -> bool:
+    """Return whether Ctrl-C caused an error. Some packages turn KeyboardInterrupt into ImportError."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__ or error.__context__
+    return error is not None
+
+
+def _run_command(args: Any, name: str) -> int:
+    """Run a parsed command; returns the exit status. Errors of the command are printed on one line."""
+    from jointfmu.progress import show_status
+    from jointfmu.quantity.refusal import InputRefusal
+
+    from . import outputs
+    from .command import option_of_setting
+
+    try:
+        with show_status(name):
+            outputs.check_command_outputs(args.outputs, args)
+            status = int(args.run(args).print_result(args.json))
+        print(end="", flush=True)
+        return status
+    except (ValueError, RuntimeError) as error:
+        hint = [f"({option_of_setting(args, error.setting)})"] if isinstance(error, InputRefusal) else []
+        print(f"{name}:", *str(error).splitlines(), *hint, file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
+    except OverflowError:
+        print(f"{name}: a parameter is so large that results of the law exceed 1.8e308", file=sys.stderr)
+        return 2

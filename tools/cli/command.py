@@ -1,0 +1,193 @@
+"""Shared parts of all commands: argument parser, result of a command, the options `--json` and `--set`."""
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, NoReturn, TypeAlias
+
+from jointfmu.files.outputs import FileKind
+
+from ..common.judgement import Plausibility
+from ..common.options import option_flag
+from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandResult:
+    """Result of a command, to be printed.
+
+    document      : JSON object for `--json`
+    lines         : text for people, on standard output
+    notes         : text for people, on standard error
+    judgement     : validity of the stiffness; its lines and warnings are printed too, and join the document
+    written_files : paths of the files that the command wrote, printed last; None entries are ignored
+    exit_status   : exit status of the process
+    """
+
+    document: Any
+    lines: Iterable[str] = ()
+    notes: Iterable[str] = ()
+    judgement: Plausibility | None = None
+    written_files: Iterable[object] = ()
+    exit_status: int = 0
+
+    def print_result(self, as_json: bool) -> int:
+        """Print the result, as one JSON object or as text; returns the exit status."""
+        if as_json:
+            validity = {} if self.judgement is None else self.judgement.to_json()
+            print(json.dumps({**self.document, **validity} if validity else self.document))
+            return self.exit_status
+        judgement = self.judgement or Plausibility(None, ())
+        for line in (*self.lines, *judgement.format_lines()):
+            print(line)
+        for note in (*self.notes, *(f"warning: {text}" for text in judgement.warnings)):
+            print(note, file=sys.stderr)
+        for path in filter(None, self.written_files):
+            print(f"wrote {path}")
+        return self.exit_status
+
+
+CommandFunction = Callable[[argparse.Namespace], CommandResult]
+SubParsers: TypeAlias = "argparse._SubParsersAction[Parser]"
+"""Group of sub-parsers to which commands are added."""
+DEFAULT_SUBCOMMANDS = {"surface": ("identify", "synthesize")}
+"""{command: its sub-commands}. If the user names no sub-command, the first one runs."""
+
+
+_INVALID_CHOICE = re.compile(r"invalid choice: '?([^' ]*)'? \(choose from (.*)\)")
+"""Error message of argparse for an invalid choice."""
+
+
+def suggest_word(word: str, known_words: Iterable[str]) -> str:
+    """Format a suggestion for an error message: the known word most similar to `word`; empty if none is."""
+    matches = get_close_matches(word, [*known_words], 1)
+    return f"; did you mean {matches[0]}?" if matches else ""
+
+
+class Parser(argparse.ArgumentParser):
+    """Argument parser with one-line errors, negative numbers in any notation, and an example in the help.
+
+    example : words after `jointfmu`; None: the entry of `EXAMPLES`
+    outputs : {argument: kind of file} of the files that the command writes
+    """
+
+    example: str | None = None
+    outputs: dict[str, FileKind]
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.outputs = {}
+        self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
+
+    def format_help(self) -> str:
+        """Format the help of argparse, followed by a one-line example to copy."""
+        name = self.prog.partition(" ")[2]
+        example = self.example or EXAMPLES.get(name)
+        if example is None:
+            return super().format_help()
+        before = f", {EXAMPLE_PREREQUISITES[name]}" if name in EXAMPLE_PREREQUISITES else ""
+        return f"{super().format_help()}\nexample{before}:\n  jointfmu {example}\n"
+
+    def error(self, message: str) -> NoReturn:
+        """Print the error on one line, with a suggestion for an invalid choice, and exit with status 2."""
+        if match := _INVALID_CHOICE.search(message):
+            message += suggest_word(match[1], re.findall(r"[\w.-]+", match[2]))
+        print(f"{self.prog}: {message}", file=sys.stderr)
+        raise SystemExit(2)
+
+
+_METAVAR_BY_TYPE: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}
+
+
+def declare_argument(
+    parser: "argparse._ActionsContainer",
+    name: str,
+    value_type: type,
+    help_text: str,
+    metavar: str = "",
+    alias: str | None = None,
+    **options: Any,
+) -> None:
+    """Declare an argument that takes values of a type. The help text names its default.
+
+    alias : second name of the option
+    """
+    if "default" in options:
+        default = options["default"]
+        help_text += f" (default: {f'{default:g}' if value_type is float else default})"
+    names = [name, alias] if alias else [name]
+    parser.add_argument(
+        *names, type=value_type, metavar=metavar or _METAVAR_BY_TYPE[value_type], help=help_text, **options
+    )
+
+
+def declare_command(
+    commands: SubParsers, name: str, command_function: CommandFunction, help_text: str
+) -> Parser:
+    """Declare a command that has the option `--json`."""
+    sub: Parser = commands.add_parser(name, help=help_text, description=format_sentence(help_text))
+    sub.set_defaults(run=command_function, outputs=sub.outputs)
+    sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    return sub
+
+
+def format_sentence(text: str) -> str:
+    """Format a help text as a sentence: first letter capital, full stop at the end."""
+    return f"{text[0].upper()}{text[1:]}{'' if text.endswith('.') else '.'}"
+
+
+def option_of_setting(args: argparse.Namespace, setting: str) -> str:
+    """Return the command-line option of a setting that an error names.
+
+    The command lists in `options` the settings whose option has another name.
+    """
+    return option_flag(getattr(args, "options", {}).get(setting, setting))
+
+
+def parse_joint_name(text: str) -> str:
+    """Parse the name of a joint: `bolted-joint` as `jointfmu new` has it, or `bolted_joint`."""
+    return text.replace("-", "_")
+
+
+def declare_settings(parser: argparse.ArgumentParser) -> None:
+    """Declare the option `--set NAME=VALUE ...`, which sets parameters."""
+    parser.add_argument(
+        "--set",
+        dest="settings",
+        nargs="+",
+        action="extend",
+        type=_parse_setting_argument,
+        default=[],
+        metavar="NAME=VALUE",
+        help="set parameters (SI units)",
+    )
+    parser.set_defaults(options={"settings": "set"})
+
+
+def parse_setting(text: str) -> tuple[str, Any]:
+    """Parse `NAME=VALUE` of the command line; the value is a number, true, false or a word.
+
+    Raises ValueError if there is no `=` or no name.
+    """
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise ValueError(f"{text!r} is not a setting; expected NAME=VALUE")
+    value = value.strip()
+    if value.lower() in ("true", "false"):
+        return name.strip(), value.lower() == "true"
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        return name.strip(), value
+
+
+def _parse_setting_argument(text: str) -> tuple[str, object]:
+    try:
+        return parse_setting(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None

@@ -1,0 +1,40 @@
+"""Commands of the command line, most of them in a module of the same name. Functions that they share."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...common import plots
+from ...common.options import Option, option_flag
+
+if TYPE_CHECKING:
+    from ...pages.report.figure import Panel
+
+
+def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
+    """Declare on the command line an option that a joint defines."""
+    if option.is_flag:
+        parser.add_argument(option_flag(option.name), action="store_true", help=option.help_text)
+        return
+    parser.add_argument(
+        option_flag(option.name),
+        nargs="+" if option.is_list else None,
+        type=float if option.is_number else str,
+        default=option.default,
+        choices=option.choices or None,
+        required=option.is_required,
+        metavar=None if option.choices else option.metavar,
+        help=option.help_text,
+    )
+
+
+def save_panels(path: Path, panels: "Sequence[Panel]", figure_size: tuple[float, float]) -> None:
+    """Draw panels side by side and save them as a picture.
+
+    figure_size : width and height [inch]
+    """
+    from ...pages.report.figure import draw_panels
+
+    with plots.open_figure(path, figure_size) as figure:
+        draw_panels(figure, panels)

@@ -1,0 +1,88 @@
+"""Commands that analyse a bolted assembly by finite elements, `footprint` and `modes`: shared functions."""
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.bolted_joint import KIND
+from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
+
+from ....common.judgement import Plausibility, assess_law, find_rms_height
+from ....common.pressure import warn_overload
+from ....inputs.drawing.vdi2230 import proof_load
+from ...command import declare_argument
+
+if TYPE_CHECKING:
+    from ....fem.geometry import Assembly
+
+
+def declare_assembly_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the assembly file, `--preload` and `--params`."""
+    declare_argument(parser, "assembly", Path, "assembly file: bodies and bolts (TOML)", "ASSEMBLY")
+    declare_argument(parser, "--preload", float, "preload of each bolt [N]", "F", default=9e3)
+    declare_argument(parser, "--params", Path, "parameter file of the interface (default: box specimen)")
+
+
+def load_joint_file(path: Path | None) -> ParameterFile:
+    """Load the parameter file of a bolted joint; None: the default file.
+
+    Raises ValueError for a file of another joint.
+    """
+    if path is None:
+        return load_default(KIND.name)
+    file = load_parameter_file(path)
+    if file.joint != KIND.name:
+        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {KIND.name!r}")
+    return file
+
+
+def check_bolt_stiffness(option: str, file: ParameterFile) -> None:
+    """Raise ValueError if an option for the complete joint is set and the file has no bolt stiffness."""
+    if not file.values_by_name.get("bolt_stiffness", 0.0) > 0.0:
+        raise ValueError(
+            f"{option} needs the stiffness of a bolt; state bolt_stiffness above 0 N/m in the file of "
+            "--params"
+        )
+
+
+def judge_assembly(
+    file: ParameterFile, assembly: "Assembly", preload: float, mean_pressure: float, peak_pressure: float
+) -> Plausibility:
+    """Judge the stiffness of an assembly's contact, and the preload against the proof load of the bolts.
+
+    preload       : preload of each bolt [N]
+    mean_pressure : mean contact pressure [Pa]
+    peak_pressure : greatest contact pressure [Pa]
+    """
+    judgement = assess_law(
+        KINDS[file.joint].extract_law(file.values), [mean_pressure], find_rms_height(file), peak_pressure
+    )
+    return judgement.with_warnings(
+        warn_overload("preload", preload, proof_load(assembly.bolts.hole_diameter))
+    )
+
+
+def with_assembly(file: ParameterFile, assembly: "Assembly", include_bolts: bool) -> ParameterFile:
+    """Return the joint's parameters with contact area and materials of an assembly.
+
+    include_bolts : also set number and rows of the bolts
+
+    If the bolts do not form two rows, the row distance is the head diameter: the pressure under the heads
+    carries the moment.
+    """
+    changes = {"A_0": assembly.contact_area}
+    for name in ("side1", "side2"):
+        body = getattr(assembly, name)
+        changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
+    if include_bolts:
+        rows = assembly.outer_rows()
+        changes |= {"n_bolts": float(len(assembly.bolts.positions))}
+        if rows is None:
+            changes |= {"row_bolts": 1.0, "row_distance": assembly.bolts.head_diameter}
+        else:
+            changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
+    old = file.values_by_name
+    new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
+    return file.with_values(new, "derived", f"from the assembly {assembly.name}")

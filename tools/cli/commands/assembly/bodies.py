@@ -1,0 +1,163 @@
+"""Bodies of an imported contact field: two plates of stated thickness, with bolts."""
+
+import argparse
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
+
+from ....inputs.drawing.reading import parse_number, parse_numbers
+from ....inputs.drawing.tables import read_threads
+from ....inputs.fields.nodal_result import ContactField
+from ....joints.bolted_joint.field import PlaneLayout
+from ...command import declare_argument
+from . import check_bolt_stiffness
+
+if TYPE_CHECKING:
+    from ....fem.geometry import Assembly
+
+MAX_OUTSIDE_DISTANCE = 1e-6
+"""Largest distance [m] of a bolt outside the bounding rectangle of the contact."""
+MIN_AREA_RATIO, MAX_CENTROID_OFFSET_RATIO = 0.9, 0.01
+"""Limits for a warning: contact area over the area of the plates [1], at least, and distance between the
+centroids of contact and plates over the plate size [1], at most."""
+
+
+def declare_body_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options that describe the plates and the bolts."""
+    parser.add_argument(
+        "--thickness",
+        nargs=2,
+        metavar=("T1", "T2"),
+        help="thicknesses of both plates [mm]: write the complete joint (sides = "
+        "elastic), with plates as large as the rectangle around the contact (default: write the interface "
+        "only)",
+    )
+    parser.add_argument(
+        "--attached",
+        choices=("faces", "edge", "heads"),
+        help="faces of the plates that move with the connected bodies (default: faces)",
+    )
+    text = "position of each bolt in the plane of the file [mm] (default: positions of --params, relative to "
+    declare_argument(parser, "--bolts", str, text + "the centroid)", "X,Y", nargs="+")
+    declare_argument(
+        parser, "--hole", str, "diameter of the clearance holes [mm] (default: from --params)", "D"
+    )
+    text = "outer diameter of head or washer [mm] (default: from --params, else the hexagon head of the "
+    declare_argument(parser, "--head", str, text + "largest bolt that passes the hole)", "D")
+
+
+def check_body_arguments(args: argparse.Namespace, file: ParameterFile) -> None:
+    """Raise ValueError before the work starts if the options do not describe a complete joint."""
+    if args.attached and not args.thickness:
+        raise ValueError(f"--attached {args.attached} needs --thickness, the thickness of both plates")
+    for name in ("hole", "head"):
+        if getattr(args, name) and not args.thickness:
+            raise ValueError(f"--{name} needs --thickness, the thickness of both plates")
+    if args.thickness and not args.out:
+        raise ValueError("--thickness needs --out, the file for the complete joint")
+    if args.thickness:
+        check_bolt_stiffness("--thickness", file)
+
+
+def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: ContactField) -> Array | None:
+    """Positions (b, 2) [m] of the bolts in the plane of the field; None if they are not known.
+
+    Without `--bolts` they are the positions of the parameter file, relative to the centroid of the field. If
+    one of them lies outside the field, the file is of another contact: None.
+
+    Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
+    """
+    low = np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE
+    high = np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE
+    if not args.bolts:
+        positions = PlaneLayout.from_joint(file.values).bolt_positions + field.centroid
+        inside = np.all((positions > low) & (positions < high))
+        return positions if len(positions) == file.values.n_bolts and inside else None
+    stated = np.array(
+        [
+            parse_numbers("bolts", text, "mm", "m", separator=",", count=2, lower_bound=None)
+            for text in args.bolts
+        ]
+    )
+    if len(stated) != file.values.n_bolts:
+        raise ValueError(f"--bolts has {len(stated)} positions, expected {file.values.n_bolts:g}: n_bolts")
+    for i, place in enumerate(stated):
+        if not np.all((place > low) & (place < high)):
+            x, y = 1e3 * place
+            (x1, y1), (x2, y2) = 1e3 * low, 1e3 * high
+            raise ValueError(
+                f"--bolts: bolt {i + 1} at ({x:g}, {y:g}) mm is outside the contact, ({x1:.4g}, {y1:.4g}) to "
+                f"({x2:.4g}, {y2:.4g}) mm"
+            )
+    return stated
+
+
+def build_assembly(
+    args: argparse.Namespace, file: ParameterFile, field: ContactField, bolt_positions: Array | None
+) -> tuple["Assembly", list[str]]:
+    """Build the plates of a field with bolts; returns the assembly and notes about its shape.
+
+    bolt_positions : (b, 2) [m] in the plane of the field
+
+    Raises ValueError if positions or sizes of the bolts are missing, if heads overlap or extend beyond the
+    plates, or if the plates are too thin.
+    """
+    from ....fem.geometry import Assembly, BoltList, Plate, check_thickness
+
+    if bolt_positions is None:
+        raise ValueError("--thickness needs the positions of the bolts; state --bolts X,Y for each")
+    hole, head = _hole_and_head_diameters(args, file)
+    thick = [parse_number("thickness", text, "mm", "m") for text in args.thickness]
+    low, high = np.min(field.position, axis=0), np.max(field.position, axis=0)
+    (length, width), area = high - low, float(np.sum(field.area))
+    # a node in the middle of its area lies half an area's width inside the edge: enlarge to the true area
+    missing_area = area + len(bolt_positions) * 0.25 * np.pi * hole**2 - length * width
+    half = 0.5 * (length + width)
+    extension = np.sqrt(max(half**2 + missing_area, 0.0)) - half
+    extension = float(np.clip(extension, 0.0, np.sqrt(field.area.max())))
+    sides = [
+        Plate(
+            length=float(length + extension),
+            width=float(width + extension),
+            thickness=thick[i],
+            E=file.values_by_name[f"side{i + 1}.E"],
+            nu=file.values_by_name[f"side{i + 1}.nu"],
+            density=1.0,  # not used: the analysis is static
+        )
+        for i in range(2)
+    ]
+    places = bolt_positions - 0.5 * (low + high)
+    bolts = BoltList(
+        x=tuple(places[:, 0].tolist()), y=tuple(places[:, 1].tolist()), hole_diameter=hole, head_diameter=head
+    )
+    plates = Assembly(file.name, sides[0], sides[1], bolts)
+    check_thickness(plates)
+    notes = [
+        f"the plates are the rectangle around the contact, {1e3 * sides[0].length:.4g} x "
+        f"{1e3 * sides[0].width:.4g} mm, heads {1e3 * head:.4g} mm over holes of {1e3 * hole:.4g} mm"
+    ]
+    centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / plates.contact_area
+    offset = np.hypot(*(field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
+    if (share := area / plates.contact_area) < MIN_AREA_RATIO or offset > MAX_CENTROID_OFFSET_RATIO:
+        notes.append(
+            f"the contact covers {share:.0%} of that rectangle, its centroid is off by {offset:.1%} of the "
+            "plate size: plates of another outline have another stiffness"
+        )
+    return plates, notes
+
+
+def _hole_and_head_diameters(args: argparse.Namespace, file: ParameterFile) -> tuple[float, float]:
+    """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
+    layout = PlaneLayout.from_joint(file.values)
+    hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole_diameter
+    if not hole > 0.0:
+        raise ValueError("--thickness needs the holes of the bolts; state --hole")
+    if args.head:
+        return hole, parse_number("head", args.head, "mm", "m")
+    fitting = [thread for thread in read_threads().values() if thread.d < hole]
+    if layout.head_diameter <= 0.0 and not fitting:
+        raise ValueError(f"no bolt of the tables fits a hole of {1e3 * hole:g} mm; state --head")
+    return hole, layout.head_diameter or max(fitting, key=lambda thread: thread.d).hexagon

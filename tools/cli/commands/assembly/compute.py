@@ -1,0 +1,192 @@
+"""`jointfmu footprint compute`: contact pressure of a bolted joint by finite elements."""
+
+import argparse
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE, write_parameter_text
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.parameters import ParameterFile, format_parameter_file
+
+from ....common.columns import FIELD_FILE_KIND
+from ....common.shown import fact_document, format_facts
+from ....fem import require_fem_packages
+from ....joints.bolted_joint.field import insert_elastic_bodies, joint_facts
+from ...command import CommandResult, SubParsers, declare_argument, declare_command
+from ...outputs import declare_output
+from . import check_bolt_stiffness, declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
+
+if TYPE_CHECKING:
+    from ....fem.bolted_contact import JointSolution
+    from ....fem.convergence import MeshResult
+
+
+MAX_MESHES = 5
+"""Largest number of meshes for `--refine`."""
+MIN_REFINEMENT = 0.3
+"""Smallest refinement [1] at which the mesh still resolves a hole."""
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu footprint compute` with its options."""
+    text = "compute the contact pressure of a bolted joint by finite elements"
+    sub = declare_command(commands, "compute", run, text)
+    declare_assembly_arguments(sub)
+    declare_argument(sub, "--moment", float, "bending moment about x [N.m] (default: 0)", "M")
+    declare_output(
+        sub, "--out", PARAMETER_FILE, "write the parameter file of the joint with this field (TOML)"
+    )
+    sub.add_argument(
+        "--attached",
+        choices=("faces", "edge", "heads"),
+        help="write the complete joint (sides = elastic) between these surfaces of the bodies: outer faces, "
+        "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
+    )
+    declare_output(sub, "--field", FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
+    declare_output(sub, "--plot", PICTURE, "draw the pressure (.png, .svg)")
+    declare_argument(
+        sub, "--refine", int, f"number of meshes of a convergence study, 1 to {MAX_MESHES}", default=1
+    )
+    declare_argument(sub, "--refinement", float, "factor that divides the element sizes", "R", default=1.0)
+
+
+def run(args: argparse.Namespace) -> CommandResult:
+    """Run the command `jointfmu footprint compute`."""
+    with require_fem_packages("the finite-element analysis"):
+        from ....fem import convergence, results
+        from ....fem.assembly import read_assembly as read
+        from ....fem.convergence import check_bolt_symmetry
+        from ....fem.geometry import check_thickness
+    assembly, file = read(args.assembly), load_joint_file(args.params)
+    moment = 0.0 if args.moment is None else args.moment
+    assembly.bolt_forces(args.preload, moment)
+    _check_arguments(args)
+    if args.attached:
+        check_bolt_stiffness(f"--attached {args.attached}", file)
+        check_thickness(assembly)
+    if args.field:
+        results.check_field_path(args.field)
+    file = with_assembly(file, assembly, include_bolts=args.out is not None)
+    levels = convergence.refinement_series(args.refine, args.refinement)
+    with require_fem_packages("the finite-element analysis"):
+        curve = tabulate_approach(file.values)
+        rows, solution = convergence.run_mesh_study(assembly, curve, args.preload, moment, levels)
+    result = _with_field(args, file, solution) if args.out else file
+    whole = joint_facts(result, tightening_force(args, result)) if args.attached else {}
+    written = _write_outputs(args, result, solution)
+    facts = _collect_results(solution, moment, args.preload)
+    judgement = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak_pressure)
+    judgement = judgement.with_warnings(
+        check_bolt_symmetry(solution.field, assembly.bolts.positions, moment != 0.0)
+    )
+    document = facts | {"meshes": [_mesh_document(row) for row in rows], "written": written}
+    document |= {"whole": fact_document(whole)} if whole else {}
+    lines = [*_format_results(facts), *_format_convergence(rows), *format_facts(whole)]
+    return CommandResult(document=document, lines=lines, judgement=judgement, written_files=written)
+
+
+def _check_arguments(args: argparse.Namespace) -> None:
+    """Raise ValueError before the work starts if an option is out of range or `--out` is missing."""
+    if not 1 <= args.refine <= MAX_MESHES:
+        raise ValueError(f"--refine = {args.refine} is outside [1, {MAX_MESHES}]: number of meshes")
+    if not MIN_REFINEMENT <= args.refinement <= 4.0:
+        raise ValueError(f"--refinement = {args.refinement:g} is outside [{MIN_REFINEMENT:g}, 4]")
+    if args.attached and not args.out:
+        raise ValueError(f"--attached {args.attached} needs --out, the file for the complete joint")
+
+
+def _write_outputs(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
+    """Write the files of `--out`, `--field` and `--plot`; returns their paths."""
+    from ....fem import results
+
+    if args.out:
+        write_parameter_text(args.out, format_parameter_file(file))
+    if args.field:
+        results.write_field(solution, args.field)
+    if args.plot:
+        results.draw_pressure(solution, args.plot)
+    return [str(path) for path in (args.out, args.field, args.plot) if path]
+
+
+def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
+    """Return the joint with the computed pressure field, and with elastic bodies if `--attached` is set.
+
+    The field is of the preload after embedding; it contains the change of pressure under a moment.
+    """
+    from ....fem.bolted_contact import insert_contact_field
+
+    interface, shape = insert_contact_field(file, solution, args.preload, args.moment or 0.0)
+    if not args.attached:
+        return interface
+    preload = tightening_force(args, interface)
+    return insert_elastic_bodies(interface, solution.joint.assembly, preload, args.attached, shape)
+
+
+def tightening_force(args: argparse.Namespace, file: ParameterFile) -> float:
+    """Tightening force [N] of each bolt: the preload before embedding."""
+    return float(args.preload + file.values.embedding)
+
+
+def _collect_results(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:
+    field = solution.field
+    places, between = solution.pressure_between_bolts
+    return {
+        "assembly": solution.joint.assembly.name,
+        "preload": preload,
+        "moment": moment,
+        "area": float(field.area.sum()),
+        "force": field.force,
+        "p_mean": field.force / float(field.area.sum()),
+        "p_max": solution.peak_pressure,
+        "between": [
+            {"x": x, "y": y, "p": p} for (x, y), p in zip(places.tolist(), between.tolist(), strict=True)
+        ],
+        "open_share": float(field.area[field.pressure <= 0.0].sum() / field.area.sum()),
+        **solution.stiffness,
+    }
+
+
+def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
+    """Format the results as lines of text."""
+    yield (
+        f"{result_values['assembly']}: {result_values['preload']:g} N per bolt, moment "
+        f"{result_values['moment']:g} N.m"
+    )
+    yield f"contact   {result_values['area'] * 1e4:.2f} cm2, {100 * result_values['open_share']:.3g} % open"
+    yield f"force     {result_values['force']:.6g} N"
+    yield (
+        f"pressure  mean {result_values['p_mean'] / 1e6:.3g} MPa, peak {result_values['p_max'] / 1e6:.4g} MPa"
+    )
+    for middle in result_values["between"]:
+        yield f"          between bolts at ({middle['x']:g}, {middle['y']:g}) m: {middle['p'] / 1e6:.3g} MPa"
+    yield (
+        f"interface K_N {result_values['K_N']:.5g} N/m, K_rx {result_values['K_rx']:.5g}, K_ry "
+        f"{result_values['K_ry']:.5g} N.m/rad"
+    )
+
+
+def _mesh_document(mesh_result: "MeshResult") -> dict[str, object]:
+    return {
+        "refinement": mesh_result.refinement,
+        "elements": mesh_result.element_count,
+        "unknowns": mesh_result.unknown_count,
+        **mesh_result.result_values,
+    }
+
+
+def _format_convergence(mesh_results: list["MeshResult"]) -> Iterator[str]:
+    """Format the convergence study: results of each mesh, relative changes, observed order."""
+    if len(mesh_results) < 2:
+        return
+    from ....fem.convergence import RESULT_UNITS, observed_orders, relative_changes
+
+    heads = [f"{name} [{unit}]" for name, unit in RESULT_UNITS.items()]
+    yield f"{'mesh':>6} {'unknowns':>9} " + " ".join(f"{head:>16}" for head in heads)
+    for row in mesh_results:
+        values = " ".join(f"{row.result_values[name]:16.6g}" for name in RESULT_UNITS)
+        yield f"{row.refinement:6.2f} {row.unknown_count:9d} {values}"
+    for change, row in zip(relative_changes(mesh_results), mesh_results[1:], strict=True):
+        percent = " ".join(f"{100.0 * change[name]:14.3f} %" for name in RESULT_UNITS)
+        yield f"change to {row.refinement:6.2f} {percent}"
+    if observed := observed_orders(mesh_results):
+        yield "observed order   " + " ".join(f"{observed[name]:16.1f}" for name in RESULT_UNITS)

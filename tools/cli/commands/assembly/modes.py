@@ -1,0 +1,93 @@
+"""`jointfmu modes`: natural frequencies of a bolted assembly without supports."""
+
+import argparse
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from jointfmu.files.outputs import MESH
+from jointfmu.files.writing import write_bytes
+from jointfmu.mechanics.curve import tabulate_approach
+
+from ....fem import require_fem_packages
+from ...command import CommandResult, SubParsers, declare_argument, declare_command
+from ...outputs import declare_output
+from . import declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
+
+if TYPE_CHECKING:
+    from ....fem.modes import NaturalModes
+
+MAX_MODES = 40
+"""Largest number of modes."""
+
+
+def add_modes(commands: SubParsers) -> None:
+    """Declare the command `jointfmu modes` with its options."""
+    text = "compute natural frequencies of a free bolted assembly with contact stiffness"
+    sub = declare_command(commands, "modes", run, text)
+    declare_assembly_arguments(sub)
+    declare_argument(sub, "--moment", float, "bending moment about x [N.m]", "M", default=0.0)
+    declare_argument(sub, "--count", int, f"number of modes, 1 to {MAX_MODES}", default=6)
+    declare_argument(sub, "--refinement", float, "factor that divides all element sizes", "R", default=1.0)
+    declare_output(sub, "--vtu", MESH, "write the mode shapes (.vtu)")
+
+
+def run(args: argparse.Namespace) -> CommandResult:
+    """Run the command `jointfmu modes`."""
+    with require_fem_packages("the finite-element analysis"):
+        from ....fem import modes as assembly_modes
+        from ....fem import results
+        from ....fem.assembly import read_assembly
+        from ....fem.bolted_contact import BoltedContact
+    assembly = read_assembly(args.assembly)
+    force = float(assembly.bolt_forces(args.preload, args.moment).sum())
+    _check_arguments(args)
+    file = with_assembly(load_joint_file(args.params), assembly, include_bolts=False)
+    law = tabulate_approach(file.values)
+    shear = float(file.values.shear_stiffness_ratio())
+    with require_fem_packages("the finite-element analysis"):
+        contact = BoltedContact.from_assembly(assembly, args.refinement)
+        solution = contact.solve(law, args.preload, args.moment)
+        modes = assembly_modes.preloaded_modes(solution, shear, args.count)
+        even = assembly_modes.uniform_pressure_modes(contact, law, force, shear, args.count)
+    if args.vtu:
+        write_bytes(args.vtu, results.modes_vtu(contact.bodies, modes))
+    judgement = judge_assembly(
+        file, assembly, args.preload, force / assembly.contact_area, solution.peak_pressure
+    )
+    head = (
+        f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, "
+        f"{modes.assembly_mass:.4g} kg"
+    )
+    document = _build_document(args, assembly.name, modes, even)
+    return CommandResult(document=document, lines=[head, *_format_modes(modes, even)], judgement=judgement)
+
+
+def _check_arguments(args: argparse.Namespace) -> None:
+    if not 1 <= args.count <= MAX_MODES:
+        raise ValueError(f"--count = {args.count} is outside [1, {MAX_MODES}]: number of modes")
+    if not 0.1 <= args.refinement <= 4.0:
+        raise ValueError(
+            f"--refinement = {args.refinement:g} is outside [0.1, 4]: factor that divides the element sizes"
+        )
+    if args.vtu and args.vtu.suffix.lower() not in MESH.endings:
+        raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is not a mesh, allowed is .vtu")
+
+
+def _build_document(
+    args: argparse.Namespace, name: str, modes: "NaturalModes", uniform_modes: "NaturalModes"
+) -> dict[str, object]:
+    rows = zip(modes.frequency.tolist(), uniform_modes.frequency.tolist(), strict=True)
+    return {
+        "assembly": name,
+        "preload": args.preload,
+        "moment": args.moment,
+        "mass": modes.assembly_mass,
+        "modes": [{"f": f, "f_uniform_pressure": g} for f, g in rows],
+        "written": [str(args.vtu)] if args.vtu else [],
+    }
+
+
+def _format_modes(modes: "NaturalModes", uniform_modes: "NaturalModes") -> Iterator[str]:
+    yield "mode   f [Hz]   with uniform pressure [Hz]"
+    for i, (f, g) in enumerate(zip(modes.frequency, uniform_modes.frequency, strict=True), 1):
+        yield f"{i:4d} {f:8.2f} {g:15.2f}  {100.0 * (g / f - 1.0):+.2f} %"

@@ -1,0 +1,151 @@
+"""`jointfmu fit`: fit parameters to measured curves and catalogue values."""
+
+import argparse
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE
+from jointfmu.joints import KINDS
+from jointfmu.parameters import load_parameter_file
+from jointfmu.progress import set_step
+
+from ...api.make import Fit
+from ...common import columns, plots
+from ...common.options import Option, option_flag
+from ...common.pressure import judge_file
+from ...inputs.drawing.reading import parse_number
+from ...inputs.fitting.outcome import format_deviation
+from ...inputs.fitting.procedure import Procedure, fit_procedures
+from ..command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
+from ..outputs import FORCE_HELP, declare_output
+from . import declare_option
+
+
+def add(commands: SubParsers) -> None:
+    """Declare `jointfmu fit` and its procedures."""
+    text = "fit a joint's parameters to a measured curve or to catalogue values"
+    top = commands.add_parser("fit", help=text, description=format_sentence(text))
+    ways = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
+    for choices in fit_procedures().values():
+        _declare_procedure(ways, choices)
+
+
+def _declare_procedure(procedure_parsers: SubParsers, choices: Mapping[str, Procedure]) -> None:
+    """Declare one procedure with the options of all its joints.
+
+    choices : {joint: its procedure of this name}
+    """
+    first = next(iter(choices.values()))
+    text = "; ".join(procedure.description for procedure in choices.values())
+    sub = declare_command(procedure_parsers, first.name, partial(_run_fit, choices), f"fit {text}")
+    if first.takes_file:
+        many = "+" if first.takes_several_files else None
+        declare_argument(
+            sub, "file", Path, "measured data (CSV); the heading names columns and units", nargs=many
+        )
+    declare_argument(sub, "--params", Path, "parameter file to start from (TOML)")
+    declare_argument(sub, "--free", str, "parameters to fit", nargs="+")
+    text = f"{FORCE_HELP}; write the parameter file even if the fit does not determine the joint"
+    sub.add_argument("--force", action="store_true", help=text)
+    declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
+    declare_output(sub, "--plot", PICTURE, "draw data, law and residuals (.png, .svg)")
+    for option in {option.name: option for p in choices.values() for option in p.options}.values():
+        declare_option(sub, option)
+
+
+def _run_fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> CommandResult:
+    """Fit the parameters and write the requested files."""
+    joint = _find_joint(choices, args)
+    procedure = choices[joint]
+    start = load_parameter_file(args.params, joint) if args.params else None
+    data = (args.file,) if procedure.takes_file else ()
+    set_step(f"fit of the {KINDS[joint].title}")
+    return _write_fit(args, Fit(procedure.run(*data, start, args.free, **_read_options(procedure, args))))
+
+
+def _read_options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object]:
+    """Read the options of a procedure: {name: value}, numbers in SI units."""
+    units = {option.unit_option for option in procedure.options}
+    return {
+        option.name: _read_option(option, args) for option in procedure.options if option.name not in units
+    }
+
+
+def _read_option(option: Option, args: argparse.Namespace) -> object:
+    value = getattr(args, option.name)
+    if not option.default_unit or value is None:
+        return value
+    unit = (option.unit_option and getattr(args, option.unit_option)) or option.default_unit
+    if value.strip().lower() in ("nan", "inf", "-inf"):
+        return float(value)  # the procedure refuses the value with its own message
+    return parse_number(option.name, value, unit, option.default_unit, None)
+
+
+def _find_joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
+    """Find the joint to which the columns of the file belong.
+
+    Raises ValueError if the file has the columns of no joint or of several, or if an option belongs to
+    another joint.
+    """
+    if len(choices) == 1:
+        return next(iter(choices))
+    from ...inputs.fitting.measurement import COLUMN_SYNONYMS
+
+    names = {*columns.read_names(args.file)}
+    joints = [
+        j
+        for j, procedure in choices.items()
+        if names & {procedure.identifying_column, *COLUMN_SYNONYMS[procedure.identifying_column]}
+    ]
+    if len(joints) != 1:
+        expected = " or ".join(
+            f"{procedure.identifying_column} ({joint})" for joint, procedure in choices.items()
+        )
+        raise ValueError(
+            f"{args.file}: has {'more than one column' if joints else 'no column'} of {expected}; "
+            "expected one"
+        )
+    options = {option.name for option in choices[joints[0]].options}
+    for other, procedure in choices.items():
+        for option in procedure.options:
+            if option.name not in options and getattr(args, option.name) != option.default:
+                raise ValueError(
+                    f"{args.file}: is of a {joints[0]}; {option_flag(option.name)} is allowed with "
+                    f"a {other} only"
+                )
+    return joints[0]
+
+
+def _write_fit(args: argparse.Namespace, fit: Fit) -> CommandResult:
+    """Write the files of a fit and format its result. A doubtful fit is written with `--force` only."""
+    outcome = fit.outcome
+    if args.plot:
+        plots.save_figure(fit.plot(), args.plot)
+    doubt = None if args.force else outcome.rejection_reason()
+    if args.out and not doubt:
+        fit.joint.save(args.out, force=args.force)
+    lines = []
+    for row in outcome.unknown_rows():
+        spread = row["relative_deviation"]
+        shown = "spread unknown" if spread is None else format_deviation(spread)
+        shown = f"+- {shown}" if shown.endswith("%") else shown
+        mark = "" if row["determined"] else "   not determined"
+        ends = "  (95 %: {:.4g} to {:.4g})".format(*row["interval"]) if "interval" in row else ""
+        lines.append(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{ends}{mark}")
+    for name, (value, unit, text) in outcome.facts.items():
+        lines.append(f"{name:24} {value:.4g} {unit}  {text}")
+    judgement, document = judge_file(outcome.parameters), outcome.document()
+    notes = [f"note: {line}" for line in document["warnings"]]
+    notes += [f"warning: {line}" for line in judgement.warnings]
+    if doubt:
+        unwritten = f"; {args.out} is not written, --force writes it" if args.out else ""
+        notes.append(f"the fit does not determine the joint: {doubt}{unwritten}")
+    document["warnings"] += judgement.warnings
+    return CommandResult(
+        document=judgement.to_json() | document | {"doubt": doubt},
+        lines=[*lines, *judgement.format_lines()],
+        notes=notes,
+        written_files=(None if doubt else args.out, args.plot),
+        exit_status=int(doubt is not None),
+    )

@@ -1,0 +1,67 @@
+"""`jointfmu law`: evaluate one interface law at pressures or at areas of the largest contact spot."""
+
+import argparse
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
+from jointfmu.contact.laws import LAWS
+from jointfmu.quantity import flatten_parameters
+
+from ...common.judgement import assess_law
+from ...common.shown import align_columns
+from ...inputs.laws import (
+    LAW_COLUMN_UNITS,
+    LAW_COLUMNS,
+    build_law_parameters,
+    joints_with_law,
+    known_surface_height,
+    load_law_file,
+)
+from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_settings
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu law` with its options."""
+    text = "evaluate one interface law at pressures or at areas of the largest contact spot"
+    law = declare_command(commands, "law", _run_law, text)
+    laws = [name for name in LAWS if joints_with_law(name)]
+    law.add_argument("law", choices=laws, metavar="LAW", help=f"one of {', '.join(laws)}")
+    at = law.add_mutually_exclusive_group(required=True)
+    declare_argument(at, "--pressure", float, "nominal pressure [Pa]", "P", nargs="+")
+    declare_argument(at, "--largest-spot", float, "area of the largest contact spot [m2]", "A", nargs="+")
+    declare_argument(law, "--params", Path, "parameter file of the joint (TOML)")
+    declare_settings(law)
+
+
+def _run_law(args: argparse.Namespace) -> CommandResult:
+    file = load_law_file(args.params, args.law) if args.params else None
+    law = build_law_parameters(args.law, file, dict(args.settings))
+    with np.errstate(over="ignore"):
+        if args.pressure is not None:
+            state = evaluate_at_pressure(law, np.array(args.pressure))
+        else:
+            state = evaluate_at_largest_spot(law, np.array(args.largest_spot))
+    names = [*LAW_COLUMNS, *(name for name in state if name not in LAW_COLUMNS)]
+    count = len(args.pressure or args.largest_spot)
+    rows = [{n: _finite_entry(state[n], i) if n in state else None for n in names} for i in range(count)]
+    h = known_surface_height(args.law, law, file, dict(args.settings))
+    judgement = assess_law(law, np.ravel(state["pressure"]).tolist(), h)
+    heads = [f"{name} [{LAW_COLUMN_UNITS[name]}]" for name in names]
+    cells = [heads, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
+    return CommandResult(
+        document={"law": args.law, "parameters": flatten_parameters(law), "rows": rows},
+        lines=align_columns(cells, 0),
+        judgement=judgement,
+    )
+
+
+def _finite_entry(column: Any, row_index: int) -> float | None:
+    """Entry i of a column, which may be one number for all rows; None if it is not finite."""
+    value = float(
+        np.broadcast_to(column, (row_index + 1,) if np.ndim(column) == 0 else np.shape(column))[row_index]
+    )
+    return value if math.isfinite(value) else None

@@ -1,0 +1,73 @@
+"""`jointfmu modelica`: write the Modelica library from parameters."""
+
+import argparse
+from pathlib import Path
+
+from jointfmu.files.outputs import FOLDER
+from jointfmu.joints import KINDS
+from jointfmu.joints.kind import JointKind
+from jointfmu.parameters import ParameterFile, load_parameter_file
+
+from ...common.judgement import Plausibility
+from ...common.options import option_flag, require_package
+from ...common.pressure import judge_file, warn_missing_members
+from ..command import CommandResult, SubParsers, declare_argument, declare_command
+from ..outputs import declare_output
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu modelica` with its options."""
+    make = declare_command(commands, "modelica", _run_modelica, "write the Modelica library JointStiffness")
+    declare_argument(make, "--params", Path, "parameter file of one joint, in place of its default (TOML)")
+    for name, kinds in _working_point_inputs().items():
+        first = any(name == kind.working_point[0] for kind in kinds)
+        text = "; ".join(f"{kind.title}: {_input_meaning(kind, name)}" for kind in kinds)
+        text += "" if first else " (default: 0)"
+        declare_argument(make, option_flag(name), float, text, nargs="+" if first else None)
+    declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+
+
+def _run_modelica(args: argparse.Namespace) -> CommandResult:
+    file = load_parameter_file(args.params) if args.params else None
+    points = {kind.name: _read_working_points(kind, args) for kind in KINDS.values() if kind.working_point}
+    with require_package("write the library"):
+        from ...exchange.modelica import library
+
+        written = library.write_library(args.out, file, points, force=args.force)
+    return CommandResult(
+        document={"written": [str(path) for path in written]},
+        lines=[f"wrote {args.out / library.LIBRARY_NAME}: {len(written)} files"],
+        judgement=_judge_working_points(file, points) if file else None,
+    )
+
+
+def _judge_working_points(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Plausibility:
+    """Judge the stiffness of the user's joint at its working points."""
+    judgement = judge_file(file, [point[0] for point in points.get(file.joint, [])] or None)
+    return judgement.with_warnings(warn_missing_members(file))
+
+
+def _working_point_inputs() -> dict[str, list[JointKind]]:
+    """Inputs that define working points: {input: joints that have it}."""
+    names = dict.fromkeys(name for kind in KINDS.values() for name in kind.working_point)
+    return {name: [kind for kind in KINDS.values() if name in kind.working_point] for name in names}
+
+
+def _input_meaning(kind: JointKind, name: str) -> str:
+    variable = kind.variables[name]
+    return f"{variable.doc} [{variable.unit}]"
+
+
+def _read_working_points(kind: JointKind, args: argparse.Namespace) -> list[tuple[float, ...]]:
+    """Read the working points of a joint: one for each value of its first input.
+
+    Each point has the same values of the other inputs; an input that is not set is zero. Raises ValueError
+    if another input is set but not the first.
+    """
+    first, *others = kind.working_point
+    stated = {name: getattr(args, name) for name in others if getattr(args, name) is not None}
+    values: list[float] = getattr(args, first) or []
+    if stated and not values:
+        needed = f"{option_flag(first)}, the {_input_meaning(kind, first)}"
+        raise ValueError(f"{option_flag(next(iter(stated)))} needs {needed}")
+    return [(value, *(stated.get(name, 0.0) for name in others)) for value in values]

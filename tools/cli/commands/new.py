@@ -1,0 +1,212 @@
+"""`jointfmu new`: make a joint from its drawing, or print a shipped table.
+
+`jointfmu catalogue`: list the bought joints.
+"""
+
+import argparse
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from jointfmu.files.outputs import PARAMETER_FILE
+from jointfmu.joints import KINDS
+from jointfmu.quantity.units import conversion_factor
+
+from ...api.joint import Joint
+from ...api.make import make_from_drawing
+from ...common.joint_parts import load_tool_module
+from ...common.pressure import judge_file
+from ...common.shown import align_columns, fact_document, format_facts
+from ...inputs.catalogue import CatalogueColumn, CatalogueEntry
+from ...inputs.drawing.part import NewJointCommand
+from ...joints.harmonic_drive.catalogue import COLUMNS, list_drives
+from ..command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
+from ..outputs import declare_output
+from . import declare_option
+
+
+def add(commands: SubParsers) -> None:
+    """Declare `jointfmu new`, with a sub-command for each joint and for each table."""
+    text = "make the parameter file of a joint from the data on its drawing"
+    top = commands.add_parser("new", help=text, description=format_sentence(text))
+    things = top.add_subparsers(dest="thing", required=True, metavar="JOINT", parser_class=Parser)
+    for kind in KINDS.values():
+        if module := load_tool_module(kind, "new"):
+            _declare_joint(things, kind.name.replace("_", "-"), module.NEW)
+    for name, rows in PRINTED_TABLES.items():
+        declare_command(things, name, partial(_run_table, rows), f"print the table of known {name}")
+
+
+def _declare_joint(joint_parsers: SubParsers, name: str, joint_command: NewJointCommand) -> None:
+    """Declare the sub-command of one joint."""
+    sub = declare_command(
+        joint_parsers, name, partial(_run_new, joint_command), f"make {joint_command.description}"
+    )
+    sub.example = f"new {name} {joint_command.example} --out my.toml"
+    for option in joint_command.options:
+        declare_option(sub, option)
+    declare_argument(sub, "--name", str, "name of the parameter set (default: made of its sizes)")
+    declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)")
+
+
+def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> CommandResult:
+    """Make a joint from the dimensions of its drawing, given as options."""
+    joint = make_from_drawing(
+        joint_command, {option.name: getattr(args, option.name) for option in joint_command.options}
+    )
+    if args.name:
+        joint = replace(joint, file=replace(joint.file, name=args.name))
+    if args.out:
+        joint.save(args.out, force=args.force)
+    judgement = judge_file(joint.file).with_warnings(joint.notes)
+    end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
+    return CommandResult(
+        document=_joint_document(joint)
+        | judgement.to_json()
+        | {"written": [str(args.out)] if args.out else []},
+        lines=[*format_facts(joint.facts), *judgement.format_lines(), end],
+        notes=[f"warning: {text}" for text in judgement.warnings],
+    )
+
+
+def _joint_document(joint: Joint) -> dict[str, object]:
+    return {
+        "joint": joint.file.joint,
+        "law": joint.file.law,
+        "name": joint.file.name,
+        "parameters": joint.file.values_by_name,
+        "inputs": joint.file.inputs,
+        "facts": fact_document(joint.facts),
+    }
+
+
+def _run_table(
+    iterate_rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace
+) -> CommandResult:
+    """Print a table: bolts, materials or finishes."""
+    content = list(iterate_rows())
+    cells = [[*content[0]], *([_format_cell(cell) for cell in row.values()] for row in content)]
+    return CommandResult(document=content, lines=align_columns(cells))
+
+
+def _format_cell(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+_MATERIAL_COLUMNS = {
+    "E [GPa]": ("E", 1e-9),
+    "nu": ("nu", 1.0),
+    "density [kg/m3]": ("density", 1.0),
+    "H [MPa]": ("H", 1e-6),
+}
+_FINISH_COLUMNS = {
+    "Ra [um]": ("Ra", 1e6),
+    "from": ("Ra_low", 1e6),
+    "to": ("Ra_high", 1e6),
+    "slope": ("slope", 1.0),
+}
+"""Columns of the printed tables: {heading: (column of the table, factor from SI to the printed unit)}."""
+
+
+def _iterate_table_rows(
+    name: str, column_scales: Mapping[str, tuple[str, float]], source: str
+) -> Iterator[dict[str, object]]:
+    """Yield the rows of `materials` or `finishes`.
+
+    column_scales : {heading: (column of the table, factor from SI to the printed unit)}
+    source        : format string for the column `source`, filled with the numbers of the row
+    """
+    from ...inputs.drawing.tables import read_table
+
+    for row in read_table(name).values():
+        numbers = {
+            head: round(row.numbers[column].value * scale, 9)
+            for head, (column, scale) in column_scales.items()
+        }
+        also = {"also": ", ".join(row.aliases), "source": source.format(**row.numbers)}
+        yield {"name": row.name, **numbers, **also}
+
+
+def _iterate_bolt_rows() -> Iterator[dict[str, object]]:
+    from ...inputs.drawing.tables import property_class_strength, read_property_classes, read_threads
+    from ...inputs.drawing.vdi2230 import assembly_preload, stress_area
+
+    for thread in read_threads().values():
+        yield {
+            "name": thread.name,
+            "pitch [mm]": thread.pitch * 1e3,
+            "hole [mm]": thread.hole * 1e3,
+            "hexagon [mm]": thread.hexagon * 1e3,
+            "socket [mm]": thread.socket * 1e3,
+            "A_s [mm2]": stress_area(thread) * 1e6,
+            **{
+                f"preload {name} [kN]": assembly_preload(
+                    thread, property_class_strength(name, "yield", thread)
+                )
+                / 1e3
+                for name in read_property_classes()
+            },
+        }
+
+
+PRINTED_TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
+    "materials": partial(_iterate_table_rows, "materials", _MATERIAL_COLUMNS, "{E.source}; H: {H.source}"),
+    "finishes": partial(_iterate_table_rows, "finishes", _FINISH_COLUMNS, "{Ra_low.source}"),
+    "bolts": _iterate_bolt_rows,
+}
+"""{name of a table: function that yields its rows}."""
+
+
+def add_catalogue(commands: SubParsers) -> None:
+    """Declare the command `jointfmu catalogue` with its options."""
+    sub = declare_command(
+        commands, "catalogue", _run_catalogue, "list the bought joints that jointfmu new knows"
+    )
+    text = "part of the name, for example CSG-17, csg25-100 or csg 25 100"
+    declare_argument(sub, "words", str, text, "WORD", nargs="*")
+
+
+def _run_catalogue(args: argparse.Namespace) -> CommandResult:
+    """List the bought joints whose names contain the words. Raises ValueError if there is none."""
+    found = [item for item in list_drives() if _contains_words(args.words, item.name)]
+    if not found:
+        word = " ".join(args.words)
+        raise ValueError(f"no drive in the catalogue has {word!r} in its name (jointfmu catalogue)")
+    lines = [f"{'harmonic-drive':13}  {'  '.join(map(_format_heading, COLUMNS))}"]
+    for item in found:
+        lines.append(
+            f"{item.name:13}  {'  '.join(_format_number(item, column) for column in COLUMNS)}".rstrip()
+        )
+    if any(number.kind == "estimate" for item in found for number in item.numbers.values()):
+        lines.append("~ is an estimate, < an upper limit; --json has the source of each number")
+    return CommandResult(document=[_entry_document(COLUMNS, item) for item in found], lines=lines)
+
+
+def _contains_words(words: Sequence[str], name: str) -> bool:
+    """Return whether a name contains the joined words. Case, signs and spaces are ignored."""
+    searched, plain_name = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), name))
+    return searched in plain_name
+
+
+def _format_heading(column: CatalogueColumn) -> str:
+    return f"{column.name}{'' if column.display_unit == '1' else f' [{column.display_unit}]'}"
+
+
+def _format_number(entry: CatalogueEntry, column: CatalogueColumn) -> str:
+    """Format one number of a catalogue entry, at least as wide as the heading of its column."""
+    width = len(_format_heading(column))
+    if (number := entry.numbers.get(column.name)) is None:
+        return f"{'-':{width}}"
+    mark = ("~" if number.kind == "estimate" else "") + ("<" if number.bound else "")
+    return (
+        f"{mark + format(number.value * conversion_factor(column.unit, column.display_unit), '.4g'):{width}}"
+    )
+
+
+def _entry_document(columns: Sequence[CatalogueColumn], entry: CatalogueEntry) -> dict[str, Any]:
+    """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
+    units = {column.name: column.unit for column in columns}
+    numbers = {name: number._asdict() | {"unit": units[name]} for name, number in entry.numbers.items()}
+    return {"joint": "harmonic_drive", "name": entry.name, "numbers": numbers}

@@ -1,0 +1,107 @@
+"""`jointfmu parameters`: list the parameters of an FMU, a joint or an interface law."""
+
+import argparse
+import math
+from dataclasses import Field
+from pathlib import Path
+from typing import Any
+
+from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
+from jointfmu.contact.roughness import HEIGHT_FIELDS
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
+from jointfmu.quantity import flat_fields, flatten_parameters
+
+from ...common.shown import align_columns
+from ...inputs.laws import build_law_parameters, load_law_file
+from ..command import CommandResult, SubParsers, declare_argument, declare_command
+
+_TABLE_HEAD = ("name", "default", "unit", "allowed", "meaning")
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu parameters` with its options."""
+    text = "list the parameters of an FMU, a joint or an interface law"
+    sub = declare_command(commands, "parameters", _run_parameters, text)
+    text = f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})"
+    declare_argument(sub, "name", str, text, choices=[*MODELS, *KINDS, *LAWS])
+    source = sub.add_mutually_exclusive_group()
+    laws = sorted({law for kind in KINDS.values() for law in kind.laws})
+    declare_argument(
+        source, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws
+    )
+    declare_argument(source, "--params", Path, "parameter file, in place of the default values (TOML)")
+
+
+def _run_parameters(args: argparse.Namespace) -> CommandResult:
+    name = args.name
+    if name in LAWS:
+        if args.law:
+            raise ValueError(f"--law has no effect for the law {name}; it is for FMUs and joints")
+        values = flatten_parameters(
+            build_law_parameters(name, load_law_file(args.params, name) if args.params else None, {})
+        )
+        fields = dict(flat_fields(LAWS[name], parameter_names=values))
+        if name == ROUGHNESS_LAW:
+            fields |= {stated: field for stated, field in HEIGHT_FIELDS.items() if stated not in fields}
+        head = {"name": name, "law": name}
+    else:
+        file = _load_joint_file(name, args)
+        values = dict(file.values_by_name)
+        if name in MODELS:
+            known = MODELS[name].with_parameters(file.joint, file.values).parameter_fields()
+            fields = {stated: field for stated, field in known.items() if stated in values}
+        else:
+            fields = dict(flat_fields(type(file.values), parameter_names=values))
+        head = {"name": name, "joint": file.joint, "law": file.law}
+    rows = [_parameter_document(stated, field, values.get(stated)) for stated, field in fields.items()]
+    return CommandResult(
+        document={**head, "parameters": rows}, lines=align_columns([_TABLE_HEAD, *map(_format_row, rows)])
+    )
+
+
+def _load_joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
+    """Load the parameter file of an FMU or joint: that of `--params`, or the default with `--law`."""
+    joint = MODELS[name].joint if name in MODELS else name
+    if args.params:
+        return load_parameter_file(args.params, joint)
+    if args.law and args.law not in KINDS[joint].laws:
+        raise ValueError(
+            f"law = {args.law!r} is not a law of a {joint}, allowed are {', '.join(KINDS[joint].laws)}"
+        )
+    return load_default(joint, args.law)
+
+
+def _parameter_document(name: str, parameter_field: Field[Any], value: Any) -> dict[str, Any]:
+    """JSON object of one parameter: name, meaning, default, unit, lower and upper limit, allowed values."""
+    meta = parameter_field.metadata
+    row = {"name": name, "meaning": meta["doc"], "default": value}
+    if "allowed" in meta:
+        return row | {"unit": None, "allowed": list(meta["allowed"])}
+    interval = meta["interval"]
+    low, high = (end if math.isfinite(end) else None for end in (interval.low, interval.high))
+    whole = {"whole": True} if meta["whole"] else {}
+    return row | {"unit": meta["unit"], "low": low, "high": high, "allowed": str(interval)} | whole
+
+
+def _format_row(parameter_document: dict[str, Any]) -> tuple[str, ...]:
+    allowed = parameter_document["allowed"]
+    if isinstance(allowed, list):
+        allowed = " | ".join(str(option).lower() for option in allowed)
+    elif "whole" in parameter_document:
+        allowed += " whole"
+    return (
+        parameter_document["name"],
+        _format_default(parameter_document["default"]),
+        parameter_document["unit"] or "",
+        allowed,
+        parameter_document["meaning"],
+    )
+
+
+def _format_default(value: object) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, tuple):
+        return f"{len(value)} numbers"
+    return str(value).lower() if isinstance(value, bool | str) else f"{value:.6g}"

@@ -1,0 +1,101 @@
+"""`jointfmu prove`: run the experiments stored in an FMU.
+
+`jointfmu validate`: compare with published numbers.
+"""
+
+import argparse
+from dataclasses import asdict
+from pathlib import Path
+
+from jointfmu.files.outputs import FOLDER
+from jointfmu.joints import KINDS
+from jointfmu.parameters import load_parameter_file
+
+from ...fem import require_fem_packages
+from ...joints.bolted_joint.frequencies import compare_natural_frequencies
+from ...run.proof import listing, report
+from ...run.proof.importers import IMPORTERS
+from ...run.proof.run import ExpectedContents, prove
+from ...studies.published import validation
+from ..command import CommandResult, SubParsers, declare_argument, declare_command
+from ..outputs import declare_output
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu prove` with its options."""
+    text = "run the experiments stored in an FMU (FMI-LS-REF) and compare with its reference results"
+    sub = declare_command(commands, "prove", _run_prove, text)
+    declare_argument(sub, "fmu", Path, "path of the FMU", "FMU")
+    text = f"simulator that runs the FMU: {', '.join(IMPORTERS)}"
+    choices = list(IMPORTERS)
+    declare_argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
+    text = "folder for the files of the FMI cross-check, written if all experiments pass"
+    declare_output(sub, "--listing", FOLDER, text)
+    text = "parameter file from which start values and reference results are computed, in place of those in "
+    declare_argument(sub, "--against", Path, text + "the FMU")
+
+
+def _run_prove(args: argparse.Namespace) -> CommandResult:
+    if args.listing and args.against:
+        raise ValueError("--listing needs the reference results stored in the FMU; leave out --against")
+    proof = prove(
+        args.fmu, args.importer, _compute_expected_contents(args.fmu, args.against) if args.against else None
+    )
+    folders = (
+        listing.write_listing(proof, args.listing, args.force) if args.listing and proof.has_passed else []
+    )
+    listed = {"listing": [str(folder) for folder in folders]} if args.listing else {}
+    return CommandResult(
+        document=report.build_document(proof) | listed,
+        lines=report.format_lines(proof),
+        notes=["the listing is not written: not all experiments passed"]
+        if args.listing and not folders
+        else (),
+        written_files=folders,
+        exit_status=int(not proof.has_passed),
+    )
+
+
+def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedContents:
+    """Compute start values and reference results from a parameter file, without building its FMU.
+
+    Raises ValueError if the FMU does not have the inputs and outputs of an FMU of the file's joint.
+    """
+    from jointfmu_fmu_src.proof.members import make_proof_files
+
+    from ...run.host import unpack_fmu
+
+    file = load_parameter_file(path)
+    with unpack_fmu(fmu, model_exchange=True) as (_, description):
+        names = {v.name for v in description.modelVariables}
+    for model in KINDS[file.joint].models:
+        if {v.name for v in (*model.inputs, *model.outputs)} <= names:
+            described = model.with_parameters(file.joint, file.values)
+            starts = {name: file.values_by_name[name] for name in described.parameter_fields()}
+            starts |= {v.name: file.start_value(v.name) for v in described.inputs}
+            return ExpectedContents(str(path), starts, make_proof_files(described, file))
+    models = ", ".join(model.name for model in KINDS[file.joint].models)
+    raise ValueError(f"{fmu}: does not have the variables of {models}, the FMUs of {path}")
+
+
+def add_validate(commands: SubParsers) -> None:
+    """Declare the command `jointfmu validate` with its options."""
+    sub = declare_command(
+        commands, "validate", _run_validate, "compare computed results with all published numbers"
+    )
+    text = "also compare the measured natural frequencies, by finite elements (half a minute)"
+    sub.add_argument("--frequencies", action="store_true", help=text)
+
+
+def _run_validate(args: argparse.Namespace) -> CommandResult:
+    rows = validation.validate()
+    if args.frequencies:
+        with require_fem_packages("the finite-element analysis"):
+            rows += compare_natural_frequencies()
+    misses = validation.missed_points(rows)
+    counts = asdict(validation.count_points(rows))
+    return CommandResult(
+        document={"rows": [row.to_json() for row in rows], "counts": counts, "missed": len(misses)},
+        lines=[validation.format_table(rows), validation.format_summary(rows)],
+        exit_status=int(bool(misses)),
+    )

@@ -1,0 +1,209 @@
+"""`jointfmu ramp`: run an FMU along a load ramp or in load cycles."""
+
+import argparse
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointfmu.files.outputs import PICTURE
+from jointfmu.files.writing import write_text
+
+from ...common import columns, plots
+from ...common.options import option_flag
+from ...common.shown import align_columns
+from ...run.ramps import loops, ramp
+from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_settings
+from ..outputs import declare_output
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RAMP_OPTIONS, LOOP_OPTIONS = ("to", "step"), ("about", "shape", "points", "cycles", "output")
+"""Options of a ramp, and options of load cycles in addition to --loop."""
+MAX_PRINTED_ROWS = 24
+"""Largest number of points of a ramp that are printed on a terminal."""
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu ramp` with its options."""
+    text = "run an FMU along a load ramp and print its outputs, or in load cycles and print the energy loss"
+    drive = declare_command(commands, "ramp", _run_command, text)
+    declare_argument(drive, "fmu", Path, "path of the FMU", "FMU")
+    declare_argument(drive, "--input", str, "input to vary", required=True)
+    declare_argument(drive, "--to", float, "ramp: last value of the input (SI); the first is zero")
+    declare_argument(drive, "--step", float, "ramp: step of the input (SI)")
+    declare_argument(
+        drive, "--loop", float, "amplitudes of load cycles, each started from rest (SI)", nargs="+"
+    )
+    declare_argument(drive, "--about", float, "cycles: mean value of the input (default: 0)")
+    drive.add_argument(
+        "--shape", choices=loops.WAVEFORMS, help=f"cycles: shape over time (default: {loops.WAVEFORMS[0]})"
+    )
+    declare_argument(drive, "--points", int, f"cycles: points per cycle (default: {loops.DEFAULT_POINTS})")
+    declare_argument(
+        drive, "--cycles", int, f"cycles: number per amplitude (default: {loops.DEFAULT_CYCLES})"
+    )
+    declare_argument(drive, "--output", str, "cycles: force or motion conjugate to the input")
+    declare_argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
+    declare_settings(drive)
+    declare_output(drive, "--csv", columns.TABLE_FILE_KIND, "write every point to a file")
+    declare_output(
+        drive, "--plot", PICTURE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
+    )
+
+
+def _run_command(args: argparse.Namespace) -> CommandResult:
+    """Run a ramp or load cycles. Raises ValueError if the options describe both or neither."""
+    ramp_options, loop_options = (
+        [name for name in names if getattr(args, name) is not None] for names in (RAMP_OPTIONS, LOOP_OPTIONS)
+    )
+    if args.loop and ramp_options:
+        raise ValueError(
+            f"--loop and {option_flag(ramp_options[0])} are both given; state either --loop, or --to "
+            "with --step"
+        )
+    if not args.loop and loop_options:
+        raise ValueError(
+            f"{option_flag(loop_options[0])} is for load cycles; state --loop too, or leave it out"
+        )
+    if not args.loop and len(ramp_options) < len(RAMP_OPTIONS):
+        raise ValueError("the load is missing; state --to with --step, or --loop")
+    if args.loop and args.columns:
+        raise ValueError("--columns is for a ramp; leave it out with --loop")
+    return _run_loops(args) if args.loop else _run_ramp(args)
+
+
+def _run_ramp(args: argparse.Namespace) -> CommandResult:
+    result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
+    for message in result.messages:
+        print(message, file=sys.stderr)
+    result = _select_columns(result, args.input, args.columns)
+    if args.csv:
+        write_text(args.csv, result.format_csv())
+    if args.plot:
+        count = len(result.columns) - 1
+        with plots.open_figure(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
+            _draw_ramp(figure, result)
+    columns = {name: column.tolist() for name, column in result.columns.items()}
+    lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
+    if not lines and not args.json:
+        lines = _format_points(result) if sys.stdout.isatty() else [result.format_csv()[:-1]]
+    return CommandResult(
+        document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines
+    )
+
+
+def _select_columns(
+    result: ramp.RampResult, varied_input: str, output_names: list[str] | None
+) -> ramp.RampResult:
+    """Select the varied input and the requested outputs. Raises ValueError for an unknown output."""
+    if unknown := [name for name in output_names or () if name not in result.columns]:
+        raise ValueError(f"--columns {unknown[0]}: unknown output, allowed are {', '.join(result.columns)}")
+    selected = list(dict.fromkeys([varied_input, *(output_names or result.columns)]))
+    return replace(
+        result,
+        columns={name: result.columns[name] for name in selected},
+        units={name: result.units[name] for name in selected},
+    )
+
+
+def _format_points(result: ramp.RampResult) -> list[str]:
+    """Format up to MAX_PRINTED_ROWS points of a ramp, first and last included, in display units."""
+    count = next(iter(result.columns.values())).size
+    indices = np.unique(np.linspace(0, count - 1, min(count, MAX_PRINTED_ROWS)).round().astype(int))
+    columns = []
+    for name, values in result.columns.items():
+        unit, size = plots.choose_unit(result.units[name], values)
+        columns.append(
+            [
+                f"{name}{'' if unit == '1' else f' [{unit}]'}",
+                *(f"{size * values[i] + 0.0:.5g}" for i in indices),
+            ]
+        )
+    more = [f"{len(indices)} of {count} points; --csv writes all"] if len(indices) < count else []
+    return [*align_columns([*zip(*columns, strict=True)], 0), *more]
+
+
+def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
+    """Draw every output over the varied input."""
+    (driven, x), *outputs = result.columns.items()
+    x_unit, x_size = plots.choose_unit(result.units[driven], x)
+    axes = figure.subplots(math.ceil(len(outputs) / 3), min(len(outputs), 3), squeeze=False).ravel()
+    for panel, (name, y) in zip(axes, outputs, strict=False):
+        unit, size = plots.choose_unit(result.units[name], y)
+        panel.plot(x_size * x, size * y, color=plots.BLUE)
+        panel.set_ylabel(f"{name} [{unit}]")
+        panel.set_xlabel(f"{driven} [{x_unit}]")
+    for panel in axes[len(outputs) :]:
+        panel.set_visible(False)
+
+
+def _run_loops(args: argparse.Namespace) -> CommandResult:
+    stated = {name: getattr(args, name) for name in LOOP_OPTIONS[:4] if getattr(args, name) is not None}
+    if "about" in stated:
+        stated["centre"] = stated.pop("about")
+    swing = loops.CyclicPath(**stated)
+    found = loops.run_loops(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
+    for message in found.messages:
+        print(message, file=sys.stderr)
+    if args.csv:
+        write_text(args.csv, found.format_csv())
+    if args.plot:
+        with plots.open_figure(args.plot, (11.4, 3.8)) as figure:
+            _draw_loops(figure, found, swing)
+    lines, written = found.format_table().splitlines(), (args.csv, args.plot)
+    return CommandResult(document=_loops_document(args.fmu, found), lines=lines, written_files=written)
+
+
+def _loops_document(fmu: Path, hysteresis: loops.HysteresisLoops) -> dict[str, object]:
+    """JSON object of load cycles. Forces act on the joint and are positive in the direction of motion."""
+    rows = hysteresis.compute_rows()
+    for row, loop in zip(rows, hysteresis.loops, strict=True):
+        row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.cycle_start}
+    names = {"motion": hysteresis.motion_name, "force": hysteresis.force_name, "sign": hysteresis.force_sign}
+    return {
+        "fmu": str(fmu),
+        **names,
+        "units": dict(zip(("motion", "force"), hysteresis.units, strict=True)),
+        "rows": rows,
+    }
+
+
+def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, cyclic_path: loops.CyclicPath) -> None:
+    """Draw hysteresis loops with first loading and end points; energy loss and stiffness over amplitude."""
+    left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
+    cycles = sorted(hysteresis.loops, key=lambda loop: loop.amplitudes[0])
+    (motion, x_size), (force, y_size) = (
+        plots.choose_unit(unit, np.concatenate([getattr(loop, name) for loop in cycles]))
+        for unit, name in zip(hysteresis.units, ("motion", "force"), strict=True)
+    )
+    for loop in cycles:
+        x, y = x_size * loop.motion[loop.cycle_start :], y_size * loop.force[loop.cycle_start :]
+        left.plot(x, y, color=plots.BLUE, lw=1.2)
+    first = slice(None, cyclic_path.points // 4 + 1)
+    left.plot(x_size * cycles[-1].motion[first], y_size * cycles[-1].force[first], "--", color=plots.RED)
+    ends = np.array([(x_size * loop.motion[-1], y_size * loop.force[-1]) for loop in cycles])
+    left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
+    left.set_xlabel(f"{hysteresis.motion_name} [{motion}]")
+    left.set_ylabel(f"{'-' if hysteresis.force_sign < 0.0 else ''}{hysteresis.force_name} [{force}]")
+    left.legend(loc="lower right")
+    rows = [loop.compute_row() for loop in cycles]
+    amplitude, stiffness, loss = (
+        np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
+    )
+    unit, size = plots.choose_unit(hysteresis.row_units["secant_stiffness"], stiffness)
+    for axes, y, label in (
+        (middle, loss, "energy loss per cycle [J]"),
+        (right, size * stiffness, f"secant stiffness [{unit}]"),
+    ):
+        axes.plot(x_size * amplitude, y, "o-", color=plots.BLUE, ms=4)
+        axes.set_xlabel(f"amplitude [{motion}]")
+        axes.set_ylabel(label)
+    right.set_xlim(left=0.0)
+    right.set_ylim(0.0, 1.1 * size * float(np.max(stiffness)))
+    if np.all(loss > 0.0):
+        middle.set(xscale="log", yscale="log")

@@ -1,0 +1,166 @@
+"""`jointfmu ring`: resonance frequency and damping of a joint in its system, by simulation with FMUs."""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointfmu.files.outputs import PICTURE
+from jointfmu.files.writing import write_text
+from jointfmu.mechanics.stable_steps import largest_stable_steps
+
+from ...common import columns
+from ...common.options import require_package
+from ...systems.system import list_system_names, load_system
+from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_settings
+from ..outputs import declare_output
+from . import save_panels
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu ring` with its options."""
+    text = "simulate a joint with a body on it and find resonance and damping over load or amplitude"
+    ring = declare_command(commands, "ring", _run_ring, text)
+    declare_argument(
+        ring, "system", str, f"{', '.join(list_system_names())}, or a system's file (TOML)", "SYSTEM"
+    )
+    declare_argument(ring, "--joint", str, "joint to examine, if the system has several")
+    text = "folder with the FMUs of `jointfmu system` or `build --systems`"
+    declare_argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
+    text = "load of the joint: preload of a bolt [N], torque at the output [N.m] (default: a series of loads)"
+    declare_argument(ring, "--load", float, text, nargs="+")
+    text = "mass or moment of inertia of the body [kg or kg.m2] (default: of the system)"
+    declare_argument(ring, "--inertia", float, text)
+    text = "simulate a free decay from this deflection [m or rad] in the direction in which the joint slips, "
+    text += "and print frequency and damping over the amplitude (default load: the largest of the series)"
+    declare_argument(ring, "--amplitude", float, text)
+    declare_settings(ring)
+    declare_output(ring, "--csv", columns.TABLE_FILE_KIND, "write the table to a file")
+    declare_output(ring, "--plot", PICTURE, "draw resonance and decay (.png, .svg)")
+
+
+def _run_ring(args: argparse.Namespace) -> CommandResult:
+    with require_package("run a system"):
+        from ...systems import ringing
+    example = ringing.find_vibrating_joint(load_system(args.system), args.joint)
+    _check_arguments(args, example.inertia_unit)
+    for name in (example.fmu_name, example.test.body_model):
+        if not (args.fmus / f"{name}.fmu").is_file():
+            raise ValueError(
+                f"--fmus {args.fmus}: has no {name}.fmu; `jointfmu system {args.system}` writes it"
+            )
+    if args.amplitude is not None:
+        return _run_decays(args, example)
+    if args.settings:
+        raise ValueError("--set works with --amplitude only; state --amplitude too")
+    points = ringing.simulate_vibrations(example, args.fmus, args.load, args.inertia)
+    rows = [_resonance_row(point) for point in points]
+    for message in dict.fromkeys(text for point in points for text in point.messages):
+        print(message, file=sys.stderr)
+    table = _format_rows(rows, example.load_unit)
+    if args.csv:
+        write_text(args.csv, table)
+    if args.plot:
+        from ...pages.report.systems import RESONANCE_SIZE, resonance_panels
+
+        save_panels(args.plot, resonance_panels(points, example, args.fmus), RESONANCE_SIZE)
+    misses = [line for point in points for line in point.list_deviations]
+    for line in misses:
+        print(f"missed: {line}", file=sys.stderr)
+    return CommandResult(
+        document={"system": args.system, "rows": rows, "missed": len(misses)},
+        lines=table.splitlines(),
+        written_files=(args.csv, args.plot),
+        exit_status=int(bool(misses)),
+    )
+
+
+def _run_decays(args: argparse.Namespace, joint: Any) -> CommandResult:
+    """Simulate free decays: frequency and damping over the amplitude."""
+    from ...systems import decays
+
+    points = decays.simulate_decays(
+        joint, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings)
+    )
+    body = joint.test
+    for message in dict.fromkeys(text for point in points for text in point.messages):
+        print(message, file=sys.stderr)
+    heads = {
+        "load": joint.load_unit,
+        "amplitude": joint.motion_unit,
+        "frequency": "Hz",
+        "loop_frequency": "Hz",
+        "damping_ratio": "1",
+        "loop_damping_ratio": "1",
+    }
+    values = [np.concatenate(column) for column in zip(*map(_decay_columns, points), strict=True)]
+    table = columns.format_table(list(heads.items()), values, digits=6)
+    if args.csv:
+        write_text(args.csv, table)
+    if args.plot:
+        from ...pages.report.systems import DECAY_SIZE, decay_panels
+
+        save_panels(args.plot, decay_panels(points, body), DECAY_SIZE)
+    rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
+    document, written = {"system": args.system, "rows": rows}, (args.csv, args.plot)
+    return CommandResult(document=document, lines=table.splitlines(), written_files=written)
+
+
+def _decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
+    """Columns of a free decay: load, amplitude, frequency [Hz] and damping ratio [1], each of decay and loop.
+
+    The loop is the joint's hysteresis loop of the same amplitude.
+    """
+    hertz = 1.0 / math.tau
+    return (
+        np.full(decay.amplitude.size, decay.load),
+        decay.amplitude,
+        hertz * decay.frequency,
+        hertz * decay.expected_frequency,
+        decay.damping,
+        decay.expected_damping,
+    )
+
+
+def _check_arguments(args: argparse.Namespace, inertia_unit: str) -> None:
+    """Raise ValueError before the work starts if load, inertia or amplitude is out of range.
+
+    inertia_unit : unit of the inertia in the message
+    """
+    for value in args.load or ():
+        if not math.isfinite(value):
+            raise ValueError(f"load = {value:g} is outside (-inf, inf): must be finite")
+    if args.inertia is not None and not 0.0 < args.inertia < math.inf:
+        raise ValueError(f"inertia = {args.inertia:g} {inertia_unit} is outside (0, inf)")
+    if args.amplitude is not None and not 0.0 < args.amplitude < math.inf:
+        raise ValueError(f"amplitude = {args.amplitude:g} is outside (0, inf)")
+
+
+def _resonance_row(vibration: Any) -> dict[str, float]:
+    """Results at one load: frequencies [Hz], damping ratios [1], and the largest stable time steps [s].
+
+    `largest_step` holds if the co-simulation master passes the force on at once, `largest_step_late` if it
+    passes the force on one step late.
+    """
+    at_once, late = largest_stable_steps(
+        vibration.expected_frequency**2, 2.0 * vibration.expected_damping * vibration.expected_frequency, 1.0
+    )
+    return {
+        "load": vibration.load,
+        "frequency": vibration.frequency / math.tau,
+        "expected_frequency": vibration.expected_frequency / math.tau,
+        "damping_ratio": vibration.damping,
+        "stated_damping_ratio": vibration.expected_damping,
+        "largest_step": float(at_once),
+        "largest_step_late": float(late),
+    }
+
+
+def _format_rows(rows: list[dict[str, float]], load_unit: str) -> str:
+    """Format the rows as CSV text with six digits; headings with units."""
+    units = (load_unit, "Hz", "Hz", "1", "1", "s", "s")
+    values = [np.array([row[name] for row in rows]) for name in rows[0]]
+    return columns.format_table(list(zip(rows[0], units, strict=True)), values, digits=6)

@@ -1,0 +1,224 @@
+"""`jointfmu robot`: add elastic drives to the joints of a robot file (MJCF or URDF)."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jointfmu.files.outputs import (
+    EXCHANGE_TEXT,
+    FOLDER,
+    PARAMETER_FILE,
+    PICTURE,
+    PROGRAM_MARK,
+    check_output,
+    check_outputs,
+    write_parameter_text,
+)
+from jointfmu.files.writing import write_text
+from jointfmu.parameters import format_parameter_file
+
+from ...common import plots
+from ...common.options import require_package
+from ..command import CommandResult, SubParsers, declare_argument, declare_command
+from ..outputs import check_input_overwrite, declare_output
+
+MAX_PAYLOAD = 1e4
+"""Largest allowed payload [kg]."""
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu robot` with its options."""
+    text = "add elastic drives to joints of a robot (MJCF, URDF)"
+    sub = declare_command(commands, "robot", run, text)
+    several: dict[str, Any] = {"nargs": "+", "action": "extend"}
+    declare_argument(sub, "robot", Path, "robot file, MJCF or URDF", "ROBOT")
+    text = "joint and its drive: a name of the catalogue or a parameter file"
+    declare_argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
+    declare_argument(sub, "--payload", float, "mass at the tip [kg]", "M", default=1.0)
+    declare_argument(sub, "--tip", str, "body whose origin is the tip (default: the last body)", "BODY")
+    sub.add_argument(
+        "--pose",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="JOINT=ANGLE",
+        help="joint angles [rad] of the pose; other joints are at zero or as in the first keyframe (default "
+        "for the payload: the pose of a grid with the largest deflection of the tip)",
+    )
+    text = "also write the robot with MuJoCo plugins of the drives, compiled on this machine"
+    sub.add_argument("--plugin", action="store_true", help=text)
+    text = "also write one FMU of all axes at the pose, and its system file"
+    sub.add_argument("--fmu", action="store_true", help=text)
+    declare_output(sub, "--out", FOLDER, "folder to write", required=True)
+
+
+def run(args: argparse.Namespace) -> CommandResult:
+    """Run the command `jointfmu robot`."""
+    names, angles = _parse_pairs(args.drive, "--drive", "NAME"), _parse_pairs(args.pose, "--pose", "ANGLE")
+    if not 0.0 <= args.payload <= MAX_PAYLOAD:
+        raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MAX_PAYLOAD:g}] kg")
+    pictures = args.out / "frequencies.png", args.out / "payload.png"
+    plots.check_picture(pictures[0])
+    check_outputs(pictures, PICTURE, args.force)
+    written = args.out / f"{args.robot.stem}_elastic.xml"
+    models = [written, *([args.out / f"{args.robot.stem}_plugin.xml"] if args.plugin else [])]
+    check_input_overwrite(models, args, ("out",))
+    check_outputs(models, EXCHANGE_TEXT, args.force)
+    with require_package("read robots", "mujoco"):
+        import mujoco  # noqa: F401
+    from ...api import load
+    from ...exchange.robots import elastic, poses
+    from ...exchange.robots import pictures as drawn
+    from ...exchange.robots.names import check_names, make_identifier
+    from ...joints.harmonic_drive.transmission import make_transmission
+
+    spec = elastic.read_robot(args.robot)
+    loaded = {name: load(name).file for name in dict.fromkeys(names.values())}  # axes may share a drive
+    files = {joint: loaded[name] for joint, name in names.items()}
+    if args.plugin or args.fmu:
+        check_names(files)
+    if args.fmu:
+        outputs = [
+            *(make_identifier(file.name) for file in files.values()),
+            f"{make_identifier(args.robot.stem)}_axes",
+        ]
+        for path in (args.out / f"{name}.toml" for name in outputs):
+            check_input_overwrite([path], args, ("out",))
+            check_output(path, PARAMETER_FILE, args.force)
+    drives = {name: make_transmission(file) for name, file in loaded.items()}
+    axes = elastic.make_axes(spec, {joint: drives[name] for joint, name in names.items()})
+    model = spec.compile()
+    pose, tip = elastic.joint_positions(model, angles), elastic.find_body(model, args.tip, axes)
+    made = elastic.add_drives(spec, axes)
+    elastic.make_folders_absolute(made, args.robot)
+    made.compile()
+    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{made.to_xml()}")
+    grid, found = drawn.sweep_frequencies(model, axes, pose, args.payload, tip)
+    drawn.draw_frequencies(pictures[0], axes, grid, found)
+    if not angles:
+        pose = drawn.find_worst_pose(model, axes, pose, grid, args.payload, tip)
+    wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
+    more = []
+    with require_package("compile", "mujoco"):
+        if args.plugin:
+            more += _write_plugin_robot(args, spec, axes, files)
+        if args.fmu:
+            more += _write_axes_system(args, model, axes, files, pose, tip)
+    longest = poses.find_largest_stable_step(model, axes, pose)
+    weight, jacobian = poses.compute_torques(model, axes, pose, args.payload, tip)
+    plain, plain_sunk = poses.compute_sag(
+        model, axes, pose, args.payload, tip, [axis.spring for axis in axes]
+    )
+    under = list(zip(axes, weight.tolist(), strict=True))
+    notes = [line for axis in axes for line in axis.notes]
+    notes += [line for axis, torque in under for line in axis.overload_warnings(torque)]
+    last = axes[-1].joint
+    if args.payload and not jacobian[:, -1].any() and model.jnt_bodyid[model.joint(last).id] == tip:
+        notes.append(
+            f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, and does not "
+            "load that axis; state another body (a link of a URDF) with --tip BODY"
+        )
+    lacking = (
+        f"{axis.drive.name}: the MJCF does not include {line}"
+        for axis in axes
+        for line in axis.drive.omitted_effects
+    )
+    notes += dict.fromkeys(lacking)
+    if model.opt.timestep > longest:
+        notes.append(
+            f"the robot's timestep, {model.opt.timestep:g} s, is too long for the drives; use at most "
+            f"{longest:.3g} s"
+        )
+    facts = {
+        "written": [str(path) for path in (written, *pictures, *more)],
+        "payload": args.payload,
+        "tip": model.body(tip).name,
+        "pose": {
+            name: float(pose[model.joint(name).qposadr[0]])
+            for name in dict.fromkeys([*(axis.joint for axis in axes), *angles])
+        },
+        "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
+        "torque": {axis.joint: torque for axis, torque in under},
+        "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
+        "stiffness": {axis.joint: axis.stiffness(torque) for axis, torque in under},
+        "tip_error": sunk,
+        "plain": {
+            "wind_up": dict(zip([axis.joint for axis in axes], plain.tolist(), strict=True)),
+            "stiffness": {axis.joint: axis.spring.stiffness(torque) for axis, torque in under},
+            "tip_error": plain_sunk,
+        },
+        "longest_step": longest,
+        "notes": notes,
+    }
+    return CommandResult(document=facts, lines=_format_results(facts, model))
+
+
+def _write_plugin_robot(args: argparse.Namespace, spec: Any, axes: Any, drive_files: Any) -> list[Path]:
+    """Write the robot with MuJoCo plugins, and compile the plugins; returns the paths."""
+    from ...exchange.robots import elastic, plugged
+
+    elastic.make_folders_absolute(spec, args.robot)
+    written = args.out / f"{args.robot.stem}_plugin.xml"
+    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{plugged.format_plugin_robot(spec, axes, drive_files)}")
+    return [written, *plugged.compile_plugins(drive_files, args.out).values()]
+
+
+def _write_axes_system(
+    args: argparse.Namespace, model: Any, axes: Any, drive_files: Any, pose: Any, tip: int
+) -> list[Path]:
+    """Write the system file of the axes, the parameter files of their drives, and the FMUs.
+
+    Returns the paths of the system file and the FMUs.
+    """
+    from ...exchange.robots import axes_system
+    from ...exchange.robots.names import make_identifier
+    from ...systems.fmu.assembly import assemble_system
+    from ...systems.fmu.build import build_system
+    from ...systems.system import read_system
+
+    written = args.out / f"{make_identifier(args.robot.stem)}_axes.toml"
+    drives = {make_identifier(file.name): format_parameter_file(file) for file in drive_files.values()}
+    for name, text in drives.items():
+        write_parameter_text(args.out / f"{name}.toml", text)
+    write_parameter_text(
+        written,
+        axes_system.format_axes_system(args.robot.stem, model, axes, drive_files, pose, args.payload, tip),
+    )
+    return [written, *build_system(assemble_system(read_system(written)), args.out, force=args.force)]
+
+
+def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
+    from ...exchange.robots.elastic import coordinate_unit
+
+    span, payload, plain = result_values["frequencies"], result_values["payload"], result_values["plain"]
+    return [
+        *(f"wrote {path}" for path in result_values["written"]),
+        f"natural frequencies over the poses: {span['lowest']:.4g} to {span['highest']:.4g} Hz",
+        f"with {payload:g} kg at "
+        + ", ".join(
+            f"{name} = {x:.4g} {coordinate_unit(model, name)}" for name, x in result_values["pose"].items()
+        ),
+        *(
+            f"{name}: wind-up {1e3 * x:.4g} mrad, {result_values['stiffness'][name]:.4g} N.m/rad, "
+            f"at {result_values['torque'][name]:.4g} N.m; in the plain file "
+            f"{1e3 * plain['wind_up'][name]:.4g} mrad, {plain['stiffness'][name]:.4g} N.m/rad"
+            for name, x in result_values["wind_up"].items()
+        ),
+        f"tip error at {result_values['tip']}: {1e3 * result_values['tip_error']:.4g} mm; in the plain file "
+        f"{1e3 * plain['tip_error']:.4g} mm",
+        *result_values["notes"],
+    ]
+
+
+def _parse_pairs(words: Sequence[str], option_name: str, value_name: str) -> dict[str, str]:
+    """Parse JOINT=VALUE words into {joint: text}. Raises ValueError for a wrong word or a repeated joint."""
+    pairs: dict[str, str] = {}
+    for word in words:
+        joint, sign, text = word.partition("=")
+        if not (joint and sign and text):
+            raise ValueError(f"{option_name} {word!r}: expected JOINT={value_name}")
+        if joint in pairs:
+            raise ValueError(f"{option_name}: {joint} is given twice")
+        pairs[joint] = text
+    return pairs

@@ -1,0 +1,171 @@
+"""`jointfmu surface`: identify D and G of measured heights, or synthesize a rough surface."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jointfmu.contact.laws import ROUGHNESS_LAW
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE, write_parameter_text
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, format_parameter_file, load_default, load_parameter_file
+from jointfmu.quantity.refusal import InputRefusal
+
+from ....common.judgement import find_rms_height
+from ....inputs.surfaces.heights import FORM_NAMES
+from ....inputs.surfaces.reading import MAX_RMS_HEIGHT, read_heights
+from ....inputs.surfaces.spectrum import METHODS, SCAN_SIDES
+from ...command import (
+    DEFAULT_SUBCOMMANDS,
+    CommandResult,
+    Parser,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    format_sentence,
+    parse_joint_name,
+)
+from ...outputs import FORCE_HELP, declare_output
+from . import synthesize
+
+if TYPE_CHECKING:
+    from ....inputs.surfaces.results import Identification
+
+SUBCOMMANDS = DEFAULT_SUBCOMMANDS["surface"]
+"""Sub-commands of `surface`; the first one runs if the user names none."""
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu surface` with its sub-commands."""
+    text = "identify fractal dimension D and roughness G of a measured surface or of a pair"
+    top = commands.add_parser(
+        "surface", help=text, description=f"{format_sentence(text)} Synthesize a surface."
+    )
+    steps = top.add_subparsers(dest="step", metavar="STEP", parser_class=Parser)
+    top.usage = f"{top.prog} [-h] [{'|'.join(SUBCOMMANDS)}] ..."
+    top.epilog = f"{top.prog} FILE ... is {top.prog} {SUBCOMMANDS[0]} FILE ..."
+    find = declare_command(steps, SUBCOMMANDS[0], _run_identify, text)
+    declare_argument(
+        find, "files", Path, "scan of one surface, or scans of both surfaces of a pair", nargs="+"
+    )
+    declare_argument(find, "--unit", str, "length unit of files that state none: m, mm, um, nm", "UNIT")
+    declare_argument(find, "--unit-x", str, "length unit of x and y only, for files of columns", "UNIT")
+    declare_argument(find, "--unit-z", str, "length unit of z only", "UNIT")
+    find.add_argument(
+        "--form", choices=FORM_NAMES, default=FORM_NAMES[0], help="form to remove (default: tilt)"
+    )
+    text = "treat spikes as heights, not as missing points"
+    find.add_argument("--keep-spikes", action="store_true", help=text)
+    text = "scaling range: lags and wavelengths [m] (default: the longest range with a power law)"
+    find.add_argument("--range", dest="span", nargs=2, type=float, metavar=("LOW", "HIGH"), help=text)
+    text = "longest wavelength that counts for the rms height h [m] (default: the length of a profile, the "
+    declare_argument(find, "--longest-wave", float, text + "shorter side of a map)", "L")
+    text = (
+        "side of the contact that a single file describes: 1 or 2 (the other side is "
+        "smooth), or both (equal sides)"
+    )
+    find.add_argument("--side", choices=SCAN_SIDES, help=text)
+    text = "method whose result the joint gets (default: the one with the smaller uncertainty)"
+    find.add_argument("--method", choices=METHODS, help=text)
+    text = "frequency ratio in Eq. 30 of Zhao 2018; only G_eq30 depends on it"
+    declare_argument(find, "--gamma", float, text, "GAMMA", default=1.5)
+    find.add_argument(
+        "--joint",
+        type=parse_joint_name,
+        choices=list(KINDS),
+        metavar="JOINT",
+        help=f"one of {', '.join(KINDS)}",
+    )
+    laws = dict.fromkeys(law for kind in KINDS.values() if kind.surfaces for law in kind.laws)
+    text = f"law of the joint: {ROUGHNESS_LAW} (default), which uses h, or a law that uses D and G: "
+    text += ", ".join(law for law in laws if law != ROUGHNESS_LAW)
+    declare_argument(find, "--law", str, text, "LAW", choices=[*laws])
+    declare_argument(find, "--params", Path, "parameter file to start from (TOML)")
+    text = (
+        f"{FORCE_HELP}; accept any size of scan and any height; write D and G even if they are not determined"
+    )
+    find.add_argument("--force", action="store_true", help=text)
+    declare_output(find, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
+    declare_output(find, "--plot", PICTURE, "draw data, law and scaling range (.png, .svg)")
+    synthesize.add(steps, SUBCOMMANDS[1])
+
+
+def _run_identify(args: argparse.Namespace) -> CommandResult:
+    base = _load_start_file(args)
+    _check_arguments(args)
+    heights = [read_heights(path, args.unit, args.force, args.unit_x, args.unit_z) for path in args.files]
+    from ....inputs.surfaces.identify import identify  # needs scipy: loaded after the quick checks
+    from ....inputs.surfaces.joint_parameters import with_surface
+    from . import results
+
+    span = tuple(args.span) if args.span else None
+    identified = identify(heights, args.form, span, args.longest_wave, args.side, args.keep_spikes)
+    _check_rms_heights(identified, args.force)
+    file = with_surface(base, identified, args.method, args.force) if base else None
+    if args.out and file:
+        write_parameter_text(args.out, format_parameter_file(file))
+    if args.plot:
+        from ....inputs.surfaces.results import draw_identification
+
+        draw_identification(identified, args.plot)
+    return results.build_result(identified, heights, file, args)
+
+
+def _check_rms_heights(identification: "Identification", force: bool) -> None:
+    """Raise an error for rms heights above those of any machined surface: most often the unit is wrong."""
+    for name, scan in zip(identification.file_names, identification.scans, strict=True):
+        if scan.rms > MAX_RMS_HEIGHT and not force:
+            raise InputRefusal(
+                f"{name}: the rms height is {1e6 * scan.rms:.4g} um, surfaces in contact have up to "
+                f"{1e6 * MAX_RMS_HEIGHT:g} um; state the right unit of z, or confirm the height",
+                "force",
+            )
+
+
+def _check_arguments(args: argparse.Namespace) -> None:
+    """Raise ValueError before any file is read if an option is out of range or missing."""
+    if not 1.0 < args.gamma < float("inf"):
+        raise ValueError(f"gamma = {args.gamma:g} is outside (1, inf)")
+    if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):
+        raise ValueError(f"range {args.span[0]:g} {args.span[1]:g} m, expected 0 < LOW < HIGH")
+    if args.longest_wave is not None and not 0.0 < args.longest_wave < float("inf"):
+        raise ValueError(f"longest wave = {args.longest_wave:g} m is outside (0, inf)")
+    if args.out and len(args.files) == 1 and args.side is None:
+        raise InputRefusal(
+            f"{args.files[0]} is one side of the contact; state which, 1, 2 or both (alike), or give the "
+            "scans of both sides",
+            "side",
+        )
+
+
+def _load_start_file(args: argparse.Namespace) -> ParameterFile | None:
+    """Load the parameter file to start from: `--params`, or the default of `--joint`; None: no file.
+
+    The roughness of a default file is removed. Its law is `roughness`, which uses the measured heights,
+    unless `--law` names another one. Raises ValueError for options that contradict each other.
+    """
+    if args.params:
+        file = load_parameter_file(args.params, args.joint)
+        if args.law not in (None, file.law):
+            raise InputRefusal(f"{args.params}: has law = {file.law!r}; expected that or none", "law")
+        if args.side in ("1", "2") and find_rms_height(file) and not file.roughness.keys() - {"h"}:
+            other = 3 - int(args.side)
+            raise ValueError(
+                f"{args.params}: states h = {find_rms_height(file):g} m of both sides together; "
+                "expected of the "
+                f"other side Ra{other} or Rq{other} in its section [{file.heights_prefix[:-1]}], or "
+                "--side both"
+            )
+        return file
+    if args.joint:
+        law = args.law or ROUGHNESS_LAW
+        if law not in KINDS[args.joint].laws:
+            raise InputRefusal(
+                f"{args.joint} has no law {law!r}, but {', '.join(KINDS[args.joint].laws)}", "law"
+            )
+        return replace(load_default(args.joint, law), roughness={})  # the default file is of another surface
+    if args.law:
+        raise InputRefusal(f"law {args.law} needs --joint, one of {', '.join(KINDS)}", "law")
+    if args.out:
+        raise ValueError(f"--out {args.out} needs --joint, one of {', '.join(KINDS)}, or --params")
+    return None

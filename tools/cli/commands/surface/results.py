@@ -1,0 +1,263 @@
+"""Results of `jointfmu surface` as a JSON object, or as lines and a table."""
+
+import argparse
+import math
+from collections.abc import Mapping, Sequence
+
+from jointfmu.contact.laws import ROUGHNESS_LAW
+from jointfmu.contact.roughness import PERSSON_GAMMA, combined_height, predicted_stiffness
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Number
+
+from ....common.judgement import Plausibility
+from ....common.pressure import judge_file
+from ....common.shown import align_columns
+from ....inputs.fractal import zhao_roughness
+from ....inputs.surfaces.form import ScanRoughness
+from ....inputs.surfaces.heights import ArealMap, Heights
+from ....inputs.surfaces.joint_parameters import dimension_meaning, fractal_parameters, undetermined_reason
+from ....inputs.surfaces.results import Estimate, FractalResult, Identification
+from ...command import CommandResult
+from . import synthesize
+
+STIFFNESS_PRESSURE = 1e6
+"""Pressure [Pa] at which the stiffness per area is reported."""
+
+
+def build_document(
+    identification: Identification,
+    heights: Sequence[Heights],
+    file: ParameterFile | None,
+    args: argparse.Namespace,
+) -> dict[str, object]:
+    """JSON object of all results, in SI units.
+
+    file : parameter file with the identified surface, if one is made
+    """
+    joints = reported_joints(args, file)
+    judged = (judge_file(file) if file else Plausibility(None, ())).to_json()
+    return {
+        "files": list(identification.file_names),
+        "kind": "areal" if isinstance(heights[0], ArealMap) else "profile",
+        "pair": len(heights) == 2,
+        "side": identification.side,
+        "textured": identification.is_textured,
+        "form": args.form,
+        "roughness": _roughness_document(identification, file),
+        "repairs": [
+            {
+                "file": n,
+                "repair": r.name,
+                "count": r.repaired_points,
+                "points": r.total_points,
+                "effect": r.effect_note[2:],
+            }
+            for n, r in identification.repairs
+        ],
+        "results": [_result_document(result, args.gamma) for result in identification.results],
+        "determined": {joint: undetermined_reason(identification, joint) is None for joint in joints},
+        "not_determined": {
+            joint: why for joint in joints if (why := undetermined_reason(identification, joint))
+        },
+        "joints": {joint: _joint_document(identification, joint, args) for joint in joints},
+        "law": file.law if file else None,
+        "level": judged["level"],
+        "written": str(args.out) if args.out else None,
+        "warnings": [*collect_warnings(identification, file, args), *judged["warnings"]],
+    }
+
+
+def _joint_document(
+    identification: Identification, joint: str, args: argparse.Namespace
+) -> Mapping[str, float | None]:
+    """Surface parameters of a joint: {name: value}; None if the scan does not determine them."""
+    determined = args.force or undetermined_reason(identification, joint) is None
+    values = fractal_parameters(identification, joint, args.method)
+    return {name: _finite_or_none(value) if determined else None for name, (value, _) in values.items()}
+
+
+def _roughness_document(identification: Identification, file: ParameterFile | None) -> dict[str, object]:
+    """JSON object of the roughness: heights of each scan and of both sides together, stiffness per area."""
+    h = height_of_both_sides(identification, file)
+    return {
+        "scans": [
+            {
+                "file": name,
+                "Sq" if scan.is_areal else "Rq": scan.rms,
+                "Sa" if scan.is_areal else "Ra": scan.mean_absolute,
+                "h": scan.h,
+                "slope": scan.slope,
+            }
+            for name, scan in zip(identification.file_names, identification.scans, strict=True)
+        ],
+        "longest_wave": identification.longest_wave,
+        "shortest_wave": identification.scans[0].shortest_wave,
+        "h": h,
+        "slope": identification.slope,
+        "stiffness_per_MPa": predicted_stiffness(STIFFNESS_PRESSURE, h),
+    }
+
+
+def _result_document(result: FractalResult, gamma: float) -> dict[str, object]:
+    fit = result.fit
+    return {
+        "method": result.method,
+        "direction": result.direction,
+        "range": [fit.min_scale, fit.max_scale],
+        "decades": fit.decades,
+        "self_affine": fit.is_self_affine,
+        "at_bound": fit.is_at_bound,
+        "drift_of_D": fit.drift,
+        "deviation": fit.deviation,
+        "profile": {"D": _interval_document(result.profile.D), "G": _interval_document(result.profile.G)},
+        "surface": {"D_s": _interval_document(result.areal.D_s), "G_s": _interval_document(result.areal.G_s)},
+        "G_eq30": _finite_or_none(zhao_roughness(result.profile.G.value, fit.H, gamma)),
+    }
+
+
+def _interval_document(estimate: Estimate) -> dict[str, float | None]:
+    return {
+        "value": _finite_or_none(estimate.value),
+        "low": _finite_or_none(estimate.low),
+        "high": _finite_or_none(estimate.high),
+    }
+
+
+def _finite_or_none(value: Number) -> float | None:
+    """Convert a number for JSON; None if it is not finite, which means not determined."""
+    return float(value) if math.isfinite(float(value)) else None
+
+
+def height_of_both_sides(identification: Identification, file: ParameterFile | None) -> float:
+    """Rms height h [m] of both sides together: from the parameter file if it has one, else from the scans."""
+    return combined_height(file.roughness if file else {}) or identification.h
+
+
+def reported_joints(args: argparse.Namespace, file: ParameterFile | None) -> list[str]:
+    """Joints to report: that of the parameter file, else all joints with a rough surface."""
+    return [file.joint] if file else [name for name, kind in KINDS.items() if kind.surfaces]
+
+
+def collect_warnings(
+    identification: Identification, file: ParameterFile | None, args: argparse.Namespace
+) -> list[str]:
+    """Collect warnings about the identified surface and the written parameter file."""
+    lines = list(identification.warnings)
+    if not file or not args.out:
+        return lines
+    why = undetermined_reason(identification, file.joint)
+    names = (
+        "hurst" if file.law == ROUGHNESS_LAW else ", ".join(fractal_parameters(identification, file.joint))
+    )
+    alone = ["slope"] if file.law == ROUGHNESS_LAW else []
+    if why and not args.force:
+        lines.append(
+            f"{names} keep their values, because they are not determined ({why}); --force writes them"
+        )
+    else:
+        alone.append(names)
+    if alone and len(identification.roughness_by_side) < len({name[-1] for name in file.roughness}):
+        side = f"values of side {identification.side} alone"
+        lines.append(f"{', '.join(alone)} are {side}; give both scans for the values of the pair")
+    return lines
+
+
+def build_result(
+    identification: Identification,
+    heights: Sequence[Heights],
+    file: ParameterFile | None,
+    args: argparse.Namespace,
+) -> CommandResult:
+    """Build the result of the command: lines, table and warnings.
+
+    file : parameter file with the identified surface, if one is made
+    """
+    lines = [
+        f"{surface.name}: {synthesize.format_size(surface)}; {_format_scan(scan)}"
+        for surface, scan in zip(heights, identification.scans, strict=True)
+    ]
+    lines.append(_format_stiffness(identification, file))
+    if len(heights) == 2:
+        lines.append("equivalent surface of the pair: structure functions and spectra added")
+    lines += [f"repaired in {name}: {repair}" for name, repair in identification.repairs]
+    heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
+    lines += align_columns([heads, *(_format_fractal_row(result) for result in identification.results)])
+    lines.append("brackets: 95 % confidence intervals")
+    for joint in reported_joints(args, file):
+        lines.append(
+            f"{joint} ({dimension_meaning(joint)}, {_format_fractal_parameters(identification, joint, args)}"
+        )
+    judgement = judge_file(file) if file and file.law != ROUGHNESS_LAW else Plausibility(None, ())
+    prefix = f"law {file.law}: " if file else ""
+    texts = [
+        *(f"{prefix}{text}" for text in judgement.warnings),
+        *collect_warnings(identification, file, args),
+    ]
+    return CommandResult(
+        document=build_document(identification, heights, file, args),
+        lines=[*lines, *(f"{prefix}{line}" for line in judgement.format_lines())],
+        notes=[f"warning: {text}" for text in texts],
+        written_files=(args.out, args.plot),
+    )
+
+
+def _format_scan(scan: ScanRoughness) -> str:
+    q, a = ("Sq", "Sa") if scan.is_areal else ("Rq", "Ra")
+    return (
+        f"{q} = {1e6 * scan.rms:.4g} um, {a} = {1e6 * scan.mean_absolute:.4g} um, "
+        f"h = {1e6 * scan.h:.4g} um of waves up to {1e3 * scan.longest_wave:.4g} mm"
+    )
+
+
+def _format_stiffness(identification: Identification, file: ParameterFile | None) -> str:
+    h = height_of_both_sides(identification, file)
+    known = {name[2] for name in file.roughness} if file else set()
+    if (
+        "h" in (file.roughness if file else ())
+        or len(known | {str(n) for n in identification.roughness_by_side}) == 2
+    ):
+        what = "both sides" if identification.side != "both" else "two sides like it"
+    else:
+        what = "one side, the other smooth"
+    return (
+        f"stiffness per area p/({PERSSON_GAMMA:g} h) = "
+        f"{predicted_stiffness(STIFFNESS_PRESSURE, h):.3g} N/m3 per MPa "
+        f"(h = {1e6 * h:.4g} um of {what})"
+    )
+
+
+def _format_fractal_parameters(identification: Identification, joint: str, args: argparse.Namespace) -> str:
+    values = fractal_parameters(identification, joint, args.method)
+    method = next(iter(values.values()))[1].method
+    why = undetermined_reason(identification, joint)
+    if why and not args.force:
+        return f"{method}): {', '.join(values)} not determined: {why}"
+    return f"{method}): " + ", ".join(
+        f"{name} = {value:.6g}" if math.isfinite(value) else f"{name} not determined"
+        for name, (value, _) in values.items()
+    )
+
+
+def _format_fractal_row(result: FractalResult) -> tuple[str, ...]:
+    profile, areal = result.profile, result.areal
+    return (
+        result.method,
+        result.direction,
+        f"{result.fit.min_scale:.2e} to {result.fit.max_scale:.2e}",
+        _format_interval(profile.D, ".3f"),
+        _format_interval(profile.G, ".2e"),
+        *(
+            (_format_interval(areal.D_s, ".3f"), _format_interval(areal.G_s, ".2e"))
+            if result.direction in ("areal", "profile")
+            else ("", "")
+        ),
+    )
+
+
+def _format_interval(estimate: Estimate, number_format: str) -> str:
+    if not math.isfinite(estimate.value):
+        return "not determined"
+    return (
+        f"{estimate.value:{number_format}} [{estimate.low:{number_format}}, {estimate.high:{number_format}}]"
+    )

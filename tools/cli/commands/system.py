@@ -1,0 +1,89 @@
+"""`jointfmu system`: build FMUs, SSP archives and a Modelica model of joints, bodies and loads."""
+
+import argparse
+from pathlib import Path
+
+from jointfmu.files.outputs import ARCHIVE, EXCHANGE_TEXT, FOLDER, PICTURE, check_output, check_outputs
+from jointfmu.files.writing import write_text
+
+from ...common import columns
+from ...common.options import require_package
+from ...systems.system import System, list_system_names, load_system
+from ..command import CommandResult, SubParsers, declare_argument, declare_command
+from ..outputs import declare_output
+from . import save_panels
+
+
+def add(commands: SubParsers) -> None:
+    """Declare the command `jointfmu system` with its options."""
+    text = "build a system of joints and bodies: FMUs, SSP archives and a Modelica model"
+    make = declare_command(commands, "system", _run_system, text)
+    declare_argument(make, "file", str, f"system file (TOML), or {', '.join(list_system_names())}", "FILE")
+    declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+    text = "also build one FMU of the whole system: NAME.fmu, FMI 2.0 and 3.0"
+    make.add_argument("--fmu", action="store_true", help=text)
+    declare_output(
+        make, "--csv", columns.TABLE_FILE_KIND, "simulate the system and write all connected outputs"
+    )
+    text = "simulate the system and draw the joint loads; for an arm also wind-up and tip error (.png, .svg)"
+    declare_output(make, "--plot", PICTURE, text)
+
+
+def _run_system(args: argparse.Namespace) -> CommandResult:
+    described = load_system(args.file)
+    with require_package("build a system"):
+        from ...exchange.modelica import library
+        from ...exchange.modelica.systems import model_name
+        from ...systems import ssp
+        from ...systems.fmu.assembly import assemble_system
+        from ...systems.steps import find_largest_stable_step
+
+        whole = assemble_system(described) if args.fmu else None
+        model = library.render_system(described)
+        step = find_largest_stable_step(described)
+        if (args.csv or args.plot) and (warning := _warn_long_step(described, *step)):
+            raise ValueError(f"{args.file}: {warning}; allowed is a shorter one, or neither --csv nor --plot")
+        written = args.out / "modelica" / f"{model_name(described)}.mo"
+        check_output(written, EXCHANGE_TEXT, args.force)
+        if whole:
+            from ...systems.fmu.build import build_system, fmu_paths
+
+            check_outputs(fmu_paths(whole.make_model().title, args.out), ARCHIVE, args.force)
+        built = ssp.build_systems(args.out, [described], force=args.force)
+        if whole:
+            built += build_system(whole, args.out, force=args.force)
+    write_text(written, model)
+    paths = [*built, written]
+    if args.csv or args.plot:
+        from ...pages.report import systems
+        from ...systems import cosimulation
+
+        try:
+            run = cosimulation.simulate(described, args.out / "fmi2")
+        except ValueError as error:
+            text = f"experiment.interval = {described.interval:g} s may be too long"
+            raise ValueError(f"{error}; {text}") from None
+        step = min(step, find_largest_stable_step(described, run))
+        if args.csv:
+            units = systems.output_units(described)
+            heads = [(name, units[name]) for name in run]
+            write_text(args.csv, columns.format_table(heads, list(run.values()), digits=12))
+        if args.plot:
+            save_panels(args.plot, systems.system_panels(described, run), systems.MOTION_SIZE)
+        paths += [path for path in (args.csv, args.plot) if path]
+    notes = [f"warning: {text}" for text in (_warn_long_step(described, *step),) if text]
+    texts = [str(path) for path in paths]
+    document = {"system": described.name, "built": texts, "longest_step": step[0], "notes": notes}
+    return CommandResult(document=document, lines=[f"built {path}" for path in texts], notes=notes)
+
+
+def _warn_long_step(system: System, largest_step: float, joint: str) -> str:
+    """Format a warning if the system's interval is longer than the largest stable step; else empty.
+
+    largest_step : largest stable step [s] of a co-simulation
+    joint        : joint that limits the step
+    """
+    if system.interval <= largest_step:
+        return ""
+    stated = f"experiment.interval = {system.interval:g} s is longer than {largest_step:.3g} s"
+    return f"{stated}, the largest stable step of {joint} for a parallel (Jacobi) master"

@@ -1,0 +1,74 @@
+"""Output files of commands: declaration of their options, and checks before the work starts."""
+
+import argparse
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+from jointfmu.files.outputs import FOLDER, PICTURE, FileKind, check_output, is_same_file
+from jointfmu.files.writing import is_standard_output
+
+from ..common import plots
+from .command import Parser, declare_argument
+
+FORCE_HELP = "replace files that jointfmu did not write, or that were edited"
+
+
+def declare_output(
+    parser: Parser, name: str, kind: FileKind, help_text: str, *, allow_force: bool = True, **options: Any
+) -> None:
+    """Declare an option that names a file or folder to write, and the option `--force`.
+
+    allow_force : whether to declare `--force`; False: a foreign file is never replaced
+    options     : keyword arguments of `declare_argument`
+    """
+    metavar = "DIR" if kind is FOLDER else "FILE"
+    declare_argument(parser, name, Path, help_text, metavar, **options)
+    parser.outputs[name.lstrip("-")] = kind
+    if allow_force and "--force" not in parser._option_string_actions:
+        parser.add_argument("--force", action="store_true", help=FORCE_HELP)
+
+
+def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namespace) -> None:
+    """Raise ValueError before the work starts if a command may not or cannot write one of its outputs.
+
+    outputs : {argument: kind of file} as declared
+    """
+    stated = {name: getattr(args, name) for name in outputs if getattr(args, name) is not None}
+    files = {f"--{name}": path for name, path in stated.items() if outputs[name] is not FOLDER}
+    check_input_overwrite(files.values(), args, outputs)
+    for (option, path), (other_option, other_path) in combinations(files.items(), 2):
+        if is_same_file(path, other_path) and not path.is_char_device():
+            raise ValueError(f"{option} {path}: {other_option} writes the same file; state two files")
+    for name, path in stated.items():
+        if args.json and is_standard_output(path):
+            raise ValueError(f"--{name} {path}: --json writes to the same place; state another file")
+        if outputs[name] is PICTURE:
+            plots.check_picture(path)
+        check_output(path, outputs[name], getattr(args, "force", False))
+
+
+def check_input_overwrite(files: Iterable[Path], args: argparse.Namespace, outputs: Iterable[str]) -> None:
+    """Raise ValueError if one of the files to write is also an input of the command.
+
+    Every existing file that the command line names counts as an input, except the outputs.
+    """
+    stated = (value for name, value in vars(args).items() if name not in outputs)
+    inputs = [path for value in stated for path in _iterate_named_files(value)]
+    for path in files:
+        if not path.is_char_device() and any(is_same_file(path, source) for source in inputs):
+            raise ValueError(f"{path}: is also an input of this command; state another file")
+
+
+def _iterate_named_files(value: object) -> Iterator[Path]:
+    """Yield the existing files that a value of the command line names, also as NAME=FILE."""
+    if isinstance(value, list | tuple):
+        for item in value:
+            yield from _iterate_named_files(item)
+    elif isinstance(value, str | Path):
+        text = str(value)
+        for word in {text, text.partition("=")[2]} - {""}:
+            path = Path(word)
+            if "\0" not in word and path.exists() and not path.is_dir():
+                yield path

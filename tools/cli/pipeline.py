@@ -1,0 +1,193 @@
+"""Main job: build, validate and prove all FMUs, run the ramps, compare with the papers, write the report."""
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fmpy.validation import validate_fmu
+from jointfmu_fmu_src.building import FLAVOURS, build
+
+from jointfmu.files.writing import write_text
+from jointfmu.joints import MODELS
+from jointfmu.progress import track_progress, worker_processes
+from jointfmu.quantity import Array
+
+from ..pages.laboratory.assemble import write_laboratory
+from ..pages.report.figure import Figure
+from ..pages.report.page import build_figures, write_report
+from ..run.proof.outcome import Proof
+from ..run.proof.run import prove
+from ..run.ramps import ramp
+from ..studies.checks import (
+    Check,
+    check_decays,
+    check_free_vibrations,
+    check_ramp,
+    compare_flavour,
+    compute_published_points,
+    run_default_ramp,
+)
+from ..studies.published import validation
+from ..systems import cosimulation, decays
+from ..systems.decays import Decay
+from ..systems.ringing import FreeVibration, simulate_examples
+from ..systems.ssp import build_systems
+from ..systems.system import System
+
+
+@dataclass(slots=True)
+class JobResult:
+    """Results of the main job.
+
+    fmi2_folder : folder of the FMUs of FMI 2.0
+    fmu_paths   : FMUs of the joints, of all flavours
+    system_files : system files (.ssp) and the FMUs that they add
+    problems    : errors, one line each
+    ramps       : {FMU: its load ramp}
+    proofs      : results of the experiments of each FMU
+    checks      : numerical checks of the ramps, resonances and decays
+    validated_points : published points, computed by the package
+    fmu_validated_points : published points, computed by running FMUs
+    free_vibrations, decays : {system: simulated free vibrations}
+    arm_results : {name: robot arm, its simulated columns}
+    figures     : {joint: figures of the report}
+    """
+
+    fmi2_folder: Path
+    fmu_paths: list[Path] = field(default_factory=list)
+    system_files: list[Path] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+    ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
+    proofs: list[Proof] = field(default_factory=list)
+    checks: list[Check] = field(default_factory=list)
+    validated_points: list[validation.ValidatedPoint] = field(default_factory=list)
+    fmu_validated_points: list[validation.ValidatedPoint] = field(default_factory=list)
+    free_vibrations: dict[str, list[FreeVibration]] = field(default_factory=dict)
+    decays: dict[str, list[Decay]] = field(default_factory=dict)
+    arm_results: dict[str, tuple[System, dict[str, Array]]] = field(default_factory=dict)
+    figures: dict[str, list[Figure]] = field(default_factory=dict)
+
+    @property
+    def failures(self) -> list[str]:
+        """One line for each failure.
+
+        A published point that an FMU misses is listed only if the package meets it.
+        """
+        lines = list(self.problems)
+        lines += [f"{report_name(proof.fmu)}: {text}" for proof in self.proofs for text in proof.failures]
+        lines += [
+            f"{c.fmu}: {c.name}: {c.deviation:.2g}, allowed {c.tolerance:.0e}"
+            for c in self.checks
+            if not c.is_passed
+        ]
+        met = {(r.point.paper, r.point.id) for r in self.validated_points if r.has_passed}
+        worse = [
+            r for r in self.fmu_validated_points if not r.has_passed and (r.point.paper, r.point.id) in met
+        ]
+        for source, rows in (("package", validation.missed_points(self.validated_points)), ("FMU", worse)):
+            lines += [
+                f"{r.point.paper}: {r.point.id} by the {source}: published {r.point.value}, "
+                f"computed {r.computed_value:.6g}"
+                for r in rows
+            ]
+        return lines
+
+
+def report_name(fmu: Path) -> str:
+    """Name of an FMU in the report: flavour/name."""
+    return f"{fmu.parent.name}/{fmu.stem}"
+
+
+def run_job(out_folder: Path) -> JobResult:
+    """Build, prove and check all flavours; write report, laboratory page and ramps to out_folder/report.
+
+    The report shows the ramps of the flavour `fmi2`. The ramps of the other flavours must be equal to them.
+    """
+    folder = out_folder / "fmi2"
+    outcome = JobResult(folder)
+    with worker_processes() as pool:
+        outcome.fmu_paths = build([], list(FLAVOURS), None, out_folder, pool=pool)
+        outcome.system_files = build_systems(out_folder, build_joints=False, pool=pool)
+        components = [path for path in outcome.system_files if path.suffix == ".fmu"]
+        arms = pool.submit(cosimulation.simulate_arms, folder)
+        ringdowns = pool.submit(decays.simulate_examples, folder)
+        ringing = pool.submit(simulate_examples, folder)
+        page = pool.submit(write_laboratory, out_folder / "report" / "laboratory.html")
+        paths = [*outcome.fmu_paths, *components]
+        examined = pool.map(_validate_and_prove, paths)
+        _compare_ramps(outcome, out_folder)
+        outcome.arm_results, outcome.decays, outcome.free_vibrations = (
+            arms.result(),
+            ringdowns.result(),
+            ringing.result(),
+        )
+        outcome.figures = build_figures(outcome)  # while other processes prove the FMUs
+        for problems, proof in track_progress(examined, "validate and prove", len(paths)):
+            outcome.problems += problems
+            outcome.proofs.append(proof)
+        outcome.checks += [*check_free_vibrations(outcome.free_vibrations), *check_decays(outcome.decays)]
+        write_report(out_folder / "report" / "index.html", outcome)
+        page.result()
+    return outcome
+
+
+def _validate_and_prove(path: Path) -> tuple[list[str], Proof]:
+    """Validate an FMU with fmpy and prove it: problems found, result of the proof."""
+    return [f"{report_name(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
+
+
+def _compare_ramps(outcome: JobResult, out: Path) -> None:
+    """Run and check the ramps of all FMUs, and compare with the published numbers."""
+    for name in track_progress(MODELS, "ramp", len(MODELS)):
+        result = run_default_ramp(name, outcome.fmi2_folder)
+        outcome.ramps[name] = result
+        outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
+        write_text(out / "report" / f"{name}.csv", result.format_csv())
+        outcome.checks += check_ramp(name, outcome.fmi2_folder, result)
+        other_folders = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmi2_folder]
+        outcome.checks += [compare_flavour(name, folder, result) for folder in other_folders]
+    for step in track_progress(("package", "FMUs"), "compare", 2):
+        if step == "package":
+            outcome.validated_points = validation.validate()
+        else:
+            outcome.fmu_validated_points = compute_published_points(outcome.fmi2_folder)
+
+
+def main(out_folder: Path) -> int:
+    """Run the main job and print a summary. Returns the exit code: 0, 1 for a failure, 2 for bad input."""
+    try:
+        outcome = run_job(out_folder)
+    except (ValueError, RuntimeError) as error:
+        print(f"build_fmus.py: {error}", file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
+    except KeyboardInterrupt:
+        print("build_fmus.py: interrupted", file=sys.stderr)
+        return 130
+    misses = outcome.failures
+    folders = ", ".join(str(out_folder / flavour) for flavour in FLAVOURS)
+    print(f"built: {len(outcome.fmu_paths)} FMUs in {folders}: {', '.join(MODELS)}")
+    print(
+        f"systems: {', '.join(p.name for p in outcome.system_files if p.suffix == '.ssp')} in "
+        f"{out_folder / 'ssp'}"
+    )
+    partners = [path for path in outcome.system_files if path.suffix == ".fmu"]
+    print(f"validated with fmpy: {len(outcome.fmu_paths) + len(partners)}; ramps run: {len(outcome.ramps)}")
+    worst = max((proof.worst.error_ratio for proof in outcome.proofs if proof.worst), default=0.0)
+    runs = sum(proof.run_count for proof in outcome.proofs)
+    print(
+        f"proved in fmpy: {len(outcome.proofs)} FMUs by {runs} runs of their experiments, "
+        f"at worst {worst:.1e} of what is allowed"
+    )
+    print(
+        f"compared: {validation.format_summary(outcome.validated_points)}; "
+        f"{len(outcome.fmu_validated_points)} of them again through the FMUs; {len(outcome.checks)} "
+        "checks of the ramps"
+    )
+    print(
+        f"report: {out_folder / 'report' / 'index.html'}; laboratory: "
+        f"{out_folder / 'report' / 'laboratory.html'}"
+    )
+    print(f"missed: {len(misses)}")
+    for line in misses:
+        print(f"  {line}")
+    return int(bool(misses))

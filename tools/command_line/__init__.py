@@ -1,1 +1,0 @@
-"""Command-line tools shared by all commands of `jointfmu`: parser, options, outputs, examples."""

@@ -1,0 +1,71 @@
+"""Tool modules of the joints: for each joint, which module of its folder in `tools/joints` serves which tool.
+
+The `__init__.py` of the folder names the modules (`ToolParts`). `import jointfmu_tools` reads these names; a
+module is imported when its tool asks for it.
+"""
+
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # the command line imports this module first: no slow imports
+    from jointfmu.joints.kind import JointKind
+
+TOOL_NAMES = (
+    "checks",
+    "export",
+    "figures",
+    "fit",
+    "laboratory",
+    "modelica",
+    "new",
+    "pressure",
+    "published",
+    "reduced",
+    "report",
+    "ringing",
+)
+"""Tools that look for a module in the folder of a joint."""
+
+
+class ToolParts:
+    """Tool modules of one joint.
+
+    package      : name of the package that is the joint's folder
+    module_names : modules with the name of their tool
+    modules      : {tool: module}, if a module has another name than its tool
+
+    Raises ImportError if a name is not in TOOL_NAMES, if a named module is missing, or if the folder has a
+    module with the name of a tool that is not in `module_names`.
+    """
+
+    def __init__(self, package: str, module_names: Sequence[str], **modules: str) -> None:
+        self.package, self.modules = package, {name: name for name in module_names} | modules
+        existing = {module.name for module in iter_modules([str(self.folder)])}
+        faults = {name: "is of no tool" for name in self.modules if name not in TOOL_NAMES}
+        faults |= dict.fromkeys(
+            existing & {*TOOL_NAMES} - {*module_names}, "is a part that its __init__.py must name"
+        )
+        faults |= {name: "is not there" for name in self.modules.values() if name not in existing}
+        for name, text in faults.items():
+            raise ImportError(f"{package}.{name} {text}; parts are {', '.join(TOOL_NAMES)}")
+
+    @property
+    def folder(self) -> Path:
+        return Path(str(import_module(self.package).__file__)).parent
+
+    def load(self, tool: str) -> ModuleType | None:
+        """Import the module for a tool; None if the joint has no such module."""
+        return import_module(f"{self.package}.{self.modules[tool]}") if tool in self.modules else None
+
+
+PARTS: dict[str, ToolParts] = {}
+"""{name of a joint: its tool modules}. `jointfmu_tools.joints` fills it; other packages add their joints."""
+
+
+def load_tool_module(kind: "JointKind", tool: str) -> ModuleType | None:
+    """Import the module of a joint for a tool; None if the joint has no such module."""
+    return PARTS[kind.name].load(tool) if kind.name in PARTS else None

@@ -1,0 +1,138 @@
+"""Plausibility of a stiffness: comparison with the estimate from roughness, validity of the interface law.
+
+Every command that reports a stiffness also reports this result, by `assess_law` at pressures. For a joint
+under loads `jointfmu_tools.common.pressure` computes the pressures first.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from jointfmu.contact.interface import InterfaceLaw, find_validity_violations, stiffness_curve
+from jointfmu.contact.roughness import MAX_HEIGHT, PERSSON_GAMMA, combined_height, predicted_stiffness
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array, Number
+
+MAX_STIFFNESS_RATIO = 3.0
+"""Factor [1] above or below the estimate p/(GAMMA h) that makes a stiffness doubtful (docs/validity.md)."""
+
+
+@dataclass(frozen=True, slots=True)
+class StiffnessComparison:
+    """Stiffness of an interface law, compared with the estimate p/(GAMMA h) from roughness.
+
+    h         : [m] rms height of both surfaces combined
+    pressure  : (n) [Pa] > 0
+    stiffness : (n) [N/m3] stiffness per area of the law, times the scale of the joint
+    """
+
+    h: float
+    pressure: Array
+    stiffness: Array
+
+    @property
+    def ratio(self) -> Array:
+        """Ratio (n) [1] of the stiffness to p/(GAMMA h)."""
+        return np.asarray(self.stiffness / predicted_stiffness(self.pressure, self.h))
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the ratio is above MAX_STIFFNESS_RATIO or below 1/MAX_STIFFNESS_RATIO at any pressure."""
+        return bool(np.any((self.ratio > MAX_STIFFNESS_RATIO) | (self.ratio < 1.0 / MAX_STIFFNESS_RATIO)))
+
+    def __str__(self) -> str:
+        at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.h:.3g} um"
+        return (
+            f"stiffness by the law: {_format_range(self.ratio)} times the roughness "
+            f"estimate p/({PERSSON_GAMMA:g} h) {at}"
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Convert to a JSON object."""
+        columns = (self.pressure, self.stiffness, predicted_stiffness(self.pressure, self.h), self.ratio)
+        names = ("pressure", "stiffness", "expected", "ratio")
+        points = [dict(zip(names, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
+        return {"h": self.h, "gamma": PERSSON_GAMMA, "points": points}
+
+
+@dataclass(frozen=True, slots=True)
+class Plausibility:
+    """Plausibility of a stiffness: comparison with the roughness, and warnings.
+
+    comparison : None if the roughness is unknown
+    """
+
+    comparison: StiffnessComparison | None
+    warnings: tuple[str, ...]
+
+    def format_lines(self) -> Iterator[str]:
+        """Readable lines, without the warnings."""
+        if self.comparison is not None:
+            yield str(self.comparison)
+
+    def with_warnings(self, extra_warnings: Sequence[str]) -> "Plausibility":
+        """Copy with further warnings before the present ones."""
+        return Plausibility(self.comparison, (*extra_warnings, *self.warnings))
+
+    def to_json(self) -> dict[str, Any]:
+        """Convert to a JSON object: {"level": object or null, "warnings": [...]}."""
+        return {"level": self.comparison and self.comparison.to_json(), "warnings": list(self.warnings)}
+
+
+def find_rms_height(file: ParameterFile) -> float | None:
+    """Combined rms height h [m] of both surfaces, from the law or else from the surface data of the file.
+
+    None if the file has neither.
+    """
+    h = law_rms_height(KINDS[file.joint].extract_law(file.values))
+    return combined_height(file.roughness) if h is None else h
+
+
+def assess_law(
+    law: InterfaceLaw,
+    pressures: Sequence[float],
+    h: float | None,
+    peak_pressure: float = 0.0,
+    stiffness_ratio: Sequence[float] | float = 1.0,
+    check_limits: bool = True,
+) -> Plausibility:
+    """Assess the stiffness of an interface law at nominal pressures [Pa]. Zero and infinite ones are ignored.
+
+    h               : [m] combined rms height of both surfaces; None: unknown
+    peak_pressure   : [Pa] largest pressure, if `pressures` are mean values
+    stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one per pressure
+    check_limits    : also warn about pressures outside the range of validity
+    """
+    nominal = np.asarray(pressures, dtype=np.float64)
+    in_contact = (nominal > 0.0) & (nominal < np.inf)
+    p, factor = nominal[in_contact], np.broadcast_to(stiffness_ratio, nominal.shape)[in_contact]
+    comparison = None
+    if h is not None and p.size:
+        comparison = StiffnessComparison(h, p, factor * stiffness_curve(law, p)[0])
+    highest = float(np.max(p, initial=peak_pressure))
+    lowest = float(np.min(p, initial=highest))
+    warnings = find_validity_violations(law, highest, lowest) if check_limits and highest > 0.0 else []
+    if h is not None and h > 2.0 * MAX_HEIGHT:
+        warnings.insert(
+            0, f"h = {h:.3g} m is not a roughness: faces that are joined have up to {MAX_HEIGHT:g} m each"
+        )
+    if comparison is not None and comparison.is_doubtful:
+        warnings.append(
+            f"stiffness by the law: {_format_range(comparison.ratio)} times the roughness estimate K/A_0 = "
+            f"p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um, allowed is a factor of "
+            f"{MAX_STIFFNESS_RATIO:g}: measure the joint, or use the roughness estimate (docs/validity.md)"
+        )
+    return Plausibility(comparison, tuple(warnings))
+
+
+def law_rms_height(law: InterfaceLaw) -> Number | None:
+    """Combined rms height h [m] of an interface law; None if the law has no such parameter."""
+    return getattr(law, "h", None)
+
+
+def _format_range(values: Array) -> str:
+    low, high = float(np.min(values)), float(np.max(values))
+    return f"{low:.3g}" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g}"

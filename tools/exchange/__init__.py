@@ -1,0 +1,1 @@
+"""Joints for other programs: tables for finite elements, Modelica, MuJoCo, robot descriptions."""

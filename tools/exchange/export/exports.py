@@ -1,0 +1,104 @@
+"""Exports that a joint offers (constant EXPORTS of the module `export` in its folder), and file formats.
+
+This module and the joints' modules do not load scipy before a file is written, because the help of the
+command line reads them.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Variable
+from jointfmu.quantity import flat_fields
+
+from ...common.joint_parts import load_tool_module
+
+if TYPE_CHECKING:
+    from jointfmu.mechanics.curve import Curve
+
+    from .mesh import NodePairs
+    from .placing import Placement, Springs
+    from .tables import LoadTable
+
+
+FORMAT_CONTENTS = {
+    "ansys": ("springs",),
+    "calculix": ("springs", "contact"),
+    "abaqus": ("springs", "contact"),
+    "modelica": ("curve",),
+    "csv": ("springs", "contact", "curve"),
+}
+"""{format: contents that a file of this format can have}."""
+ROBOT_FORMATS = ("mjcf", "urdf")
+"""Formats of robot simulators; a file has a drive."""
+EXPORT_CONTENTS = ("springs", "contact", "curve")
+"""Contents that can be exported."""
+DEFAULT_LOAD_ERROR = 1e-3
+"""Default for the largest relative error of the load [1] when a table is interpolated linearly."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadCurve:
+    """Load over displacement of the complete joint.
+
+    meaning       : content of the file in words
+    columns       : variables displacement, load and stiffness
+    name          : name of the table in a Modelica file
+    compute_table : (parameters, working point or None, largest error [1]) -> table
+    """
+
+    meaning: str
+    columns: Sequence[Variable]
+    name: str
+    compute_table: "Callable[[Any, Any, float], LoadTable]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exports:
+    """Exports that a joint offers. None: the joint does not offer this content.
+
+    working_point_class : dataclass of declared quantities. The user must state the first quantity; the others
+                          are zero by default
+    springs             : (parameters, working point, node pairs of the user or None, placement) -> springs,
+                          and their description; the working point is None if the pairs state the pressure
+    contact             : parameters -> pressure [Pa] over approach [m], and additional comment lines
+    curve               : load over displacement; it needs the working point if the joint has one
+    missing_reasons     : {content: why it cannot be written, and which content can}
+    """
+
+    working_point_class: type[object] | None = None
+    springs: "Callable[[Any, Any, NodePairs | None, Placement], tuple[Springs, str]] | None" = None
+    contact: "Callable[[Any], tuple[Curve, Sequence[str]]] | None" = None
+    curve: LoadCurve | None = None
+    missing_reasons: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def working_point(self) -> dict[str, str]:
+        """Quantities of the working point, the required one first: {name: meaning with unit}."""
+        declared = flat_fields(self.working_point_class) if self.working_point_class else ()
+        return {name: f"{item.metadata['doc']} [{item.metadata['unit']}]" for name, item in declared}
+
+
+def exports_of(joint: str) -> Exports:
+    """Exports that a joint offers."""
+    module = load_tool_module(KINDS[joint], "export")
+    exports: Exports = module.EXPORTS if module else Exports()
+    return exports
+
+
+def joints_with(content: str) -> list[str]:
+    """Names of the joints that offer a content: springs, contact or curve."""
+    return [joint for joint in KINDS if getattr(exports_of(joint), content)]
+
+
+def require_content(joint: str, content: str) -> Any:
+    """Return a joint's springs, contact or curve. Raises ValueError if the joint does not offer it."""
+    exports = exports_of(joint)
+    if content in exports.missing_reasons:
+        raise ValueError(f"the {content} of a {joint} cannot be exported: {exports.missing_reasons[content]}")
+    if not getattr(exports, content):
+        raise ValueError(
+            f"{content} of a {joint} cannot be written; allowed is a {', '.join(joints_with(content))}"
+        )
+    return getattr(exports, content)

@@ -1,0 +1,96 @@
+"""Node pairs of the user's mesh, read from CSV.
+
+The columns are `node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]` and optionally `pressure [MPa]`: labels
+of the two nodes of a pair, position in the joint's plane, contact area of the pair, and contact pressure,
+for example from a contact analysis.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.quantity import Array
+from jointfmu.quantity.units import UnitSizes, unit_sizes
+
+from ...common.columns import Columns, read_columns
+
+COLUMN_UNITS: Mapping[str, UnitSizes] = {
+    "node_1": unit_sizes("1"),
+    "node_2": unit_sizes("1"),
+    "x": unit_sizes("m", "mm"),
+    "y": unit_sizes("m", "mm"),
+    "area": unit_sizes("m2", "mm2"),
+    "pressure": unit_sizes("Pa", "MPa"),
+}
+MAX_NODE_LABEL = 99_999_999
+"""Largest label of a node: eight digits fit into the fixed columns of all solvers."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodePairs:
+    """Node pairs of a mesh.
+
+    path     : file that the pairs were read from
+    nodes    : (n, 2) labels on side 1 and side 2
+    position : (n, 2) [m] in the joint's plane, relative to the centroid of the contact
+    area     : (n)    [m2] contact area of each pair
+    pressure : (n)    [Pa]; None: the pressure distribution of the joint is used
+    """
+
+    path: Path
+    nodes: NDArray[np.int64]
+    position: Array
+    area: Array
+    pressure: Array | None
+
+
+def read_pairs(path: str | Path) -> NodePairs:
+    """Read node pairs from a CSV file. The origin of x and y is arbitrary.
+
+    Raises ValueError, one line with file and node: a file that `columns.read_columns` cannot read, a missing
+    column, a label that is no positive whole number or is repeated, an area that is not positive, a negative
+    pressure, or a pressure that is zero everywhere.
+    """
+    table = read_columns(path, COLUMN_UNITS, 3)
+    nodes = np.stack([_read_node_labels(table, name) for name in ("node_1", "node_2")], axis=1)
+    labels, counts = np.unique(nodes, return_counts=True)
+    if np.any(counts > 1):
+        raise ValueError(f"{table.path}: node {labels[counts > 1][0]} is given twice; state it once")
+    area = table.require_column("area", COLUMN_UNITS)
+    _check_values(table, nodes, "area", area, area <= 0.0, "it must be positive")
+    pressure = table.columns.get("pressure")
+    if pressure is not None:
+        _check_values(table, nodes, "pressure", pressure, pressure < 0.0, "a contact does not pull")
+        if not np.any(pressure > 0.0):
+            raise ValueError(f"{table.path}: pressure is zero everywhere; expected a closed contact")
+    position = np.stack([table.require_column(name, COLUMN_UNITS) for name in ("x", "y")], axis=1)
+    return NodePairs(table.path, nodes, position - np.average(position, axis=0, weights=area), area, pressure)
+
+
+def _read_node_labels(table: Columns, column_name: str) -> NDArray[np.int64]:
+    value = table.require_column(column_name, COLUMN_UNITS)
+    bad = (value != np.round(value)) | (value < 1.0) | (value > MAX_NODE_LABEL)
+    if np.any(bad):
+        raise ValueError(
+            f"{table.path}: {column_name} = {value[bad][0]:.10g} is not a node; "
+            f"expected a whole number in [1, {MAX_NODE_LABEL}]"
+        )
+    return value.astype(np.int64)
+
+
+def _check_values(
+    table: Columns,
+    nodes: NDArray[np.int64],
+    column_name: str,
+    value: Array,
+    is_invalid: NDArray[np.bool_],
+    reason: str,
+) -> None:
+    if np.any(is_invalid):
+        raise ValueError(
+            f"{table.path}: {column_name} = {value[is_invalid][0]:g} (SI) at node "
+            f"{nodes[is_invalid][0, 0]}: {reason}"
+        )

@@ -1,0 +1,235 @@
+"""Curves as tables for linear interpolation, written as CSV and for Modelica's CombiTable1D blocks."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from jointfmu.mechanics.curve import Curve
+from jointfmu.quantity import Array
+
+from ...common.columns import Column, format_rows, format_table
+from ..thinning import decimate
+from .placing import Placement, Springs, UnitSet, comment_header
+
+MAX_STIFFNESS_ERROR = 0.01
+"""Relative error of the stiffness [1] above which a warning is printed."""
+_POINTS_PER_SEGMENT = 64
+"""Sample points per segment of a curve, at which errors are measured."""
+_MIN_POINTS = 10_000
+"""Smallest number of sample points of a whole curve, for curves with few segments."""
+_MIN_POINTS_WITH_STIFFNESS = 4 * _MIN_POINTS
+"""Smallest number of sample points if the stiffness error is limited too: some curves have short corners."""
+_MIN_POINTS_PER_LINE = 12
+"""Smallest number of sample points on a line: the peak of a parabolic error is then found within 1 %."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadTable:
+    """Table of a load over a displacement.
+
+    rows                  : (n, 3) displacement, load, and stiffness of the curve at this displacement
+    linear_errors         : [1] largest relative errors of load and stiffness with linear interpolation
+    monotone_cubic_errors : [1] the same errors with the monotone cubic of Fritsch and Butland
+    """
+
+    rows: Array
+    linear_errors: tuple[float, float]
+    monotone_cubic_errors: tuple[float, float]
+
+
+def tabulate_law(curve: Curve, max_error: float) -> LoadTable:
+    """Tabulate an interface law: approach [m] from first touch, pressure [Pa], stiffness [N/m3].
+
+    max_error : largest relative error [1] of the pressure with linear interpolation
+
+    The table ends at the hardness. Below the range of the law one line leads to first touch; the errors are
+    those above this line.
+    """
+    x, y, k = _sample_curve(curve)
+    in_range = x >= 0.0
+    table = decimate_curve(x[in_range] - curve.displacement[0], y[in_range], k[in_range], max_error)
+    rows = np.vstack([[0.0, 0.0, 0.0], table.rows])
+    return LoadTable(rows, table.linear_errors, table.monotone_cubic_errors)
+
+
+def tabulate_load(curve: Curve, area: float, max_error: float) -> LoadTable:
+    """Tabulate the load [N] and stiffness [N/m] of an interface law on an area [m2].
+
+    The first row is open, without load.
+    """
+    table = tabulate_law(curve, max_error)
+    rows = table.rows * [1.0, area, area]
+    return LoadTable(
+        np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.linear_errors, table.monotone_cubic_errors
+    )
+
+
+def tabulate_odd_curve(curve: Curve, max_error: float) -> LoadTable:
+    """Tabulate an odd curve through zero, with both signs of the displacement.
+
+    max_error : largest relative error [1] of the load with linear interpolation
+
+    The stiffness error is kept below MAX_STIFFNESS_ERROR, unless the curve has a jump of the stiffness.
+    """
+    half = _sample_curve(curve, _MIN_POINTS_WITH_STIFFNESS)
+    try:
+        rows = decimate_curve(*half, max_error, stiffness_error=MAX_STIFFNESS_ERROR).rows
+    except ValueError:
+        rows = decimate_curve(*half, max_error).rows
+    rows = np.vstack([rows[:0:-1] * [-1.0, -1.0, 1.0], rows])
+    x, y, k = (np.concatenate([sign * v[:0:-1], v]) for sign, v in zip((-1.0, -1.0, 1.0), half, strict=True))
+    return LoadTable(rows, *_interpolation_errors(rows, x, y, k, (0.0, 0.0)))
+
+
+def decimate_curve(
+    displacement: Array,
+    load: Array,
+    stiffness: Array,
+    max_error: float,
+    min_reference: tuple[float, float] = (0.0, 0.0),
+    fixed_points: Collection[int] = (),
+    stiffness_error: float = np.inf,
+) -> LoadTable:
+    """Select few of the points (n) of a curve so that linear interpolation stays within an error.
+
+    displacement, load, stiffness : points (n) of the curve
+    max_error       : [1] largest error of the load, relative to the load, or to min_reference[0] if that is
+                      larger
+    min_reference   : smallest load and stiffness to which errors are relative
+    fixed_points    : indices of points that are always selected
+    stiffness_error : [1] largest relative error of the slope of a line
+
+    The points are selected one after the other. Raises ValueError if the error is out of range or too small.
+    """
+    if not 0.0 < max_error < 0.5:
+        raise ValueError(f"error = {max_error:g} is outside (0, 0.5)")
+    size = np.maximum(np.abs(load), min_reference[0])
+    size = np.where(size > 0.0, size, np.inf)
+
+    def error_ratio(i: int, j: int) -> float:
+        slope = (load[j] - load[i]) / (displacement[j] - displacement[i])
+        line = load[i] + slope * (displacement[i : j + 1] - displacement[i])
+        loads = float(np.max(np.abs(line - load[i : j + 1]) / size[i : j + 1])) / max_error
+        if not np.isfinite(stiffness_error):
+            return loads
+        return max(loads, float(np.max(np.abs(slope / stiffness[i : j + 1] - 1.0))) / stiffness_error)
+
+    stops = {*fixed_points, displacement.size - 1}
+    index = decimate(stops, lambda i, j: error_ratio(i, j) <= 1.0)
+    between = np.diff(index)[~np.isin(index[1:], list(stops))]
+    if np.any(between < _MIN_POINTS_PER_LINE):
+        raise ValueError(
+            f"error = {max_error:g} is too small for a table; it would have {index.size} rows or more"
+        )
+    rows = np.stack([displacement[index], load[index], stiffness[index]], axis=1)
+    return LoadTable(rows, *_interpolation_errors(rows, displacement, load, stiffness, min_reference))
+
+
+def _interpolation_errors(
+    rows: Array, displacement: Array, load: Array, stiffness: Array, min_reference: tuple[float, float]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Largest relative errors of load and stiffness: with linear interpolation, with the monotone cubic."""
+    which = np.clip(np.searchsorted(rows[:, 0], displacement, side="right") - 1, 0, len(rows) - 2)
+    slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
+    cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
+
+    def largest_error(approximate: Array, exact: Array, min_reference_value: float) -> float:
+        size = np.maximum(np.abs(exact), min_reference_value)
+        positive = size > 0.0
+        return float(np.max(np.abs(approximate - exact)[positive] / size[positive]))
+
+    straight = (
+        largest_error(np.interp(displacement, rows[:, 0], rows[:, 1]), load, min_reference[0]),
+        largest_error(slope, stiffness, min_reference[1]),
+    )
+    return straight, (
+        largest_error(cubic(displacement), load, min_reference[0]),
+        largest_error(cubic(displacement, 1), stiffness, min_reference[1]),
+    )
+
+
+def _sample_curve(curve: Curve, min_points: int = _MIN_POINTS) -> tuple[Array, Array, Array]:
+    """Sample a curve at many points: displacement, load and stiffness."""
+    nodes = curve.displacement
+    count = max(_POINTS_PER_SEGMENT, min_points // (nodes.size - 1))
+    fraction = np.arange(count) / count
+    x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * fraction).ravel(), nodes[-1])
+    load, stiffness = curve.derivatives(x, 1)
+    return x, load, stiffness
+
+
+ColumnHeads = Sequence[tuple[str, str]]
+"""Headings of columns: (name, SI unit) of each."""
+
+SIGNIFICANT_DIGITS = 12
+"""Significant digits of numbers in tables."""
+LABEL_COLUMN_HEADS: ColumnHeads = (("node_1", "1"), ("node_2", "1"))
+SPRING_COLUMN_HEADS: ColumnHeads = (
+    ("x", "m"),
+    ("y", "m"),
+    ("area", "m2"),
+    ("pressure", "Pa"),
+    ("K_x", "N/m"),
+    ("K_y", "N/m"),
+    ("K_z", "N/m"),
+    ("C_x", "N.s/m"),
+    ("C_y", "N.s/m"),
+    ("C_z", "N.s/m"),
+)
+
+
+def format_springs_csv(springs: Springs, placement: Placement, comment_lines: Sequence[str]) -> str:
+    """Format the springs as CSV, one row per pair.
+
+    Columns: labels, position in the joint's plane, area, pressure, stiffness and damping along the model's
+    axes.
+    """
+    stiffness = placement.assign_to_axes(springs.K_t, springs.K_n)
+    damping = placement.assign_to_axes(springs.C_t, springs.C_n)
+    values = [*springs.position.T, springs.area, springs.pressure, *stiffness.T, *damping.T]
+    return format_columns_csv(
+        [*springs.nodes.T, *values],
+        [*LABEL_COLUMN_HEADS, *SPRING_COLUMN_HEADS],
+        placement.units,
+        comment_lines,
+    )
+
+
+def format_contact_csv(table: LoadTable, units: UnitSet, comment_lines: Sequence[str]) -> str:
+    """Format a contact law as CSV: overclosure, pressure, stiffness per area."""
+    heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
+    return format_columns_csv([*table.rows.T], heads, units, comment_lines)
+
+
+def format_columns_csv(
+    values: Sequence[Column], heads: ColumnHeads, units: UnitSet, comment_lines: Sequence[str]
+) -> str:
+    """Format columns (n) of SI values as CSV in other units."""
+    converted = [
+        column if unit == "1" else units.convert(column, unit)
+        for column, (_, unit) in zip(values, heads, strict=True)
+    ]
+    names = [(name, units.symbol(unit)) for name, unit in heads]
+    return format_table(
+        names, converted, digits=SIGNIFICANT_DIGITS, header_lines=comment_header(comment_lines, "#")
+    )
+
+
+def format_modelica_table(table: Array, name: str, comment_lines: Sequence[str]) -> str:
+    """Format a table (n, columns) of SI values as the table `name` in a text file of Modelica.
+
+    The first column must be ascending.
+    """
+    body = format_rows(table.T, [SIGNIFICANT_DIGITS] * table.shape[1], delimiter=" ")
+    return "\n".join(
+        [
+            "#1",
+            *comment_header(comment_lines, "#"),
+            f"double {name}({table.shape[0]},{table.shape[1]})",
+            *body,
+            "",
+        ]
+    )

@@ -1,0 +1,251 @@
+"""Systems as Modelica models, made of components of this library and of the Modelica Standard Library."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from jinja2 import Environment
+from jointfmu_fmu_src.joint_parts.terminals import ROTATIONAL
+from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+
+from ...common.joint_parts import load_tool_module as joint_part
+from ...systems.system import Component as Part
+from ...systems.system import System
+from ...systems.wiring import ConnectionEnd, find_connections
+from .records import ModelicaComponent, ModelicaRecord, escape_html, escape_string, format_number
+
+_MECHANICS_PACKAGE = "Modelica.Mechanics"
+_COMPONENT_PACKAGE = "JointStiffness.Components"
+_NOMINAL_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
+"""{state: nominal value [SI]} of bodies."""
+_COLUMN_SPACING, _ROW_SPACING = 30, 30
+"""Distances on the diagram: between columns of components, and between rows."""
+
+RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord | None]
+"""(kind of joint, parameter file, working point) -> record of the library; None if it has no such record."""
+
+
+class Declaration(NamedTuple):
+    """Declaration of a component: type, name, modifications, position (x, y) on the diagram."""
+
+    type: str
+    name: str
+    modifications: str
+    x: int
+    y: int
+
+
+def render_system_model(
+    system: System, shared_templates: Environment, find_record: RecordLookup, package: str = ""
+) -> str:
+    """Render a system as a Modelica model.
+
+    find_record : finds the record of a joint in the library; a joint without one gets a record in the model
+    package     : package of the model; empty: none
+
+    Raises ValueError for a joint without a component in the library, and for a wrong connection as
+    `wiring.find_connections`.
+    """
+    connected = find_connections(system)
+    positions = _diagram_positions(system, connected)
+    records: list[dict[str, object]] = []
+    declarations: list[Declaration] = []
+    lines: list[tuple[str, str, str]] = []
+
+    def declare(component_type: str, name: str, modifications: Iterable[str], neighbour: str = "") -> None:
+        """Declare a component; it is placed to the right of its component `neighbour`."""
+        x, y = positions[neighbour or name]
+        if neighbour:
+            x += _COLUMN_SPACING
+            y -= _ROW_SPACING * sum((declared.x, declared.y) == (x, y) for declared in declarations)
+        declarations.append(Declaration(component_type, name, ", ".join(modifications), x, y))
+        positions[name] = (x, y)
+
+    def connect(start_flange: str, end_flange: str) -> None:
+        """Connect two flanges, `component.flange`."""
+        points = (positions[end.partition(".")[0]] for end in (start_flange, end_flange))
+        lines.append((start_flange, end_flange, ",".join(f"{{{x},{y}}}" for x, y in points)))
+
+    for name, component in system.components.items():
+        if component.parameter_file:
+            data, changes = _joint_modifications(component, find_record, records)
+            declare(f"{_COMPONENT_PACKAGE}.{component.model_name}", name, [*data, *changes])
+        else:
+            _PARTNER_DECLARERS[component.model_name](component, declare, connect)
+    for end, other_end in connected:
+        assert end.component
+        flange, other_flange = _flange_name(end), _flange_name(other_end) if other_end.component else None
+        if flange is None:
+            continue
+        if other_flange is None:
+            support = f"{flange.replace('.', '_')}_held"
+            domain = (
+                "Rotational" if end.flange and end.flange.connector_class == ROTATIONAL else "Translational"
+            )
+            declare(f"{_MECHANICS_PACKAGE}.{domain}.Components.Fixed", support, [], end.component.name)
+            other_flange = f"{support}.flange"
+        connect(flange, other_flange)
+    return shared_templates.get_template("Examples/system.mo").render(
+        within=package,
+        name=model_name(system),
+        title=escape_string(system.title),
+        records=records,
+        parts=declarations,
+        lines=lines,
+        stop=format_number(system.stop_time),
+        interval=format_number(system.interval),
+        about=escape_html(f"{system.description}."),
+        sources=_format_sources(system),
+    )
+
+
+def model_name(system: System) -> str:
+    """Name of the Modelica model of a system: six_axis_robot becomes SixAxisRobot."""
+    return system.name.title().replace("_", "")
+
+
+def _flange_name(end: ConnectionEnd) -> str | None:
+    """Name `component.flange` of the end of a connection; None if the component has no such flange."""
+    assert end.component
+    name = end.component.name
+    if end.is_load:
+        (first, *_) = end.members
+        return f"{name}.flange" if end.component.model_name == "AngleProfile" else f"{name}_{first}.flange"
+    assert end.flange
+    shaft = end.flange.name.removeprefix("flange")
+    flange = f"flange_{end.flange.side}" if shaft.isdigit() else end.flange.name
+    return f"{name}.{flange}" if end.is_body or flange in _modelica_component(end.component).flanges else None
+
+
+def _modelica_component(system_component: Part) -> ModelicaComponent:
+    """Modelica component of a joint in a system. Raises ValueError if the library has none."""
+    module = joint_part(KINDS[system_component.joint_kind], "modelica")
+    if module is None or module.COMPONENT.name != system_component.model_name:
+        raise ValueError(
+            f"{system_component.name}: the Modelica library has no component of a "
+            f"{system_component.model_name}"
+        )
+    component: ModelicaComponent = module.COMPONENT
+    return component
+
+
+def _joint_modifications(
+    system_component: Part, find_record: RecordLookup, records: list[dict[str, object]]
+) -> tuple[Sequence[str], Sequence[str]]:
+    """Modifications of a joint's component: its record, and other parameters that the system sets.
+
+    records : list of records in the model, to which a record is added if the library has none
+    """
+    assert system_component.parameter_file
+    component = _modelica_component(system_component)
+    file = system_component.parameter_file
+    point = tuple(
+        system_component.constant_inputs.get(name, file.start_value(name))
+        for name in KINDS[system_component.joint_kind].working_point
+    )
+    changes = [f"{key}={value}" for key, value in component.system_parameters(file).items()]
+    changes += [
+        f"{component.fixed_input_parameters[name]}={format_number(system_component.constant_inputs[name])}"
+        for name in component.fixed_input_parameters
+        if name in system_component.constant_inputs
+    ]
+    known_record = find_record(system_component.joint_kind, file, point)
+    if known_record:
+        return [f"data=JointStiffness.Data.{known_record.name}()"], changes
+    (record,) = component.make_records(file, [point])
+    name = f"{system_component.name[0].upper()}{system_component.name[1:]}Data"
+    title = escape_string(f"{file.name}, of {system_component.name}")
+    records.append(record.template_terms(component.base_record) | {"name": name, "title": title})
+    return [f"data={name}()"], changes
+
+
+def _format_numbers(values: Mapping[str, Any], names: Iterable[str] | None = None) -> list[str]:
+    return [f"{key}={format_number(value)}" for key, value in values.items() if names is None or key in names]
+
+
+def _format_states(*names: str) -> list[str]:
+    return [f"{name}(fixed=true, start=0, nominal={_NOMINAL_VALUES[name]})" for name in names]
+
+
+DeclareFunction = Callable[..., None]
+ConnectFunction = Callable[[str, str], None]
+
+
+def _declare_inertia(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
+    declare(
+        f"{_MECHANICS_PACKAGE}.Rotational.Components.Inertia",
+        system_component.name,
+        [*_format_numbers(system_component.values, ("J",)), *_format_states("phi", "w")],
+    )
+    weight = {key: system_component.values.get(key, 0.0) for key in ("m", "l")}
+    if all(weight.values()):
+        name = f"{system_component.name}_weight"
+        declare(f"{_COMPONENT_PACKAGE}.LinkWeight", name, _format_numbers(weight), system_component.name)
+        connect(f"{system_component.name}.flange_b", f"{name}.flange")
+
+
+def _create_source_declarer(
+    block: str, domain: str, source_type: str, signal_name: str
+) -> Callable[[Part, DeclareFunction, ConnectFunction], None]:
+    """Return the function that declares a load: a signal block and a source of force or torque."""
+
+    def declare_source(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
+        values = system_component.values
+        points = [format_number(values[f"p{k}"]) for k in range(1, CONTROL_POINTS + 1) if f"p{k}" in values]
+        modifications = _format_numbers(
+            {key: value for key, value in values.items() if not key[1:].isdigit()}
+        )
+        if points:
+            modifications.append(f"p={{{', '.join(points)}}}")
+        declare(f"{_COMPONENT_PACKAGE}.{block}", system_component.name, modifications)
+        source = f"{system_component.name}_{signal_name}"
+        declare(f"{_MECHANICS_PACKAGE}.{domain}.Sources.{source_type}", source, [], system_component.name)
+        connect(f"{system_component.name}.y", f"{source}.{signal_name}")
+
+    return declare_source
+
+
+_PARTNER_DECLARERS: dict[str, Callable[[Part, DeclareFunction, ConnectFunction], None]] = {
+    "RotationalInertia": _declare_inertia,
+    "TranslationalMass": lambda part, declare, _: declare(
+        f"{_MECHANICS_PACKAGE}.Translational.Components.Mass",
+        part.name,
+        [*_format_numbers(part.values, ("m",)), *_format_states("s", "v")],
+    ),
+    "TorqueProfile": _create_source_declarer("Load", "Rotational", "Torque", "tau"),
+    "ForceProfile": _create_source_declarer("Load", "Translational", "Force", "f"),
+    "TorqueCurve": _create_source_declarer("TorqueCurve", "Rotational", "Torque", "tau"),
+    "AngleProfile": lambda part, declare, _: declare(
+        f"{_COMPONENT_PACKAGE}.AngleProfile", part.name, _format_numbers(part.values)
+    ),
+}
+
+
+def _diagram_positions(
+    system: System, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]
+) -> dict[str, tuple[int, int]]:
+    """Positions of the components on the diagram: a row for each connected chain, in file order."""
+    chains: list[set[str]] = []
+    for pair in connections:
+        names = {end.component.name for end in pair if end.component}
+        joined = [chain for chain in chains if chain & names]
+        chains = [chain for chain in chains if not chain & names] + [names.union(*joined)]
+    order = list(system.components)
+    chains.sort(key=lambda chain: min(map(order.index, chain)))
+    return {
+        name: (_COLUMN_SPACING * column * 2 - 80, 80 - _ROW_SPACING * row)
+        for row, chain in enumerate(chains)
+        for column, name in enumerate(sorted(chain, key=order.index))
+    }
+
+
+def _format_sources(system: System) -> str:
+    rows = "".join(
+        f"<tr><td><code>{part.name}.{name}</code></td><td>{format_number(value)} "
+        f"{part.units[name].replace('.', ' ')}</td><td>{escape_html(part.sources[name])}</td></tr>\n"
+        for part in system.components.values()
+        for name, value in part.values.items()
+    )
+    return f"<table>\n<tr><th>number</th><th>value</th><th>source</th></tr>\n{rows}</table>"

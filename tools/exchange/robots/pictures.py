@@ -1,0 +1,104 @@
+"""Plots of a robot with elastic axes: frequencies over poses, wind-up and tip error over payload."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointfmu.quantity import Array
+
+from ...common import plots
+from .elastic import ElasticAxis
+from .poses import compute_frequencies, compute_sag
+
+if TYPE_CHECKING:
+    from mujoco import MjModel
+
+GRID_ANGLES = 21
+"""Number of angles per axis of the pose grid [1]."""
+PAYLOAD_COUNT = 11
+"""Number of payloads [1]."""
+FIGURE_SIZE = (9.0, 3.8)
+"""Width and height of a figure [inch]."""
+
+
+def select_grid_axes(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
+    """Axes of the pose grid: the second and third of an arm, which change weight torques and inertia most.
+
+    An arm with two axes or one: all of them.
+    """
+    return axes[1:3] if len(axes) > 2 else axes[-2:]
+
+
+def list_angles(model: "MjModel", axis: ElasticAxis) -> Array:
+    """Angles (GRID_ANGLES) [rad] over the range of an axis; a full turn for an axis without limits."""
+    joint = model.joint(axis.joint)
+    low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
+    return np.linspace(low, high, GRID_ANGLES)
+
+
+def sweep_frequencies(
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+) -> tuple[list[Array], Array]:
+    """Angles [rad] of the grid axes, and frequencies (..., n) [Hz] over their grid; others keep `pose`."""
+    grid = [list_angles(model, axis) for axis in select_grid_axes(axes)]
+    poses = grid_poses(model, axes, pose, grid)
+    rows = [compute_frequencies(model, axes, grid_pose, payload, tip) for grid_pose in poses]
+    return grid, np.reshape(rows, (*map(len, grid), len(axes)))
+
+
+def grid_poses(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array]) -> Array:
+    """Poses (k, n) of the grid, the last grid axis varying fastest; other joints keep `pose`."""
+    indices = [int(model.joint(axis.joint).qposadr[0]) for axis in select_grid_axes(axes)]
+    mesh = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, len(grid))
+    poses = np.tile(pose, (len(mesh), 1))
+    poses[:, indices] = mesh
+    return poses
+
+
+def find_worst_pose(
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array], payload: float, tip: int
+) -> Array:
+    """Pose of the grid with the largest tip displacement under weight.
+
+    Displacements that differ by less than 1 nm count as equal. Of several such
+    poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
+    """
+    poses = sorted(
+        grid_poses(model, axes, pose, grid),
+        key=lambda grid_pose: round(float(np.linalg.norm(grid_pose - pose)), 9),
+    )
+    return max(poses, key=lambda grid_pose: round(compute_sag(model, axes, grid_pose, payload, tip)[1], 9))
+
+
+def draw_frequencies(path: Path, axes: Sequence[ElasticAxis], grid: list[Array], frequencies: Array) -> None:
+    """Plot the lowest two natural frequencies over the pose grid."""
+    names = [axis.joint for axis in select_grid_axes(axes)]
+    with plots.open_figure(path, FIGURE_SIZE) as figure:
+        for i in range(min(2, frequencies.shape[-1])):
+            panel = figure.add_subplot(1, min(2, frequencies.shape[-1]), i + 1)
+            panel.set(title=f"frequency {i + 1} [Hz]", xlabel=f"{names[0]} [deg]")
+            if len(grid) == 1:
+                panel.plot(np.rad2deg(grid[0]), frequencies[:, i], color=plots.BLUE)
+                continue
+            filled = panel.contourf(*map(np.rad2deg, grid), frequencies[..., i].T, levels=12, cmap="viridis")
+            figure.colorbar(filled, ax=panel)
+            panel.set_ylabel(f"{names[1]} [deg]")
+
+
+def draw_payload(
+    path: Path, model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+) -> tuple[Array, float]:
+    """Plot wind-ups and tip error against payload; returns their values (n) [rad] and [m] at full payload."""
+    loads = np.linspace(0.0, payload, PAYLOAD_COUNT)
+    rows = [compute_sag(model, axes, pose, float(load), tip) for load in loads]
+    with plots.open_figure(path, FIGURE_SIZE) as figure:
+        wind_up_axes, error_axes = figure.subplots(1, 2)
+        for axis, line in zip(axes, np.array([x for x, _ in rows]).T, strict=True):
+            wind_up_axes.plot(loads, 1e3 * line, label=axis.joint)
+        wind_up_axes.set(xlabel="payload [kg]", ylabel="wind-up [mrad]")
+        wind_up_axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        error_axes.plot(loads, [1e3 * error for _, error in rows], color=plots.RED)
+        error_axes.set(xlabel="payload [kg]", ylabel="tip error [mm]", ylim=(0.0, None))
+    return rows[-1]

@@ -1,0 +1,1 @@
+"""From files to parameters: drawings, catalogue, surface scans, pressure fields, measurements."""

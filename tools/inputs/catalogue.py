@@ -1,0 +1,39 @@
+"""Entries of a catalogue of bought joints: published numbers of makers with their sources."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class SourcedNumber(NamedTuple):
+    """A number with its source.
+
+    value    : [SI]
+    kind     : origin, one of parameters.ORIGINS
+    source   : document, table or estimate that the number is taken from
+    bound    : whether the number is printed as an upper limit, not as a value
+    interval : lower and upper end of an estimate [SI]; None if unknown
+    """
+
+    value: float
+    kind: str
+    source: str
+    bound: bool = False
+    interval: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogueColumn:
+    """A column of a catalogue: name, SI unit, meaning, and display unit."""
+
+    name: str
+    unit: str
+    meaning: str
+    display_unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogueEntry:
+    """An entry of a catalogue: name of the joint, and {column: number} of the known numbers."""
+
+    name: str
+    numbers: dict[str, SourcedNumber]

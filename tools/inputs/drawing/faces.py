@@ -1,0 +1,308 @@
+"""The two faces of a contact on a drawing: material, and roughness from finish, Ra, Rq or a scan.
+
+Also the Hertzian line contact of curved faces.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from jointfmu.contact import roughness
+from jointfmu.quantity import Number
+
+from ...common.options import Option, option_flag
+from .. import fractal
+from ..catalogue import SourcedNumber
+from ..surfaces import form, reading
+from .part import DrawingOptions, ParameterSheet
+from .reading import expand_to_sides, parse_number
+from .tables import TableRow, find_row
+
+FACE_OPTIONS = (
+    Option(
+        "material",
+        "material of both sides, or of each side (jointfmu new materials)",
+        "NAME",
+        is_list=True,
+        is_required=True,
+    ),
+    Option(
+        "finish",
+        "finish of both sides, or of each side (jointfmu new finishes); with --Ra or --Rq it gives the slope "
+        "only",
+        "NAME",
+        is_list=True,
+    ),
+    Option("Ra", "Ra of both sides, or of each side [um]", "RA", is_list=True),
+    Option("Rq", "Rq or Sq of both sides, or of each side [um]", "RQ", is_list=True),
+    Option("surface", "scan of both sides, or of each side", "SCAN", is_list=True),
+    Option("unit", "length unit of scans that state none: m, mm, um, nm", "UNIT"),
+    Option("longest_wave", "longest wavelength of the roughness [mm] (default: the cut-off of its Ra)"),
+    Option("hardness", "hardness of the softer side [MPa] (default: of the material)"),
+    Option("mu", "coefficient of friction [1] (default: 0.15)"),
+)
+"""Options of every joint with rough faces."""
+DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
+"""Coefficient of friction if the drawing states none, and its range [1]."""
+MAX_MU = 2.0
+"""Largest allowed coefficient of friction [1]: clean pairs of the same metal in air have 0.8 to 1.5."""
+DEFAULT_MU_SOURCE = "usual value of dry machined metal, not measured; VDI 2230, Table A6: 0.1 to 0.3"
+DEFAULT_RMS_SLOPE = 0.1
+"""Rms slope [1] of a surface if only its height is known."""
+DEFAULT_HURST_EXPONENT = 0.8
+"""Hurst exponent [1] of a surface if only its height is known."""
+DEFAULT_FREQUENCY_RATIO = 1.5
+"""Frequency ratio of the Weierstrass-Mandelbrot function [1]."""
+RZ_OVER_RA = 6.3
+"""Ratio Rz/Ra of typical machined faces [1], 4 to 10: Rz 10 um for Ra 1.6 um, Rz 40 um for Ra 6.3 um."""
+CUT_OFF_WAVELENGTHS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (10e-6, 2.5e-3), (np.inf, 8e-3))
+"""(largest Ra [m], cut-off wavelength [m]) (ISO 4288, Table 1; ISO 21920-3)."""
+
+
+class Face(NamedTuple):
+    """Roughness of one face.
+
+    Rq                        : rms height [m]
+    Rq_min, Rq_max            : lower and upper limit of the rms height [m]
+    rms_slope, hurst_exponent : rms slope [1], Hurst exponent [1]
+    longest_wave              : longest wavelength [m] that the height includes
+    height_source             : source of the height
+    stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
+    """
+
+    Rq: float
+    Rq_min: float
+    Rq_max: float
+    rms_slope: SourcedNumber
+    hurst_exponent: SourcedNumber
+    longest_wave: SourcedNumber
+    height_source: str
+    stated_heights: dict[str, float]
+
+
+def read_materials(options: DrawingOptions) -> tuple[TableRow, TableRow]:
+    """Read the materials of the two sides. Raises ValueError for a name that the table does not have."""
+    names = expand_to_sides("material", options["material"])
+    assert names is not None  # the option is required
+    return find_row("materials", names[0]), find_row("materials", names[1])
+
+
+class HeightRange(NamedTuple):
+    """Range of the rms height h of both faces together, and Rz of the rougher face.
+
+    h_min, h_max : lower and upper limit [m]
+    Rz           : maximum height [m], estimated as RZ_OVER_RA times Ra
+    """
+
+    h_min: float
+    h_max: float
+    Rz: float
+
+
+def add_faces(sheet: ParameterSheet, options: DrawingOptions) -> HeightRange:
+    """Add the parameters of materials, friction and roughness of the two faces to a parameter sheet.
+
+    Raises ValueError, one line: unknown names, roughness not stated or stated twice, a bad number or scan.
+    """
+    pair = read_materials(options)
+    for prefix, material in zip(("side1", "side2"), pair, strict=True):
+        for name in ("E", "nu"):
+            known = material.numbers[name]
+            sheet.add(f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}")
+    soft = min(pair, key=lambda material: material.numbers["H"].value)
+    if options["hardness"] is None:
+        known = soft.numbers["H"]
+        sheet.add("H", known.value, known.kind, f"{soft.title}: {known.source}")
+    else:
+        sheet.add_drawing_value("H", parse_number("hardness", options["hardness"], "MPa", "Pa"))
+    if options["mu"] is None:
+        sheet.add("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
+        sheet.set_range("mu", *DEFAULT_MU_LIMITS)
+    else:
+        mu = parse_number("mu", options["mu"], "1", "1")
+        if mu > MAX_MU:
+            raise ValueError(
+                f"--mu = {options['mu']!r} is outside (0, {MAX_MU:g}]: coefficient of friction of metals"
+            )
+        sheet.add_drawing_value("mu", mu)
+    sheet.add("traction_ratio", 0.1, "estimate", "vibration far below slip")
+    return _add_roughness(sheet, read_faces(options), options["longest_wave"])
+
+
+def _add_roughness(sheet: ParameterSheet, faces: tuple[Face, Face], longest_wave: str | None) -> HeightRange:
+    """Add the roughness of both faces together: height, slope, Hurst exponent, longest wave."""
+    h, low, high = (
+        float(roughness.combine_heights(*(getattr(face, name) for face in faces)))
+        for name in ("Rq", "Rq_min", "Rq_max")
+    )
+    texts = "; ".join(f"side {i + 1}: {face.height_source}" for i, face in enumerate(faces))
+    spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the range of the finish" if high > low else ""
+    sheet.add(
+        "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
+    )
+    sheet.add(
+        "gamma", roughness.PERSSON_GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)"
+    )
+    longest = max((face.longest_wave for face in faces), key=lambda known: known.value)
+    if longest_wave is None:
+        sheet.add_sourced_number("longest_wave", longest)
+    else:
+        sheet.add_drawing_value("longest_wave", parse_number("longest_wave", longest_wave, "mm", "m"))
+    rough = max(faces, key=lambda face: face.Rq)
+    sheet.add_sourced_number("hurst", rough.hurst_exponent)
+    slopes = [face.rms_slope for face in faces]
+    value = float(roughness.combine_heights(*(known.value for known in slopes)))
+    sheet.add(
+        "slope", value, "estimate", "both sides together; " + "; ".join({known.source for known in slopes})
+    )
+    _add_fractal_parameters(sheet)
+    for i, face in enumerate(faces):
+        kind = "estimate" if face.Rq_max > face.Rq_min else "user"
+        sheet.roughness |= {
+            f"{name}{i + 1}": (v, kind, face.height_source) for name, v in face.stated_heights.items()
+        }
+    return HeightRange(low, high, RZ_OVER_RA * rough.Rq / roughness.RQ_OVER_RA)
+
+
+def _add_fractal_parameters(sheet: ParameterSheet) -> None:
+    """Add D and G of profiles of an isotropic surface with the same rms height, for laws that need them."""
+    h, wave, hurst = (sheet.value_of(name) for name in ("h", "longest_wave", "hurst"))
+    D, text = 2.0 - hurst, f"rms height {h:.3g} m of all waves up to {wave:g} m"
+    sheet.add("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
+    sheet.add("surface.G", fractal_roughness(D, h, wave), "derived", text)
+    sheet.add("surface.gamma", DEFAULT_FREQUENCY_RATIO, "estimate", "the usual value")
+
+
+def fractal_roughness(D: float, h: float, longest_wave: float) -> float:
+    """Fractal roughness G [m] of profiles with dimension D [1], from the rms height of the surface.
+
+    h            : rms height [m] of all waves up to `longest_wave` [m]
+    """
+
+    def rms_height(G: Number) -> Number:
+        return fractal.rms_height(D, G, longest_wave)
+
+    # h grows as G^(D - 1)
+    return float((h / rms_height(1.0)) ** (1.0 / (D - 1.0)))
+
+
+def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
+    """Read the roughness of the two faces.
+
+    Raises ValueError if the roughness is not stated or is given twice, or for a bad number or scan.
+    """
+    heights = [name for name in ("Ra", "Rq", "surface") if options[name]]
+    finishes = expand_to_sides("finish", options["finish"])
+    if len(heights) > 1:
+        raise ValueError(
+            f"{' and '.join(map(option_flag, heights))} are given together; state the roughness once"
+        )
+    if heights == ["surface"] and finishes:
+        raise ValueError("--surface and --finish are both given; state one of them: a scan has its own slope")
+    if not heights:
+        if finishes is None:
+            raise ValueError("the roughness is missing; expected --finish, --Ra, --Rq or --surface")
+        return _face_from_finish(finishes[0]), _face_from_finish(finishes[1])
+    name = heights[0]
+    texts = expand_to_sides(name, options[name])
+    assert texts is not None  # `heights` has set options only
+    if name == "surface":
+        first = _face_from_scan(texts[0], options["unit"])
+        return first, first if texts[1] == texts[0] else _face_from_scan(texts[1], options["unit"])
+    rows = (
+        (find_row("finishes", finishes[0]), find_row("finishes", finishes[1])) if finishes else (None, None)
+    )
+    pair = [_face_from_number(name, text, finish) for text, finish in zip(texts, rows, strict=True)]
+    return pair[0], pair[1]
+
+
+def _cut_off_wavelength(Ra: float) -> SourcedNumber:
+    wave = next(cut_off for up_to, cut_off in CUT_OFF_WAVELENGTHS if Ra <= up_to)
+    return SourcedNumber(
+        wave, "estimate", f"cut-off of Ra {Ra * 1e6:.3g} um (ISO 4288): Ra contains no longer waves"
+    )
+
+
+def _face_from_finish(finish_name: str) -> Face:
+    known = find_row("finishes", finish_name)
+    Ra, low, high = (known.numbers[key].value for key in ("Ra", "Ra_low", "Ra_high"))
+    text = (
+        f"{known.title}, Ra {low * 1e6:.3g} to {high * 1e6:.3g} um, taken as {Ra * 1e6:.3g} um "
+        f"({known.numbers['Ra_low'].source})"
+    )
+    Rq, Rq_low, Rq_high = (float(roughness.rms_height(value)) for value in (Ra, low, high))
+    slope, hurst = known.numbers["slope"], known.numbers["hurst"]
+    return Face(Rq, Rq_low, Rq_high, slope, hurst, _cut_off_wavelength(Ra), text, {"Ra": Ra})
+
+
+def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | None) -> Face:
+    value = parse_number(roughness_name, height_text, "um", "m")
+    if value > roughness.MAX_HEIGHT:
+        limit = roughness.MAX_HEIGHT * 1e6
+        raise ValueError(
+            f"--{roughness_name} = {height_text!r} is outside (0, {limit:g}] um: larger than the roughness "
+            "of machined surfaces"
+        )
+    Rq = value if roughness_name == "Rq" else float(roughness.rms_height(value))
+    slope = SourcedNumber(DEFAULT_RMS_SLOPE, "estimate", "usual value of machined surfaces")
+    hurst = SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9")
+    if finish:
+        slope, hurst = finish.numbers["slope"], finish.numbers["hurst"]
+    wave = _cut_off_wavelength(Rq / roughness.RQ_OVER_RA)
+    return Face(
+        Rq,
+        Rq,
+        Rq,
+        slope,
+        hurst,
+        wave,
+        f"{roughness_name} {value * 1e6:.4g} um of the drawing",
+        {roughness_name: value},
+    )
+
+
+def _face_from_scan(path: str, unit: str | None) -> Face:
+    prepared = form.prepare_scan(reading.read_heights(Path(path), unit))
+    longest = form.default_longest_wave(prepared.filled_heights)
+    scan = form.scan_roughness(prepared.heights_with_gaps, prepared.filled_heights, longest)
+    source = f"scan {Path(path).name}"
+    return Face(
+        scan.h,
+        scan.h,
+        scan.h,
+        SourcedNumber(scan.slope, "user", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
+        SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9"),
+        SourcedNumber(longest, "user", f"length of the {source}"),
+        f"{source}, waves up to {longest:.3g} m",
+        {"Rq": scan.h},
+    )
+
+
+def warn_hardness(peak_pressure: float, hardness: float) -> list[str]:
+    """Warning if the greatest pressure [Pa] is above the hardness [Pa], the limit of the law; else empty."""
+    if peak_pressure <= hardness:
+        return []
+    return [
+        f"the greatest pressure, {peak_pressure:.4g} Pa, is above the hardness, {hardness:.4g} Pa: the "
+        "law ends there"
+    ]
+
+
+class LineContact(NamedTuple):
+    """Hertzian line contact: half width [m], area [m2] and greatest pressure [Pa]."""
+
+    half_width: Number
+    area: Number
+    peak_pressure: Number
+
+
+def hertz_line_contact(load: Number, width: Number, curvature: Number, modulus: Number) -> LineContact:
+    """Hertzian line contact of two cylinders under a load [N] (Johnson, Contact Mechanics, Eqs. 4.43-4.45).
+
+    width     : length of the contact line [m]
+    curvature : relative curvature 1/R_1 + 1/R_2 [1/m], above 0
+    modulus   : contact modulus E* [Pa]
+    """
+    half = np.sqrt(4.0 * load / (np.pi * width * modulus * curvature))
+    return LineContact(half, 2.0 * half * width, 2.0 * load / (np.pi * half * width))

@@ -1,0 +1,113 @@
+"""Joints from drawings: options of a drawing, collection of parameters with their sources, the new joint.
+
+The module `new` in a joint's folder defines its options and the function that makes it by its constant NEW.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import build_parameter_set, flat_fields
+
+from ...common.options import Option
+from ..catalogue import SourcedNumber
+
+DrawingOptions = Mapping[str, Any]
+"""{option: its text, a list of texts, or a bool for a flag; None if the user does not set the option}."""
+
+
+@dataclass(frozen=True, slots=True)
+class NewJoint:
+    """A joint made from a drawing.
+
+    file     : parameter file
+    facts    : {name: (value, unit, meaning)} of additional results, which are no parameters
+    warnings : one line each
+    """
+
+    file: "ParameterFile"
+    facts: Mapping[str, tuple[float, str, str]]
+    warnings: Sequence[str] = field(default_factory=tuple)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NewJointCommand:
+    """How `jointfmu new` makes a joint from a drawing: its options and its function.
+
+    description : the joint in words
+    example     : options of an example, as text
+    options     : options of the command
+    make_joint  : options -> new joint; loads the modules of the joint. Raises ValueError for bad input
+    """
+
+    description: str
+    example: str
+    options: Sequence[Option]
+    make_joint: Callable[[DrawingOptions], NewJoint]
+
+
+@dataclass(slots=True)
+class ParameterSheet:
+    """Parameters of a new joint while they are collected, each with its origin and source.
+
+    entries   : {structured name: (value, kind, source)}
+    inputs    : {input: start value}
+    ranges    : {structured name: (lower, upper limit)}, for some of the parameters
+    roughness : {name: (height [m], kind, source)} of the surfaces, as in `ParameterFile.roughness`
+    """
+
+    joint: str
+    law: str
+    entries: dict[str, tuple[object, str, str]] = field(default_factory=dict)
+    inputs: dict[str, float] = field(default_factory=dict)
+    ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
+    roughness: dict[str, tuple[float, str, str]] = field(default_factory=dict)
+
+    def add(self, name: str, value: Any, kind: str, source: str) -> None:
+        """Add a parameter; with the prefix `inputs.`, the start value of an input."""
+        if name.startswith("inputs."):
+            self.inputs[name.removeprefix("inputs.")] = value
+        self.entries[name] = (value, kind, source)
+
+    def set_range(self, name: str, low: float, high: float) -> None:
+        """Set the lower and upper limit that the source of a parameter states."""
+        self.ranges[name] = (low, high)
+
+    def add_drawing_value(self, name: str, value: object) -> None:
+        """Add a parameter that the user states on the drawing."""
+        self.add(name, value, "user", "stated on the drawing")
+
+    def add_sourced_number(self, name: str, number: SourcedNumber) -> None:
+        """Add a parameter with the value and source of a tabulated number."""
+        self.add(name, number.value, number.kind, number.source)
+
+    def value_of(self, name: str) -> Any:
+        return self.entries[name][0]
+
+    def build_file(self, name: str) -> ParameterFile:
+        """Build the parameter file of that name. Parameters that the joint's law does not have are left out.
+
+        Raises ValueError for a value outside its interval or a missing one, as `quantity.build`.
+        """
+        cls = KINDS[self.joint].laws[self.law]
+        declared = {key for key, _ in flat_fields(cls)}
+        parameters = {key: entry for key, entry in self.entries.items() if key in declared}
+        starts = {key: entry for key, entry in self.entries.items() if key.startswith("inputs.")}
+        entries = parameters | starts
+        file = ParameterFile(
+            self.joint,
+            name,
+            build_parameter_set(cls, {key: value for key, (value, _, _) in parameters.items()}),
+            {key: kind for key, (_, kind, _) in entries.items()},
+            {key: source for key, (_, _, source) in entries.items()},
+            self.inputs,
+            ranges={name: ends for name, ends in self.ranges.items() if name in parameters},
+        )
+        rough = file
+        for height, (value, kind, source) in self.roughness.items():
+            rough = rough.with_roughness({height: value}, kind, source)
+        return replace(
+            rough, origins={**rough.origins, **file.origins}, sources={**rough.sources, **file.sources}
+        )

@@ -1,0 +1,97 @@
+"""Parsing of numbers on drawings: with a unit or in the default unit of the option, sizes such as 200x100."""
+
+import math
+import re
+from collections.abc import Sequence
+
+from jointfmu.quantity.units import KELVIN_AT_ZERO, LUBRICANT_TEMPERATURES, conversion_factor
+
+from ...common.options import option_flag
+
+_TEMPERATURE_PATTERN = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
+_NUMBER_PATTERN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
+
+
+def parse_number(
+    option: str, text: str, unit: str, target_unit: str, lower_bound: float | None = 0.0
+) -> float:
+    """Parse the number of an option.
+
+    option      : name of the option, for the error
+    unit        : unit of a number that is stated without one
+    target_unit : unit of the result
+    lower_bound : the number must be above it [target_unit]; None: no bound
+
+    Raises ValueError for text that is not a number, a wrong unit, an infinite number, or one out of range.
+    """
+    match = _NUMBER_PATTERN.fullmatch(text.strip())
+    example = f"expected a number in {unit}, or with its unit as in 1{unit}"
+    if unit == "1":
+        example = "expected a number without a unit"
+    if not match:
+        raise ValueError(f"{option_flag(option)} = {text!r} is not a number; {example}")
+    try:
+        value = float(match[1]) * conversion_factor(match[2] or unit, target_unit)
+    except ValueError as error:
+        raise ValueError(f"{option_flag(option)} = {text!r}: {error}; {example}") from None
+    if not math.isfinite(value) or (lower_bound is not None and not value > lower_bound):
+        low = "-inf" if lower_bound is None else f"{lower_bound:g}"
+        raise ValueError(f"{option_flag(option)} = {text!r} is outside ({low}, inf)")
+    return value
+
+
+def parse_temperature(option: str, text: str) -> float:
+    """Parse the temperature [K] of an option, stated in degC or with the unit K.
+
+    Raises ValueError for text that is not a temperature, or outside the range LUBRICANTS of lubricants.
+    """
+    match = _TEMPERATURE_PATTERN.fullmatch(text.strip())
+    if not match:
+        raise ValueError(
+            f"{option_flag(option)} = {text!r} is not a temperature; expected 45, 45degC or 318.15K"
+        )
+    kelvin = float(match[1]) + (0.0 if match[2] == "K" else KELVIN_AT_ZERO)
+    if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
+        low, high = (end - KELVIN_AT_ZERO for end in LUBRICANT_TEMPERATURES)
+        raise ValueError(
+            f"{option_flag(option)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; write "
+            "kelvin as 318.15K"
+        )
+    return kelvin
+
+
+def parse_numbers(
+    option: str,
+    text: str,
+    unit: str,
+    target_unit: str,
+    *,
+    separator: str,
+    count: int,
+    lower_bound: float | None = 0.0,
+) -> list[float]:
+    """Parse `count` numbers with a separator between them: 200x100.
+
+    Raises ValueError for another count, and as `parse_number`.
+    """
+    words = text.split(separator)
+    if len(words) != count:
+        example = separator.join(["200", "100"][:count])
+        raise ValueError(
+            f"{option_flag(option)} = {text!r} has {len(words)} numbers, expected {count}, as in {example}"
+        )
+    return [parse_number(option, word, unit, target_unit, lower_bound) for word in words]
+
+
+def expand_to_sides(option: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
+    """Expand one or two texts to a text for each side; None if there is none.
+
+    Raises ValueError for more than two texts.
+    """
+    if not texts:
+        return None
+    if len(texts) > 2:
+        raise ValueError(
+            f"{option_flag(option)} has {len(texts)} values, state one for both sides, or one for each side"
+        )
+    return texts[0], texts[-1]

@@ -1,0 +1,209 @@
+"""Put a computed pressure field into the parameter file of a bolted joint, and plot the field."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.mechanics.footprint.distribution import (
+    BOLT_MEAN_NAMES,
+    MAX_PATCHES,
+    PressureDistribution,
+    moment_pressure,
+    nodal_field_entries,
+    position_means,
+)
+from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array, build_parameter_set
+from jointfmu.quantity.refusal import InputRefusal
+
+from ...common import plots
+from .bolted_interface import BoltedInterface, check_pressure_field, nodal_pressures
+from .nodal_result import ContactField
+from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
+
+FORCE_TOLERANCE = 0.01
+"""Largest relative difference of the field's force from the total preload [1]."""
+MOMENT_RATIO_RANGE = (0.5, 1.5)
+"""Allowed range of the moment of the pressure over the given moment [1]; bolt forces carry the rest."""
+_REPLACED_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
+"""Prefixes of the entries that a field replaces. Bodies are replaced too: they belong to another contact."""
+
+
+def insert_field(
+    file: ParameterFile,
+    field: ContactField,
+    preload: float,
+    field_source: str,
+    moment_field: ContactField | None = None,
+    moment: float | None = None,
+    bolt_positions: Array | None = None,
+    force_tolerance: float = FORCE_TOLERANCE,
+) -> tuple[ParameterFile, Reduction]:
+    """Replace the pressure distribution and the contact area of a bolted joint by a computed field.
+
+    Returns the new parameter file and the reduction of the field.
+
+    Parameters
+    ----------
+    file            : parameter file of a joint whose pressure may be a field; `n_bolts`, `row_bolts` and
+                      `row_distance` relate the field to the bolt forces
+    preload         : [N] per bolt, at which the field was computed
+    field_source    : origin of the field, written to the file
+    moment_field    : field at the same nodes with an additional bending moment. None: the change of pressure
+                      by a moment is in proportion to the distance from the centre of pressure
+    moment          : [N.m] of `moment_field`, positive if it increases the pressure at y > 0
+    bolt_positions  : (n, 2) [m] positions of the bolts, for their bending stiffness; None: no bending
+                      stiffness
+    force_tolerance : [1] largest relative difference of the field's force from the bolt force, to which the
+                      field is scaled
+
+    Raises ValueError if the pressure of the joint cannot be a field, if the force of a field differs from the
+    bolt force by more than the tolerance, if the two fields have different nodes, or if the moment of the
+    pressure is far from the given moment.
+    """
+    check_pressure_field(file.joint)
+    shape = pressure_shape(file.values, field, preload, moment_field, moment, force_tolerance)
+    reduction = reduce_field(
+        replace(file.values, A_0=float(np.sum(field.area))), shape, preload, nodal_pressures
+    )
+    initial = reduction.reduced_shape if shape.area_share.size > MAX_KEPT_NODES else None
+    patches = reduce_patches(shape, MAX_PATCHES, initial)
+    lists = nodal_field_entries(reduction.reduced_shape) | nodal_field_entries(patches)
+    new_values: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
+    new_values["A_0"] = float(np.sum(field.area))
+    if bolt_positions is not None:
+        positions = bolt_positions - field.centroid
+        bolt_means = position_means(positions)
+        new_values |= {
+            f"field.{name}": value for name, value in zip(BOLT_MEAN_NAMES, bolt_means, strict=True)
+        }
+        new_values |= {f"field.each_bolt_{a}": tuple(positions[:, i].tolist()) for i, a in enumerate("xy")}
+    old_values = {n: v for n, v in file.values_by_name.items() if not n.startswith(_REPLACED_PREFIXES)}
+    text = (
+        f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for "
+        f"{reduction.node_count} nodes"
+    )
+    return replace(
+        file,
+        values=build_parameter_set(type(file.values), old_values | new_values),
+        origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED_PREFIXES)}
+        | dict.fromkeys(new_values, "derived"),
+        sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED_PREFIXES)}
+        | dict.fromkeys(new_values, text)
+        | {
+            "A_0": f"{field_source}, sum of the nodal areas",
+            "field.tilt": f"{text}; {_describe_moment_rule(moment_field, moment)}",
+        },
+    ), reduction
+
+
+def _describe_moment_rule(moment_field: ContactField | None, moment: float | None) -> str:
+    """Text for the source of entry `field.tilt`: how the pressure changes with a moment."""
+    if moment_field is None:
+        return "in proportion to the distance from the centre of pressure"
+    return f"from the field at {moment:g} N.m"
+
+
+def pressure_shape(
+    joint: BoltedInterface,
+    field: ContactField,
+    preload: float,
+    moment_field: ContactField | None = None,
+    moment: float | None = None,
+    force_tolerance: float = FORCE_TOLERANCE,
+) -> PressureDistribution:
+    """Pressure shape of a joint with all nodes of a field. Parameters as for `insert_field`.
+
+    With e = `preload_shape` and t = `moment_shape`, the pressure at a node is p_m e + M/(L_a A_0) t: p_m bolt
+    force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =
+    L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p is the centre of pressure.
+    """
+    scale = _force_ratio(joint, field, preload, "the field", force_tolerance)
+    area = float(np.sum(field.area))
+    share, position = field.area / area, field.position - field.centroid
+    mean = preload * joint.n_bolts / area
+    equal = scale * field.pressure / mean
+    if moment_field is None:
+        tilt = joint.row_distance * moment_pressure(share, position[:, 1], equal)
+        return PressureDistribution(share, position, equal, tilt)
+    if moment is None or not np.isfinite(moment) or moment == 0.0:
+        raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
+    scale = _force_ratio(joint, moment_field, preload, "the field with a moment", force_tolerance)
+    _check_same_nodes(field, moment_field)
+    added = scale * moment_field.pressure - mean * equal
+    moment_ratio = area * float(share @ (added * position[:, 1])) / moment
+    if not MOMENT_RATIO_RANGE[0] <= moment_ratio <= MOMENT_RATIO_RANGE[1]:
+        low, high = MOMENT_RATIO_RANGE
+        raise ValueError(
+            f"the pressures of the second field balance {moment_ratio:.3g} of the moment of {moment:g} N.m, "
+            f"allowed is {low:g} to {high:g}: check the sign: a positive moment raises the pressure at y > 0"
+        )
+    return PressureDistribution(share, position, equal, added * joint.row_distance * area / moment)
+
+
+def _force_ratio(
+    joint: BoltedInterface, field: ContactField, preload: float, field_name: str, force_tolerance: float
+) -> float:
+    """Total bolt force over the force of the field [1]. ValueError if it differs from 1 by > tolerance."""
+    if not 0.0 < force_tolerance < 1.0:
+        raise InputRefusal(f"force_tolerance = {force_tolerance:g} is outside (0, 1)", "force_tolerance")
+    if not 0.0 < preload < np.inf:
+        raise ValueError(f"preload = {preload:g} N is outside (0, inf)")
+    expected = preload * joint.n_bolts
+    if not abs(field.force / expected - 1.0) <= force_tolerance:
+        raise InputRefusal(
+            f"the force of {field_name} is {field.force:.6g} N, expected {expected:.6g} N within "
+            f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; with a larger "
+            "tolerance the field is scaled to the bolt force",
+            "force_tolerance",
+        )
+    return expected / field.force
+
+
+def _check_same_nodes(field: ContactField, moment_field: ContactField) -> None:
+    """Raise ValueError if two fields have different nodes; the message names the first difference."""
+    if field.area.size != moment_field.area.size:
+        raise ValueError(
+            f"the field with a moment has {moment_field.area.size} nodes, "
+            f"expected those of the first: {field.area.size}"
+        )
+    size = float(np.ptp(field.position, axis=0).max())
+    differs = np.max(np.abs(moment_field.position - field.position), axis=1) > 1e-6 * size
+    differs |= np.abs(moment_field.area - field.area) > 1e-6 * np.max(field.area)
+    if np.any(differs):
+        i = int(np.argmax(differs))
+        raise ValueError(
+            f"node {i + 1} of the field with a moment is at {moment_field.position[i].tolist()} m with "
+            f"{moment_field.area[i]:g} m2, expected {field.position[i].tolist()} m with {field.area[i]:g} m2"
+        )
+
+
+def draw_field(field: ContactField, reduction: Reduction, path: str | Path) -> None:
+    """Plot the pressure at all nodes next to the pressure at the reduced points, as .png or .svg."""
+    position = 1e3 * (field.position - field.centroid)
+    width, height = np.ptp(position, axis=0)
+    with plots.open_figure(path, (10.4, float(np.clip(4.6 * height / width, 3.0, 7.0)))) as figure:
+        left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+        size = 20.0 * field.area / np.max(field.area) * min(1.0, 3000.0 / field.area.size)
+        nodes = left.scatter(*position.T, c=1e-6 * field.pressure, s=size, cmap="viridis", lw=0.0)
+        figure.colorbar(nodes, ax=left, label="pressure [MPa]", shrink=0.85)
+        left.set_title(f"{field.area.size} nodes, {field.force / 1e3:.4g} kN", loc="left", fontsize=10)
+        shape = reduction.reduced_shape
+        mean = field.force / float(np.sum(field.area))
+        points = right.scatter(
+            *(1e3 * shape.position.T),
+            c=1e-6 * mean * shape.preload_shape,
+            s=np.clip(2000.0 * shape.area_share, 4.0, 400.0),
+            cmap="viridis",
+            alpha=0.75,
+        )
+        figure.colorbar(points, ax=right, label="pressure [MPa]", shrink=0.85)
+        right.set_title(
+            f"{reduction.point_count} points, by their share of the area", loc="left", fontsize=10
+        )
+        left.set_ylabel("y, across the bolt rows [mm]")
+        for axes in (left, right):
+            axes.set_xlabel("x, along the bolt rows [mm]")
+            axes.set_aspect("equal")

@@ -1,0 +1,411 @@
+"""Reduce a pressure field to few nodes, with new area shares that keep its sums at all loads (cubature).
+
+The outputs of a joint are sums over its nodes: area share times a function of the two pressures of the node
+(`preload_shape`, `moment_shape`) and of its position. A finite number of load cases gives a finite number of
+sums, and most of them are linearly dependent. Some nodes with positive shares keep all sums (`recombine`;
+Tchakaloff; Litterer and Lyons 2012). The fewest nodes that keep the sums within the tolerance are selected.
+Load cases in which the points miss the tolerance are added until the points meet it in new load cases. The
+selection uses rounded numbers (`footprint.reproducible`), so that it is the same on all processors; the
+selected nodes are not rounded.
+"""
+
+from dataclasses import dataclass
+from itertools import islice, pairwise
+
+import numpy as np
+from scipy.linalg import qr, solve_triangular
+from scipy.optimize import nnls
+
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import find_peak_nodes
+from jointfmu.mechanics.footprint.reproducible import round_distribution, round_to_digits
+from jointfmu.progress import track_progress
+from jointfmu.quantity import Array
+
+from .bolted_interface import BoltedInterface, PressureFunction
+from .nodal_result import NodeIndices
+from .sums import (
+    PRELOAD_RATIO_RANGE,
+    RANDOM_SEED,
+    LoadCase,
+    LoadSums,
+    SumFunctions,
+    balance_functions,
+    initial_load_cases,
+    max_moment_ratio,
+    nodes_per_group,
+    random_load_cases,
+)
+
+GROUPS_PER_SUM = 2
+"""Number of groups of nodes over number of independent sums [1]."""
+
+
+def recombine(values: Array, weights: Array, orthogonal_transform: Array) -> tuple[NodeIndices, Array]:
+    """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
+
+    values               : (n, d) of the functions at the nodes
+    weights              : (n) > 0
+    orthogonal_transform : (d, d) matrix that makes the d functions independent
+
+    Returns the indices of the nodes and their weights. Raises RuntimeError if round-off prevents a solution.
+    """
+    selected, count = np.arange(len(values)), values.shape[1]
+    while selected.size > count:
+        bounds = np.linspace(0, selected.size, min(GROUPS_PER_SUM * count, selected.size) + 1).astype(np.intp)
+        sums = [weights[a:b] @ values[a:b] for a, b in pairwise(bounds)]
+        vectors = (np.array(sums) @ orthogonal_transform).T
+        factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
+        node_factors = np.repeat(factors, np.diff(bounds))
+        positive = node_factors > 0.0
+        selected = selected[positive]
+        weights = (weights * node_factors)[positive]
+        values = values[positive]
+    return selected, weights
+
+
+RELATIVE_TOLERANCE = 1e-6
+"""Largest relative deviation of a sum [1] of a reduced field."""
+LARGE_FIELD_TOLERANCE = 1e-5
+"""Largest relative deviation of a sum [1] of a reduced field with more than MAX_KEPT_NODES nodes."""
+GOAL_DEVIATION_RATIO, ACCEPTED_DEVIATION_RATIO, ADDED_CASE_DEVIATION_RATIO = 0.05, 0.6, 0.15
+"""Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
+(the margin is for untested ones); deviation from which a test load case is added to the selection."""
+ROUNDING_BITS = 25
+"""Number of bits to which nodes are rounded for the selection: 3e-8, less than the goal."""
+MIN_PIVOT_RATIO = 7e-9
+"""Smallest pivot of an independent sum over the largest pivot [1]; sums below it are dependent."""
+SUM_COUNT_FACTOR = 0.93
+"""Factor [1] on the number of kept sums, and so of points, from one attempt to the next."""
+INITIAL_RANDOM_LOADS = 100
+"""Number of quasi-random load cases in the selection from the start."""
+SKETCH_ROWS = 600
+"""Number of random combinations of the sample nodes (Halko, Martinsson and Tropp 2011); more than the number
+of kept sums."""
+MAX_UNREDUCED_NODES = 60
+"""Largest number of nodes of a field that is not reduced."""
+MAX_KEPT_NODES = 3000
+"""Largest number of nodes that are all kept if no reduction meets the tolerance."""
+SAMPLE_NODE_COUNT = 3000
+"""Number of sample nodes for finding the independent sums."""
+TEST_LOAD_RANGE, MAX_TEST_EVALUATIONS = (60, 300), 3e6
+"""Smallest and largest number of test load cases per round; largest number of test load cases times nodes."""
+MAX_SELECTION_ROUNDS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Reduction:
+    """Result of the reduction of a pressure field.
+
+    reduced_shape : pressure shape of the reduced points
+    full_shape : pressure shape of all nodes
+    largest_deviation : [1] largest deviation of the sums in `test_case_count` load cases outside the
+        selection: total force, K_zz (and K_xx, proportional to K_zz), K_rx and K_ry, each over its value or
+        its value in the preloaded joint, whichever is larger. Deviations of the moments of the force and of
+        coupling stiffnesses count a hundredth
+    test_case_count : number of these load cases
+    max_tested_moment_ratio : [1] largest moment in these load cases over the moment that unloads a row of
+        bolts
+    deviation_above_tested_moments : [1] largest deviation at moment ratios from `max_tested_moment_ratio` to
+        1
+    """
+
+    reduced_shape: PressureDistribution
+    full_shape: PressureDistribution
+    largest_deviation: float = 0.0
+    test_case_count: int = 0
+    max_tested_moment_ratio: float = 1.0
+    deviation_above_tested_moments: float = 0.0
+
+    @property
+    def point_count(self) -> int:
+        """Number of reduced points."""
+        return int(self.reduced_shape.area_share.size)
+
+    @property
+    def node_count(self) -> int:
+        """Number of nodes of the field."""
+        return int(self.full_shape.area_share.size)
+
+
+def reduce_field(
+    joint: BoltedInterface,
+    pressure_shape: PressureDistribution,
+    preload: float,
+    nodal_pressures: PressureFunction,
+) -> Reduction:
+    """Reduce a pressure shape to the fewest points that keep its sums within RELATIVE_TOLERANCE.
+
+    If no points do, all nodes are kept. A field with more than MAX_KEPT_NODES nodes then takes the points
+    within LARGE_FIELD_TOLERANCE.
+
+    preload         : [N] per bolt of the field. Load cases cover PRELOAD_RATIO_RANGE of it, from compression
+                      to full opening, with moments up to `max_moment_ratio`
+    nodal_pressures : function of the joint for nodal pressures, see `bolted_interface.nodal_pressures`
+
+    Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
+    """
+    nodes = pressure_shape.area_share.size
+    if nodes <= MAX_UNREDUCED_NODES:
+        return Reduction(pressure_shape, pressure_shape)
+    sums = SumFunctions.from_joint(joint, preload, nodal_pressures)
+    # sorted by pressure, neighbouring nodes are close on the pressure curve: its evaluation is faster
+    order = np.argsort(round_to_digits(pressure_shape.preload_shape), kind="stable")
+    unrounded = pressure_shape.select_nodes(order)
+    pressure_shape = round_distribution(unrounded, ROUNDING_BITS)
+    sample = np.random.default_rng(RANDOM_SEED).choice(
+        nodes,
+        min(SAMPLE_NODE_COUNT, nodes),
+        replace=False,
+        p=sums.sample_probability(pressure_shape, max_moment_ratio(joint, pressure_shape)),
+    )
+    reduction = _search_points(sums, pressure_shape, pressure_shape.select_nodes(sample), unrounded)
+    if reduction is not None and (
+        nodes > MAX_KEPT_NODES or reduction.largest_deviation <= RELATIVE_TOLERANCE
+    ):
+        return reduction
+    if nodes <= MAX_KEPT_NODES:
+        return Reduction(unrounded, unrounded)
+    raise RuntimeError(
+        f"the field of {nodes} nodes cannot be reduced to points that keep its sums within "
+        f"{LARGE_FIELD_TOLERANCE:g}; of up to {MAX_KEPT_NODES} all nodes are kept"
+    )
+
+
+def _search_points(
+    sum_functions: SumFunctions,
+    rounded_shape: PressureDistribution,
+    sample_shape: PressureDistribution,
+    unrounded_shape: PressureDistribution,
+) -> Reduction | None:
+    """Search points that keep the sums within LARGE_FIELD_TOLERANCE; None if there are none.
+
+    Each round tests the points in new load cases, and adds those to the selection in which the points miss.
+
+    rounded_shape   : pressure shape of all nodes, rounded
+    sample_shape    : sample of these nodes, for finding the independent sums
+    unrounded_shape : pressure shape of all nodes
+    """
+    limit = max_moment_ratio(sum_functions.joint, rounded_shape)
+    loads = random_load_cases(limit)
+    tests = int(np.clip(MAX_TEST_EVALUATIONS / rounded_shape.area_share.size, *TEST_LOAD_RANGE))
+    system = _SumSystem.from_loads(
+        sum_functions,
+        rounded_shape,
+        unrounded_shape,
+        sample_shape,
+        sum_functions.compute_sums(
+            rounded_shape, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOADS)]
+        ),
+    )
+    best, best_deviation = None, LARGE_FIELD_TOLERANCE
+    for _ in track_progress(range(MAX_SELECTION_ROUNDS), "points", MAX_SELECTION_ROUNDS):
+        points = system.find_points()
+        if points is None:
+            break
+        test_sums = sum_functions.compute_sums(rounded_shape, list(islice(loads, tests)))
+        deviations = sum_functions.sum_deviations(points, test_sums)
+        worst = float(np.max(deviations))
+        if worst <= best_deviation:
+            best, best_deviation = points, worst
+        if worst <= ACCEPTED_DEVIATION_RATIO * RELATIVE_TOLERANCE:
+            break
+        system.add_load_cases(test_sums.select(deviations > ADDED_CASE_DEVIATION_RATIO * RELATIVE_TOLERANCE))
+    if best is None:
+        return None
+    deviation_beyond = _deviation_above_tested_moments(sum_functions, rounded_shape, best, limit)
+    return Reduction(best, unrounded_shape, best_deviation, tests, limit, deviation_beyond)
+
+
+def _deviation_above_tested_moments(
+    sum_functions: SumFunctions,
+    pressure_shape: PressureDistribution,
+    reduced_points: PressureDistribution,
+    moment_limit: float,
+) -> float:
+    """Largest deviation [1] at moment ratios from `moment_limit` to 1 (a row of bolts loses its force)."""
+    if moment_limit >= 1.0:
+        return 0.0
+    moments = np.linspace(moment_limit, 1.0, 6)[1:].tolist()
+    loads = [LoadCase(p, sign * m, 0.0) for p in PRELOAD_RATIO_RANGE for m in moments for sign in (-1.0, 1.0)]
+    return float(
+        np.max(
+            sum_functions.sum_deviations(reduced_points, sum_functions.compute_sums(pressure_shape, loads))
+        )
+    )
+
+
+@dataclass(slots=True)
+class _SumSystem:
+    """The r sums that the reduced points must keep: balance of the field, and sums in load cases.
+
+    rounded_shape   : pressure shape of all nodes, rounded
+    unrounded_shape : pressure shape of all nodes
+    sample_shape    : sample (c) of the nodes, for finding the independent sums
+    mixing_matrix   : random matrix (SKETCH_ROWS, c)
+    load_sums       : sums in the load cases
+    balance_scale   : divisors of the balance functions
+    sketch_matrix   : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
+    """
+
+    sum_functions: SumFunctions
+    rounded_shape: PressureDistribution
+    unrounded_shape: PressureDistribution
+    sample_shape: PressureDistribution
+    mixing_matrix: Array
+    load_sums: LoadSums
+    balance_scale: Array
+    sketch_matrix: Array
+
+    @classmethod
+    def from_loads(
+        cls,
+        sum_functions: SumFunctions,
+        rounded_shape: PressureDistribution,
+        unrounded_shape: PressureDistribution,
+        sample_shape: PressureDistribution,
+        load_sums: LoadSums,
+    ) -> "_SumSystem":
+        """System of the balance and of the sums in initial load cases."""
+        scale = np.maximum(np.max(np.abs(balance_functions(rounded_shape)), axis=0), np.finfo(float).tiny)
+        mixing = np.random.default_rng(RANDOM_SEED).standard_normal(
+            (SKETCH_ROWS, sample_shape.area_share.size)
+        )
+        mixing *= np.sqrt(sample_shape.area_share / SKETCH_ROWS)
+        sketch = mixing @ np.concatenate(
+            [balance_functions(sample_shape) / scale, sum_functions.function_values(sample_shape, load_sums)],
+            axis=1,
+        )
+        return cls(
+            sum_functions, rounded_shape, unrounded_shape, sample_shape, mixing, load_sums, scale, sketch
+        )
+
+    def add_load_cases(self, load_sums: LoadSums) -> None:
+        """Add the sums in more load cases."""
+        self.sketch_matrix = np.concatenate(
+            [
+                self.sketch_matrix,
+                self.mixing_matrix @ self.sum_functions.function_values(self.sample_shape, load_sums),
+            ],
+            axis=1,
+        )
+        self.load_sums = self.load_sums.concatenate(load_sums)
+
+    def function_values(self, pressure_shape: PressureDistribution) -> Array:
+        """Values (n, r) of all functions at the nodes of a shape."""
+        return np.concatenate(
+            [
+                balance_functions(pressure_shape) / self.balance_scale,
+                self.sum_functions.function_values(pressure_shape, self.load_sums),
+            ],
+            axis=1,
+        )
+
+    def find_points(self) -> PressureDistribution | None:
+        """Find the fewest nodes that keep the sums; None if no nodes do.
+
+        The nodes with the highest pressure (`find_peak_nodes`) are always kept, with their own share.
+        """
+        independent, turn = self._independent_sums()
+        fixed = find_peak_nodes(self.rounded_shape)
+        try:
+            candidates, share = self._select_groups(independent, turn, fixed)
+            selected, share = recombine(self._selected_values(candidates, independent), share, turn)
+        except RuntimeError:  # round-off
+            return None
+        selected = candidates[selected]
+        values = self.function_values(self.rounded_shape.select_nodes(selected))
+        target = np.concatenate(
+            [
+                self.rounded_shape.area_share @ balance_functions(self.rounded_shape) / self.balance_scale,
+                self.load_sums.total_sums.ravel(),
+            ]
+        )
+        target -= self.rounded_shape.area_share[fixed] @ self.function_values(
+            self.rounded_shape.select_nodes(fixed)
+        )
+        best, count = None, independent.size
+        tolerance = ACCEPTED_DEVIATION_RATIO * LARGE_FIELD_TOLERANCE
+        while count > 1 and np.max(np.abs(share @ values - target)) <= tolerance:
+            best, tolerance = (selected, share), GOAL_DEVIATION_RATIO * RELATIVE_TOLERANCE
+            count = int(SUM_COUNT_FACTOR * count)
+            try:
+                fewer, share = recombine(values[:, independent[:count]], share, turn[:count, :count])
+            except RuntimeError:
+                break
+            selected, values = selected[fewer], values[fewer]
+        if best is None:
+            return None
+        points = self.unrounded_shape.select_nodes(np.concatenate([fixed, best[0]]))
+        return _correct_balance(points, np.concatenate([self.rounded_shape.area_share[fixed], best[1]]))
+
+    def _select_groups(
+        self, function_indices: NodeIndices, orthogonal_transform: Array, fixed_nodes: NodeIndices
+    ) -> tuple[NodeIndices, Array]:
+        """Select few groups of nodes, with shares that keep the sums of all nodes except the fixed ones.
+
+        Returns the nodes of these groups and their shares.
+        """
+        share = self.rounded_shape.area_share.copy()
+        share[fixed_nodes] = 0.0
+        group = np.arange(share.size) // nodes_per_group(share.size)
+        old_share = np.asarray(np.bincount(group, share), dtype=np.float64)
+        nonempty = np.flatnonzero(old_share)
+        sums = self._group_sums(function_indices)
+        np.subtract.at(
+            sums,
+            group[fixed_nodes],
+            self.rounded_shape.area_share[fixed_nodes, None]
+            * self._selected_values(fixed_nodes, function_indices),
+        )
+        selected, new_share = recombine(
+            sums[nonempty] / old_share[nonempty, None], old_share[nonempty], orthogonal_transform
+        )
+        scale = np.zeros(old_share.size)
+        scale[nonempty[selected]] = new_share / old_share[nonempty[selected]]
+        share *= scale[group]
+        nodes = np.flatnonzero(share)
+        return nodes, share[nodes]
+
+    def _group_sums(self, function_indices: NodeIndices) -> Array:
+        """Sums (g, k) of the selected functions over groups of nodes."""
+        share, count = self.rounded_shape.area_share[:, None], self.balance_scale.size
+        is_balance = function_indices < count
+        load, function = np.divmod(function_indices[~is_balance] - count, 9)
+        values = (balance_functions(self.rounded_shape) / self.balance_scale)[:, function_indices[is_balance]]
+        out = np.empty((self.load_sums.group_sums.shape[2], function_indices.size))
+        out[:, is_balance] = np.add.reduceat(
+            share * values, np.arange(0, share.size, nodes_per_group(share.size))
+        )
+        out[:, ~is_balance] = self.load_sums.group_sums[load, function].T
+        return out
+
+    def _selected_values(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
+        """Values (n, k) of the selected functions at nodes."""
+        shape, count = self.rounded_shape.select_nodes(node_indices), self.balance_scale.size
+        is_balance = function_indices < count
+        out = np.empty((node_indices.size, function_indices.size))
+        out[:, is_balance] = (balance_functions(shape) / self.balance_scale)[:, function_indices[is_balance]]
+        out[:, ~is_balance] = self.sum_functions.selected_function_values(
+            shape, self.load_sums, function_indices[~is_balance] - count
+        )
+        return out
+
+    def _independent_sums(self) -> tuple[NodeIndices, Array]:
+        """Indices of independent sums, the largest pivot first, and the matrix that orthogonalises them."""
+        triangle, order = qr(self.sketch_matrix, mode="r", pivoting=True)
+        size = np.abs(np.diag(triangle))
+        count = int(np.sum(size > MIN_PIVOT_RATIO * size[0]))
+        return order[:count], solve_triangular(triangle[:count, :count], np.eye(count))
+
+
+def _correct_balance(pressure_shape: PressureDistribution, node_weights: Array) -> PressureDistribution:
+    """Select the nodes with a share > 0 and correct the balance of the field to round-off."""
+    points = pressure_shape.select_nodes(np.flatnonzero(node_weights > 0.0))
+    share = node_weights[node_weights > 0.0] / np.sum(node_weights)
+    return PressureDistribution(
+        area_share=share,
+        position=points.position - share @ points.position,
+        preload_shape=points.preload_shape / (share @ points.preload_shape),
+        moment_shape=points.moment_shape - share @ points.moment_shape,
+    )

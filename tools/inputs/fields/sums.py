@@ -1,0 +1,349 @@
+"""Sums of a pressure field in load cases: force, moments and stiffness, which a reduction must keep."""
+
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import count
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.mechanics.curve import Curve, tabulate_approach
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
+from jointfmu.quantity import Array
+
+from .bolted_interface import BoltedInterface, PressureFunction
+from .nodal_result import NodeIndices
+
+PRELOAD_RATIO_RANGE = (0.05, 3.0)
+"""Range of the preload in load cases over the preload of the field [1]."""
+MAX_OPENED_SHARE = 0.001
+"""Largest share of the preload [1] carried by nodes that the largest moment opens."""
+MAX_COMPRESSION_RATIO = 0.03
+"""Largest compression of the joint over the motion that opens it fully [1]."""
+RANDOM_SEED = 1
+
+
+class LoadCase(NamedTuple):
+    """Load case of the joint.
+
+    preload_ratio : preload over the preload of the field [1]
+    moment_ratio  : moment over the moment at which a row of bolts loses its force [1]
+    opening_ratio : normal motion over the motion that opens the joint fully [1]; negative in compression
+    """
+
+    preload_ratio: float
+    moment_ratio: float
+    opening_ratio: float
+
+
+def max_moment_ratio(joint: BoltedInterface, pressure_shape: PressureDistribution) -> float:
+    """Largest moment at which the sums must be kept, over the moment that unloads a row of bolts [1].
+
+    It is at most 1. It is smaller if nodes that carry the share MAX_OPENED_SHARE of the preload open earlier.
+    """
+    force = pressure_shape.area_share * pressure_shape.preload_shape
+    loaded = force > 0.0
+    unloading = np.abs(pressure_shape.moment_shape[loaded]) * joint.row_bolts / joint.n_bolts
+    with np.errstate(divide="ignore"):
+        opening_moment = pressure_shape.preload_shape[loaded] / unloading
+    order = np.argsort(opening_moment)
+    opened_force = np.cumsum(force[loaded][order])
+    return float(min(opening_moment[order][np.searchsorted(opened_force, MAX_OPENED_SHARE)], 1.0))
+
+
+def initial_load_cases(moment_limit: float) -> list[LoadCase]:
+    """Load cases from which the selection of points starts.
+
+    moment_limit : largest moment over the moment that unloads a row of bolts [1]
+    """
+    moments = [moment_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
+    extremes = (-1.0, 1.0) if moment_limit < 1.0 else ()
+    preloaded = [LoadCase(p, m, 0.0) for p in PRELOAD_RATIO_RANGE for m in (*moments, *extremes)]
+    openings = (-MAX_COMPRESSION_RATIO, -0.4 * MAX_COMPRESSION_RATIO, 0.05, 0.2, 0.4, 0.55, 0.65, 0.75, 0.85)
+    opened = [LoadCase(p, m, s) for p in PRELOAD_RATIO_RANGE for m in moments[::2] for s in openings]
+    steep = [moment_limit * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)]  # nodes open row by row there
+    return (
+        preloaded + opened + [LoadCase(PRELOAD_RATIO_RANGE[0], m, s) for m in steep for s in (0.3, 0.45, 0.6)]
+    )
+
+
+def random_load_cases(moment_limit: float) -> Iterator[LoadCase]:
+    """Endless quasi-random load cases (Halton sequence), every third one without normal motion."""
+    from scipy.stats import qmc  # imported here: its import is slow
+
+    sequence = qmc.Halton(3, seed=RANDOM_SEED)
+    low, high = np.log(PRELOAD_RATIO_RANGE)
+    points = (point for _ in count() for point in sequence.random(LOADS_PER_DRAW))
+    for i, (a, b, c) in enumerate(points):
+        opening = c * (1.0 + MAX_COMPRESSION_RATIO) - MAX_COMPRESSION_RATIO if i % 3 else 0.0
+        yield LoadCase(
+            float(np.exp(low + a * (high - low))), float(moment_limit * (2.0 * b - 1.0)), float(opening)
+        )
+
+
+LOADS_PER_DRAW = 64
+"""Number of load cases drawn in one call; a call for a single one takes as long."""
+COUPLING_TOLERANCE_FACTOR = 100.0
+"""Tolerance of first and mixed moments over the tolerance of the other sums [1]."""
+_CUBIC_PRESSURE_RATIO = 1e-2
+"""Pressure over the pressure of complete closure [1], below which the table is interpolated in the cubic root
+of the pressure."""
+_TABLE_INTERVAL_FRACTIONS = np.linspace(0.0, 1.0, 33)[:-1]
+_VALUES_PER_BLOCK = 1 << 15
+"""Number of function values in one block of the computation."""
+MAX_NODE_GROUPS = 4096
+"""Largest number of groups of neighbouring nodes whose sums are stored."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadSums:
+    """The 9 sums of a field in m load cases, relative to their scale.
+
+    load_cases : (m) load cases
+    opening    : (m) [m] normal motion
+    group_sums : (m, 9, g) sums over groups of nodes (`nodes_per_group`), over `sum_scales`
+    total_sums : (m, 9) sums over all nodes, over `sum_scales`
+    sum_scales : (m, 9) sum in the load case, or in the preloaded joint where that is larger. For first and
+                 mixed moments: force or stiffness times the radius of gyration, times
+                 COUPLING_TOLERANCE_FACTOR
+    """
+
+    load_cases: tuple[LoadCase, ...]
+    opening: Array
+    group_sums: Array
+    total_sums: Array
+    sum_scales: Array
+
+    def select(self, case_index: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadSums":
+        """Select the sums in some of the load cases."""
+        loads = tuple(self.load_cases[i] for i in np.arange(len(self.load_cases))[case_index])
+        return LoadSums(
+            loads,
+            self.opening[case_index],
+            self.group_sums[case_index],
+            self.total_sums[case_index],
+            self.sum_scales[case_index],
+        )
+
+    def concatenate(self, other: "LoadSums") -> "LoadSums":
+        """Concatenate the sums in the load cases of two objects."""
+        return LoadSums(
+            self.load_cases + other.load_cases,
+            np.concatenate([self.opening, other.opening]),
+            np.concatenate([self.group_sums, other.group_sums]),
+            np.concatenate([self.total_sums, other.total_sums]),
+            np.concatenate([self.sum_scales, other.sum_scales]),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SumFunctions:
+    """The 9 functions of a node whose sums a joint needs.
+
+    These are the pressure p times 1, x, y, and the stiffness k = dp/d(approach) times 1, x, y, y^2, x^2, x y.
+
+    curve           : pressure as a function of the approach
+    preload         : [N] per bolt of the field
+    nodal_pressures : function of the joint for nodal pressures, see `bolted_interface.nodal_pressures`
+    approach_table  : pressures, their cubic roots and approaches, for the start of Newton's method
+    """
+
+    joint: BoltedInterface
+    curve: Curve
+    preload: float
+    nodal_pressures: PressureFunction
+    approach_table: tuple[Array, Array, Array]
+
+    @classmethod
+    def from_joint(
+        cls, joint: BoltedInterface, preload: float, nodal_pressures: PressureFunction
+    ) -> "SumFunctions":
+        """Functions whose sums a joint needs, at a preload [N] per bolt."""
+        curve = tabulate_approach(joint)
+        x = curve.displacement
+        fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE_INTERVAL_FRACTIONS, x[-1])
+        p = curve.derivatives(fine, 0)[0]
+        return cls(joint, curve, preload, nodal_pressures, (p, np.cbrt(p), fine))
+
+    def _preload_pressure(
+        self, pressure_shape: PressureDistribution, load_cases: Sequence[LoadCase]
+    ) -> Array:
+        """Nodal pressure (m, n) [Pa] of each load case under preload and moment, before normal motion."""
+        force = self.preload * np.array([load.preload_ratio for load in load_cases])
+        moment = np.array([load.moment_ratio for load in load_cases]) * force
+        moment *= self.joint.row_distance * self.joint.row_bolts
+        return self.nodal_pressures(self.joint, pressure_shape, force, moment)
+
+    def _approach_and_stiffness(self, p: Array) -> tuple[Array, Array]:
+        """Approach (...) [m] and stiffness per area [Pa/m] at a pressure (...) [Pa].
+
+        Both are interpolated in the table and improved by one Newton step. While the contact closes, the
+        pressure is proportional to the third power of the approach. Beyond the hardness, the end of the
+        curve, it is linear.
+        """
+        pressure, root, approach = self.approach_table
+        start = np.interp(p, pressure, approach)
+        closing = p < _CUBIC_PRESSURE_RATIO * self.curve.closing_end_load
+        start[closing] = np.interp(np.cbrt(p[closing]), root, approach)
+        value, slope, curvature = self.curve.derivatives(start, 2)
+        curvature = np.where(start < self.curve.end[0], curvature, 0.0)
+        step = np.divide(p - value, slope, out=np.zeros_like(p), where=slope > 0.0)
+        return start + step, slope + curvature * step
+
+    def _approach(self, p: Array) -> Array:
+        """Approach (...) [m] at a pressure (...) [Pa]."""
+        return self._approach_and_stiffness(p)[0]
+
+    def compute_sums(self, pressure_shape: PressureDistribution, load_cases: Sequence[LoadCase]) -> LoadSums:
+        """Compute the sums over a pressure shape in load cases."""
+        pairs, index = np.unique([load[:2] for load in load_cases], axis=0, return_inverse=True)
+        index = index.ravel()
+        preloaded = [LoadCase(p, m, 0.0) for p, m in pairs]
+        group_size = nodes_per_group(pressure_shape.area_share.size)
+        blocks = list(_node_blocks(pressure_shape, len(load_cases), whole_groups=True))
+        peak = np.max([np.max(self._preload_pressure(block, preloaded), axis=1) for block in blocks], axis=0)
+        max_opening = self._approach(peak) - self.curve.displacement[0]
+        opening = np.array([load.opening_ratio for load in load_cases]) * max_opening[index]
+        moved = np.flatnonzero(opening)
+
+        def block_sums(block: PressureDistribution) -> tuple[Array, Array]:
+            """Group sums of one block of nodes: in the preloaded joint, and after the normal motion."""
+            p = self._preload_pressure(block, preloaded)
+            start, k = self._approach_and_stiffness(p)
+            preload_sums = _group_sums(block, p, k, group_size)
+            p_moved, k_moved = self.curve.derivatives(start[index[moved]] - opening[moved, None], 1)
+            return preload_sums, _group_sums(block, p_moved, k_moved, group_size)
+
+        with ThreadPoolExecutor(os.cpu_count()) as pool:  # numpy releases the global interpreter lock
+            preload_blocks, moved_blocks = zip(*pool.map(block_sums, blocks), strict=True)
+        preload_groups = np.concatenate(preload_blocks, axis=2)[index]
+        groups = preload_groups.copy()
+        groups[moved] = np.concatenate(moved_blocks, axis=2)
+        total, preload_total = np.sum(groups, axis=2), np.sum(preload_groups, axis=2)
+        radii = np.sqrt(pressure_shape.area_share @ pressure_shape.position**2)
+        scale = _sum_scales(total, *radii)
+        scale = np.where(opening[:, None] > 0.0, np.maximum(scale, _sum_scales(preload_total, *radii)), scale)
+        groups /= scale[:, :, None]
+        return LoadSums(tuple(load_cases), opening, groups, total / scale, scale)
+
+    def sample_probability(self, pressure_shape: PressureDistribution, moment_limit: float) -> Array:
+        """Probability (n) of each node to be in the sample: its mean share of the sums over load cases.
+
+        When the joint is nearly open, few nodes carry the load: the sample needs more of them than their area
+        share.
+
+        moment_limit : largest moment over the moment that unloads a row of bolts [1]
+        """
+        loads = [LoadCase(p, m * moment_limit, 0.0) for p in PRELOAD_RATIO_RANGE for m in (-1.0, 0.0, 1.0)]
+        start = self._approach(self._preload_pressure(pressure_shape, loads))
+        max_opening = np.max(start, axis=1) - self.curve.displacement[0]
+        probability = np.zeros(pressure_shape.area_share.size)
+        for ratio in (0.0, 0.3, 0.6, 0.85):
+            for values in self.curve.derivatives(start - (ratio * max_opening)[:, None], 1):
+                sums = pressure_shape.area_share * values
+                probability += np.sum(sums / np.sum(sums, axis=1, keepdims=True), axis=0)
+        probability += np.sum(probability) * pressure_shape.area_share
+        return probability / np.sum(probability)
+
+    def function_values(self, pressure_shape: PressureDistribution, load_sums: LoadSums) -> Array:
+        """Values (c, m 9) of all functions at nodes, over their scale: 9 functions in m load cases."""
+        return self.selected_function_values(pressure_shape, load_sums, np.arange(load_sums.sum_scales.size))
+
+    def selected_function_values(
+        self, pressure_shape: PressureDistribution, load_sums: LoadSums, function_indices: NodeIndices
+    ) -> Array:
+        """Values (c, k) of selected functions at nodes: k columns of `function_values`."""
+        load, function = np.divmod(function_indices, 9)
+        needed, index = np.unique(load, return_inverse=True)
+        loads, opening = [load_sums.load_cases[i] for i in needed], load_sums.opening[needed, None]
+        out = np.empty((pressure_shape.area_share.size, function_indices.size))
+        factor, scale = np.array([0, 1, 2, 0, 1, 2, 3, 4, 5])[function], load_sums.sum_scales[load, function]
+        first, columns_of = 0, [np.flatnonzero(function < 3), np.flatnonzero(function >= 3)]
+        for block in _node_blocks(pressure_shape, needed.size):
+            approach = self._approach(self._preload_pressure(block, loads)) - opening
+            factors, block_out = _moment_factors(block), out[first : first + block.area_share.size]
+            for columns, value in zip(columns_of, self.curve.derivatives(approach, 1), strict=True):
+                values = value.T[:, index[columns]] * factors[:, factor[columns]]
+                block_out[:, columns] = values / scale[columns]
+            first += block.area_share.size
+        return out
+
+    def sum_deviations(self, reduced_points: PressureDistribution, load_sums: LoadSums) -> Array:
+        """Largest deviation (m) [1] of the sums of reduced points in each load case."""
+        approach = (
+            self._approach(self._preload_pressure(reduced_points, load_sums.load_cases))
+            - load_sums.opening[:, None]
+        )
+        p, k = self.curve.derivatives(approach, 1)
+        total = _group_sums(reduced_points, p, k, reduced_points.area_share.size)[:, :, 0]
+        return np.asarray(np.max(np.abs(total / load_sums.sum_scales - load_sums.total_sums), axis=1))
+
+
+def nodes_per_group(node_count: int) -> int:
+    """Number of neighbouring nodes in a group; the last group may have fewer."""
+    return -(-node_count // MAX_NODE_GROUPS)
+
+
+def _node_blocks(
+    pressure_shape: PressureDistribution, case_count: int, whole_groups: bool = False
+) -> Iterator[PressureDistribution]:
+    """Divide the nodes into blocks whose values in all load cases fit into the processor's cache.
+
+    case_count   : number of load cases
+    whole_groups : divide only between groups
+    """
+    unit = nodes_per_group(pressure_shape.area_share.size) if whole_groups else 1
+    count = unit * max(_VALUES_PER_BLOCK // case_count // unit, -(-16 // unit))
+    for first in range(0, pressure_shape.area_share.size, count):
+        yield pressure_shape.select_nodes(slice(first, first + count))
+
+
+def _group_sums(pressure_shape: PressureDistribution, p: Array, k: Array, group_size: int) -> Array:
+    """Sums (m, 9, g) of the 9 functions over groups of nodes.
+
+    p, k       : pressure [Pa] and stiffness [Pa/m] (m, n) of the nodes
+    group_size : number of nodes in a group
+    """
+    count = -(-pressure_shape.area_share.size // group_size)
+    padding = (
+        0,
+        count * group_size - pressure_shape.area_share.size,
+    )  # nodes without share that complete the last group
+    factors = np.pad(
+        pressure_shape.area_share[:, None] * _moment_factors(pressure_shape), (padding, (0, 0))
+    ).reshape(count, group_size, 6)
+    p, k = (
+        np.moveaxis(np.pad(value, ((0, 0), padding)).reshape(-1, count, group_size), 1, 0) for value in (p, k)
+    )
+    return np.moveaxis(np.concatenate([p @ factors[:, :, :3], k @ factors], axis=2), 0, 2)
+
+
+def _moment_factors(pressure_shape: PressureDistribution) -> Array:
+    """Factors (n, 6) of the stiffness of a node: 1, x, y, y^2, x^2, x y; the pressure has the first three."""
+    x, y = pressure_shape.position.T
+    return np.stack([np.ones_like(x), x, y, y * y, x * x, x * y], axis=1)
+
+
+def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
+    """Scales (m, 9) of sums (m, 9); radius_x and radius_y [m] are the radii of gyration of the contact."""
+    p = sums[:, 0]
+    k = sums[:, 3]
+    x_scale = COUPLING_TOLERANCE_FACTOR * radius_x
+    y_scale = COUPLING_TOLERANCE_FACTOR * radius_y
+    columns = [p, p * x_scale, p * y_scale, k, k * x_scale, k * y_scale]
+    return np.stack([*columns, sums[:, 6], sums[:, 7], k * x_scale * radius_y], axis=1)
+
+
+def balance_functions(pressure_shape: PressureDistribution) -> Array:
+    """Functions (n, 9) whose sums give the balance of a field.
+
+    These are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.
+    """
+    pressures = np.column_stack([pressure_shape.preload_shape, pressure_shape.moment_shape])
+    moments = [pressures * pressure_shape.position[:, i : i + 1] for i in (0, 1)]
+    return np.column_stack(
+        [np.ones_like(pressure_shape.area_share), pressure_shape.position, pressures, *moments]
+    )

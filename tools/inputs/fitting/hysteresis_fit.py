@@ -1,0 +1,329 @@
+"""Fit of hysteresis laws to measurements: model, search, derived facts, notes and plots.
+
+The fits of all joints with hysteresis use this module.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointfmu.quantity import Array
+from jointfmu.quantity.refusal import InputRefusal
+
+from ...common.plots import choose_unit
+from .branches import Loops, sort_points
+from .hysteresis import ForcedResponse, FreeVibration, HysteresisLaw, Oscillator
+from .least_squares import Residuals, Solution, Unknown, UnknownExchange, select_start, solve
+from .measurement import Measurement
+from .outcome import Facts, Picture, correlation_note
+
+DAMPING_RATIO_NAME = "damping_ratio"
+"""Name of an unknown that is not a parameter of the joint: the damping ratio of the structure [1]."""
+MAX_DAMPING = 0.3
+"""Upper limit of the damping ratio of the structure [1]."""
+DAMPING_UNKNOWN = Unknown(DAMPING_RATIO_NAME, "1", 1e-3, 1e-9, MAX_DAMPING)
+FIRST_FIT_TOLERANCE, SECOND_FIT_TOLERANCE = 1e-3, 1e-6
+"""Relative change of cost or parameters at which the first and the second fit end [1]."""
+FIRST_NOISE = 0.01
+"""Noise assumed in the first fit, over the size of the data [1]; it only sets the regularisation."""
+MIN_NOISE_RATIO = 1e-9
+"""Lower limit of the noise of a group, over the largest noise of all groups [1]; for data without noise."""
+
+LawFunction = Callable[[Mapping[str, float]], HysteresisLaw]
+
+
+@dataclass(frozen=True, slots=True)
+class MeasurementModel:
+    """Model of a measurement: hysteresis law as a function of the unknowns, and the vibrating inertia.
+
+    make_law      : function {name: value} of the unknowns -> hysteresis law
+    inertia       : mass [kg] or moment of inertia [kg.m2] on the joint; None for loops
+    damping_ratio : damping ratio of the structure [1], if it is not an unknown
+    """
+
+    make_law: LawFunction
+    inertia: float | None
+    damping_ratio: float
+
+    def hysteresis_law(self, values: Mapping[str, float]) -> HysteresisLaw:
+        """Hysteresis law at values of the unknowns."""
+        return self.make_law({name: value for name, value in values.items() if name != DAMPING_RATIO_NAME})
+
+    def residuals(
+        self, data: Loops | FreeVibration | ForcedResponse, values: Mapping[str, float], residual_scale: Array
+    ) -> Array:
+        """Residuals of the data at values of the unknowns.
+
+        residual_scale : standard deviations (n) of the data, by which the residuals are divided
+        """
+        law = self.hysteresis_law(values)
+        if isinstance(data, Loops):
+            return data.residuals(law, residual_scale)
+        return data.residuals(self.oscillator(law, values), residual_scale)
+
+    def oscillator(self, law: HysteresisLaw, values: Mapping[str, float]) -> Oscillator:
+        """Oscillator with a hysteresis law; its damping ratio is taken from `values` if it is an unknown."""
+        assert self.inertia is not None
+        return Oscillator(law, self.inertia, values.get(DAMPING_RATIO_NAME, self.damping_ratio))
+
+
+def build_model(
+    measurement: Measurement,
+    make_law: LawFunction,
+    inertia_option: str,
+    inertia: float | None,
+    damping_ratio: float,
+) -> MeasurementModel:
+    """Build the model of a measurement; check inertia and damping ratio.
+
+    inertia_option : name of the option for the inertia, used in error messages
+
+    Raises ValueError if the inertia is stated for loops, is missing for a vibration, or if inertia or damping
+    ratio are out of range.
+    """
+    name = inertia_option.replace("_", " ")
+    if measurement.kind == "loops":
+        if inertia is not None:
+            raise ValueError(f"{measurement.path}: has loops, so {name} has no effect; leave it out")
+    elif inertia is None:
+        raise InputRefusal(
+            f"{measurement.path}: has a vibration ({measurement.kind}); state the {name}", inertia_option
+        )
+    elif not 0.0 < inertia < np.inf:
+        raise ValueError(f"{name} = {inertia:g} is outside (0, inf)")
+    if not 0.0 <= damping_ratio < MAX_DAMPING:
+        raise ValueError(f"damping ratio = {damping_ratio:g} is outside [0, {MAX_DAMPING:g})")
+    return MeasurementModel(make_law, inertia, damping_ratio)
+
+
+def fit_measurement(
+    measurement: Measurement,
+    unknowns: Sequence[Unknown],
+    model: MeasurementModel,
+    alternative_starts: Mapping[str, Sequence[float]],
+    level_exchange: UnknownExchange | None = None,
+    is_level_exchanged: bool = False,
+    correct_measurement: Callable[[Mapping[str, float]], Measurement] | None = None,
+) -> tuple[Solution, Array, Measurement]:
+    """Fit the unknowns twice: the first fit estimates the noise of each group of data, the second uses it.
+
+    alternative_starts  : {name: alternative start values} of the search
+    level_exchange      : stiffness at rest, and the unknown that is adjusted at each start to the measured
+                          stiffness
+    is_level_exchanged  : whether the stiffness at rest replaces that unknown during the search
+                          (`UnknownExchange`)
+    correct_measurement : function: values of the first fit -> corrected measurement, used in the second fit
+
+    Returns the solution, the noise (n) of the data, and the measurement of the second fit.
+
+    Raises ValueError and RuntimeError as `solve`; ValueError if the law allows none of the starts.
+    """
+    data = measurement.data
+
+    def residuals(residual_scale: Array) -> Residuals:
+        return lambda values: model.residuals(data, values, residual_scale)
+
+    def apply_exchange(function: Residuals) -> Residuals:
+        if exchange is None:
+            return function
+        current, start = exchange, original[exchange.exchanged_name].start_value
+        return lambda values: function(current.restore_unknowns(values, start))
+
+    first_scale = data.residual_scale
+    measured_stiffness = None if level_exchange is None else measurement.rest_stiffness(model.inertia)
+
+    def evaluate_start(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+        """Values of a starting point and their cost; the level is adjusted to the measured stiffness."""
+        if level_exchange is not None and measured_stiffness is not None:
+            others = {name: value for name, value in values.items() if name != level_exchange.exchanged_name}
+            values |= level_exchange.restore_unknowns(
+                others | {level_exchange.quantity_label: measured_stiffness},
+                values[level_exchange.exchanged_name],
+            )
+        if any(not u.lower_bound < values[u.name] < u.upper_bound for u in unknowns):
+            return values, np.inf
+        return values, float(np.sum(residuals(first_scale)(values) ** 2))
+
+    original = {u.name: u for u in select_start(unknowns, alternative_starts, evaluate_start)}
+    exchange = level_exchange if is_level_exchanged else None
+    free = [
+        exchange.derived_unknown(original) if exchange and u.name == exchange.exchanged_name else u
+        for u in original.values()
+    ]
+    first = solve(
+        free, apply_exchange(residuals(first_scale)), noise=FIRST_NOISE, tolerance=FIRST_FIT_TOLERANCE
+    )
+    first_residuals = first.residuals
+    if correct_measurement is not None:
+        measurement = correct_measurement(first.values)
+        data = measurement.data
+        first_residuals = residuals(first_scale)(first.values)
+    square = np.bincount(data.noise_groups, first_residuals[: first_scale.size] ** 2) / np.bincount(
+        data.noise_groups
+    )
+    scale = first_scale * np.sqrt(np.maximum(square, MIN_NOISE_RATIO**2 * np.max(square)))[data.noise_groups]
+    free = [replace(u, start_value=_clip_to_bounds(u, first.values[u.name])) for u in free]
+    solution = solve(
+        free,
+        apply_exchange(residuals(scale)),
+        nuisance_count=data.nuisance_count,
+        tolerance=SECOND_FIT_TOLERANCE,
+    )
+    return (exchange.restore_solution(solution, original) if exchange else solution), scale, measurement
+
+
+def _clip_to_bounds(unknown: Unknown, value: float) -> float:
+    """Clip a value to slightly inside of the bounds of an unknown."""
+    low = max(unknown.lower_bound * (1.0 + 1e-6), 1e-300)
+    return float(min(max(value, low), unknown.upper_bound * (1.0 - 1e-6)))
+
+
+def summarize_fit(
+    measurement: Measurement, solution: Solution, law: HysteresisLaw, residual_scale: Array
+) -> Facts:
+    """Results of a fit besides its parameters: points, amplitude, offset, loop area, loss factor, noise.
+
+    residual_scale : noise (n) of the data
+    """
+    data, (_, unit) = measurement.data, measurement.column_names.si_units
+    result = {
+        "points": (float(data.residual_scale.size), "1", "data points used"),
+        "amplitude": (measurement.amplitude, unit, f"largest {measurement.column_names.motion_column}"),
+    }
+    if isinstance(data, Loops) and law.elastic_spring:
+        result["offset"] = (
+            data.rest_position(law, residual_scale),
+            unit,
+            f"{measurement.column_names.motion_column} at rest, taken off",
+        )
+    if isinstance(data, Loops) and data.widest_loops:
+        area, size = max(data.widest_loops, key=lambda loop: loop[1])
+        result["loop_area"] = (area, "J", "measured, of the widest loop")
+        result["loop_area_law"] = (
+            float(law.loop_area(np.array([0.5 * size]))[0]),
+            "J",
+            "of the fitted law there",
+        )
+    _, loss = law.equivalent_spring(np.array([measurement.amplitude]))
+    result["loss_factor"] = (float(loss[0]), "1", "of the fitted law at the largest amplitude")
+    result["noise"] = (
+        solution.noise,
+        "1",
+        "standard deviation of a residual, relative to the size of its group",
+    )
+    return result
+
+
+def misfit_notes(measurement: Measurement, solution: Solution) -> list[str]:
+    """Notes for the user if the residuals show that the law misses the data systematically; else empty."""
+    if measurement.kind == "response":
+        return []
+    residuals = solution.residuals[: measurement.data.noise_groups.size]
+    same_group = np.diff(measurement.data.noise_groups) == 0
+    return correlation_note(residuals, "data", same_group)
+
+
+_CURVE_POINTS = 120
+"""Number of points of a plotted curve of the law."""
+
+
+def make_pictures(
+    measurement: Measurement, model: MeasurementModel, values: Mapping[str, float], residual_scale: Array
+) -> Sequence[Picture]:
+    """Plots of data and fitted law, by the kind of the measurement.
+
+    Loops: force over motion. Forced vibration: amplitude over frequency. Free vibration: frequency over
+    amplitude, and damping ratio over amplitude.
+    """
+    law = model.hysteresis_law(values)
+    match measurement.data:
+        case Loops() as loops:
+            return [_loops_picture(measurement, loops, law, residual_scale)]
+        case ForcedResponse() as response:
+            return [_response_picture(measurement, response, model.oscillator(law, values))]
+        case FreeVibration() as free:
+            return _decay_pictures(measurement, free, model.oscillator(law, values))
+
+
+def _loops_picture(
+    measurement: Measurement, loops: Loops, law: HysteresisLaw, residual_scale: Array
+) -> Picture:
+    """Plot of measured loops: force over motion."""
+    (force_unit, force_scale), (motion_unit, motion_scale) = (
+        choose_unit(unit, values)
+        for unit, values in zip(measurement.column_names.si_units, (loops.force, loops.motion), strict=True)
+    )
+    lines = []
+    law = law.shift_rest(loops.rest_position(law, residual_scale))
+    forces, starts, misfit = loops.fit_turning_points(law, residual_scale)
+    for k, (force, start) in enumerate(zip(forces, starts, strict=True)):
+        motion = np.linspace(
+            start, loops.motion[loops.branch_index == k][-1], _CURVE_POINTS
+        )  # NaN separates the branches
+        branch = force + law.force_change(motion, np.full(_CURVE_POINTS, start))
+        lines.append(np.append(np.stack([motion, branch]), [[np.nan], [np.nan]], axis=1))
+    line = np.concatenate(lines, axis=1)
+    names = measurement.column_names
+    return Picture(
+        data_x=motion_scale * loops.motion,
+        data_y=force_scale * loops.force,
+        misfit=force_scale * misfit,
+        law_curve=(motion_scale * line[0], force_scale * line[1]),
+        axis_labels=(
+            f"{names.motion_column} [{motion_unit}]",
+            f"{names.force_column} [{force_unit}]",
+            f"data - law [{force_unit}]",
+        ),
+    )
+
+
+def _response_picture(measurement: Measurement, data: ForcedResponse, oscillator: Oscillator) -> Picture:
+    """Plot of a forced vibration: amplitude over frequency, one curve for each force amplitude."""
+    unit, size = choose_unit(measurement.column_names.si_units[1], data.amplitude)
+    lines = []
+    for force in np.unique(data.force):
+        inside = data.force == force
+        f = np.linspace(data.frequency[inside].min(), data.frequency[inside].max(), 4 * _CURVE_POINTS)
+        measured = np.interp(f, *sort_points(data.frequency[inside], data.amplitude[inside]))
+        amplitude = oscillator.response_amplitude(f, np.full_like(f, force), measured)
+        lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
+    line = np.concatenate(lines, axis=1)
+    return Picture(
+        data_x=data.frequency,
+        data_y=size * data.amplitude,
+        misfit=100.0 * np.expm1(data.misfit(oscillator)),
+        law_curve=(line[0], size * line[1]),
+        axis_labels=(
+            "frequency [Hz]",
+            f"{measurement.column_names.motion_column} [{unit}]",
+            "data / law - 1 [%]",
+        ),
+    )
+
+
+def _decay_pictures(
+    measurement: Measurement, data: FreeVibration, oscillator: Oscillator
+) -> tuple[Picture, Picture]:
+    """Plots of a free vibration: frequency and damping ratio over amplitude."""
+    unit, size = choose_unit(measurement.column_names.si_units[1], data.decay_points.amplitude)
+    a = data.decay_points.amplitude
+    grid = np.linspace(a.min(), a.max(), _CURVE_POINTS)
+    lines, (frequency, damping) = oscillator.free_vibration(grid), np.split(data.misfit(oscillator), 2)
+    x = f"amplitude of the {measurement.column_names.motion_column} [{unit}]"
+    return (
+        Picture(
+            data_x=size * a,
+            data_y=data.decay_points.frequency,
+            misfit=100.0 * frequency,
+            law_curve=(size * grid, lines[0]),
+            axis_labels=(x, "frequency [Hz]", "data / law - 1 [%]"),
+        ),
+        Picture(
+            data_x=size * a,
+            data_y=100.0 * data.decay_points.damping_ratio,
+            misfit=100.0 * damping,
+            law_curve=(size * grid, 100.0 * lines[1]),
+            axis_labels=(x, "damping ratio [%]", "data - law [%]"),
+        ),
+    )

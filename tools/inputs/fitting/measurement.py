@@ -1,0 +1,272 @@
+"""Measurement files of joints with hysteresis: loops, free vibration or forced vibration."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
+from jointfmu.quantity.refusal import InputRefusal
+from jointfmu.quantity.units import UnitSizes, unit_sizes
+from jointfmu.quantity.units import unit_size_in as measured_in
+
+from ...common import columns
+from .branches import Loops, cut_branches
+from .decay import DecayPoints, analyse_decay
+from .hysteresis import ForcedResponse, FreeVibration
+
+MIN_ROWS = 8
+"""Minimum number of rows of a measurement file."""
+RUN_COLUMN = "run"
+"""Column with the number of the run, if a file holds several runs."""
+COLUMN_SYNONYMS = {
+    "displacement": ("x", "s", "u", "weg", "verschiebung"),
+    "force": ("kraft", "load", "f"),
+    "angle": ("phi", "theta", "winkel", "drehwinkel", "rotation"),
+    "torque": ("tau", "moment", "drehmoment", "torsionsmoment"),
+    "time": ("t", "zeit"),
+    "frequency": ("freq", "frequenz", "f"),
+    "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
+}
+"""{column: accepted synonyms, in lower case}."""
+WRONG_UNIT_RATIO = 50.0
+"""Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
+is assumed. Degrees read as radians give 57."""
+EXPLAINED_RATIO = 5.0
+"""Ratio [1] of measured stiffness to stiffness of the start values that remains with another unit, or its
+inverse, up to which that unit counts as the explanation."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnNames:
+    """Names and units of the columns for force (or torque) and motion (displacement or angle) of a joint.
+
+    force_column, motion_column : names of the columns
+    force_units, motion_units : {unit: size in SI units} allowed for each, SI unit first
+    """
+
+    force_column: str
+    motion_column: str
+    force_units: UnitSizes
+    motion_units: UnitSizes
+
+    @property
+    def columns(self) -> Mapping[str, UnitSizes]:
+        """{column: {unit: size in SI units}} of all columns that a measurement file may have."""
+        return {
+            self.motion_column: self.motion_units,
+            self.force_column: self.force_units,
+            "time": unit_sizes("s", "ms"),
+            "frequency": unit_sizes("Hz", "kHz"),
+            "damping": unit_sizes("1"),
+            RUN_COLUMN: unit_sizes("1"),
+        }
+
+    @property
+    def si_units(self) -> tuple[str, str]:
+        """SI unit of the force and SI unit of the motion."""
+        return next(iter(self.force_units)), next(iter(self.motion_units))
+
+    def check_stiffness_ratio(
+        self, path: Path, stiffness_ratio: float, stated_units: Mapping[str, str], start_file: ParameterFile
+    ) -> None:
+        """Check that the measured stiffness is near the stiffness of the start values.
+
+        stiffness_ratio : measured stiffness over stiffness of the start values [1]
+        stated_units    : {column: unit in the heading}
+        start_file      : parameter file with the start values
+
+        Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
+        """
+        if 1.0 / WRONG_UNIT_RATIO < stiffness_ratio < WRONG_UNIT_RATIO:
+            return
+        raise InputRefusal(
+            f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, allowed are "
+            f"{1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
+            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units)}; if the units are right, "
+            "start from the parameter file of a joint of similar stiffness",
+            "params",
+        )
+
+    def describe_likely_unit_error(self, stiffness_ratio: float, stated_units: Mapping[str, str]) -> str:
+        """Describe the unit error that best explains a wrong ratio of stiffnesses, as text.
+
+        stiffness_ratio : measured stiffness over stiffness of the start values [1]
+        stated_units    : {column: unit in the heading}
+
+        If a wrong unit of either column explains the ratio equally well, the text names both.
+        """
+        explanations = []
+        for column, power, own in (
+            (self.motion_column, -1.0, self.motion_units),
+            (self.force_column, 1.0, self.force_units),
+        ):
+            stated = measured_in(stated_units[column], own)
+            text = f"where the heading says {stated_units[column]}"
+            errors = {
+                unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in own.items()
+            }
+            unit = min(errors, key=errors.__getitem__)
+            explanations.append((float(errors[unit]), f"the {column} is in {unit}, {text}"))
+        smallest = min(explanations)[0]
+        if not smallest < np.log(EXPLAINED_RATIO):
+            return "check the units of both columns, no usual one explains it"
+        return "likely " + ", or ".join(text for error, text in explanations if error < smallest + 1e-6)
+
+
+def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, columns.Columns]:
+    """Read a measurement file: its kind, recognised by its columns, and the columns.
+
+    kind "loops"    : columns motion, force
+    kind "response" : columns motion (amplitude), force (amplitude), frequency
+    kind "backbone" : columns motion (amplitude), frequency, damping
+    kind "decay"    : columns motion, time
+
+    Raises ValueError, one line, for any other set of columns.
+    """
+    table = columns.read_columns(path, column_names.columns, MIN_ROWS, COLUMN_SYNONYMS)
+    table.require_column(column_names.motion_column, column_names.columns)
+    present = set(table.columns)
+    if {"frequency", column_names.force_column} <= present:
+        return "response", table.check_positive(
+            (column_names.motion_column, "frequency", column_names.force_column), column_names.columns
+        )
+    if {"frequency", "damping"} <= present:
+        return "backbone", table.check_positive(
+            (column_names.motion_column, "frequency", "damping"), column_names.columns
+        )
+    if "frequency" not in present and column_names.force_column in present:
+        return "loops", table
+    if "frequency" not in present and "time" in present:
+        return "decay", table
+    expected = (
+        (column_names.force_column,),
+        ("time",),
+        ("frequency", column_names.force_column),
+        ("frequency", "damping"),
+    )
+    raise ValueError(
+        f"{table.path}: has {', '.join(table.columns)} alone; expected {column_names.motion_column} with "
+        f"{', or with '.join(' and '.join(names) for names in expected)}"
+    )
+
+
+def split_runs(table: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
+    """Split a table by the column `run`: (prefix of error messages, {name: column}) of each run."""
+    if RUN_COLUMN not in table.columns:
+        return [("", dict(table.columns))]
+    run_numbers = table.columns[RUN_COLUMN]
+    result = []
+    for number in dict.fromkeys(run_numbers.tolist()):
+        rows = run_numbers == number
+        result.append((f"run {number:g}: ", {name: column[rows] for name, column in table.columns.items()}))
+    return result
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """Measurement of a joint, read from a file.
+
+    kind         : "loops", "response", "backbone" or "decay", see `read_columns`
+    column_names : names and units of the columns
+    stated_units : {column: unit in the heading}
+    """
+
+    path: Path
+    kind: str
+    column_names: ColumnNames
+    data: Loops | FreeVibration | ForcedResponse
+    stated_units: Mapping[str, str]
+
+    @property
+    def motion(self) -> Array:
+        """Motion (n) of all samples of loops; amplitudes (n) of a vibration."""
+        match self.data:
+            case Loops():
+                return self.data.motion
+            case FreeVibration():
+                return self.data.decay_points.amplitude
+            case ForcedResponse():
+                return self.data.amplitude
+
+    @property
+    def amplitude(self) -> float:
+        """Largest amplitude of the motion; of loops, half the range of the motion."""
+        return float(0.5 * np.ptp(self.motion) if self.kind == "loops" else np.max(self.motion))
+
+    def rest_stiffness(self, inertia: float | None) -> float:
+        """Approximate stiffness [N/m or N.m/rad] at small motions.
+
+        inertia : vibrating mass [kg] or moment of inertia [kg.m2]; not used for loops, required otherwise
+        """
+        if isinstance(self.data, Loops):
+            return self.data.rest_stiffness
+        if isinstance(self.data, FreeVibration):
+            frequency = self.data.decay_points.frequency[np.argmin(self.data.decay_points.amplitude)]
+        else:
+            amplitude = np.where(self.data.force == self.data.force.min(), self.data.amplitude, 0.0)
+            frequency = self.data.frequency[np.argmax(amplitude)]  # resonance at the smallest force
+        assert inertia is not None
+        return float(inertia * (2.0 * np.pi * frequency) ** 2)
+
+    @property
+    def range_text(self) -> str:
+        """Range of the data as text: kind of the measurement and largest amplitude."""
+        return (
+            f"{self.kind} up to {self.column_names.motion_column} {self.amplitude:.4g} "
+            f"{self.column_names.si_units[1]}"
+        )
+
+
+def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement:
+    """Read a measurement file and evaluate it; see `read_columns` for its columns.
+
+    Raises ValueError, one line that begins with the path.
+    """
+    kind, table = read_columns(path, column_names)
+    records = split_runs(table)
+    data: Loops | FreeVibration | ForcedResponse
+    try:
+        if kind == "loops":
+            data = cut_branches(
+                [
+                    (name, run[column_names.motion_column], run[column_names.force_column])
+                    for name, run in records
+                ]
+            )
+        elif kind == "decay":
+            data = FreeVibration(
+                _join_points(
+                    [
+                        analyse_decay(run["time"], run[column_names.motion_column], name)
+                        for name, run in records
+                    ]
+                )
+            )
+        elif kind == "backbone":
+            a, f, damping = (
+                table.columns[name] for name in (column_names.motion_column, "frequency", "damping")
+            )
+            data = FreeVibration(DecayPoints(a, f, damping, np.ones_like(f), damping))
+        else:
+            data = ForcedResponse(
+                *(
+                    table.columns[name]
+                    for name in ("frequency", column_names.force_column, column_names.motion_column)
+                )
+            )
+    except ValueError as error:
+        raise ValueError(f"{table.path}: {error}") from None
+    return Measurement(table.path, kind, column_names, data, table.units)
+
+
+def _join_points(records: Sequence[DecayPoints]) -> DecayPoints:
+    """Concatenate the decay points of several records."""
+    return DecayPoints(
+        *(
+            np.concatenate([getattr(record, name) for record in records])
+            for name in DecayPoints.__dataclass_fields__
+        )
+    )

@@ -1,0 +1,363 @@
+"""Result of a fit: parameter file, identifiability of the parameters, warnings, plots.
+
+The singular values of the Jacobian (in the logarithms) over the noise are the reciprocal standard deviations
+of independent combinations `prod name^exponent`. A parameter or combination counts as determined
+if its standard deviation does not exceed its limit. The limit is MAX_RELATIVE_DEVIATION, or a tenth of the
+interval of the parameter if that is smaller (both in logarithms).
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.contact.roughness import MAX_HEIGHT
+from jointfmu.files.timestamp import build_time
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array, Interval, flat_fields
+
+from ...common import plots
+from .least_squares import Solution, Unknown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+MAX_RELATIVE_DEVIATION = 0.2
+"""Standard deviation of the logarithm of a parameter [1], up to which it counts as determined: about 20 %."""
+INTERVAL_FRACTION = 0.1
+"""Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
+parameter counts as determined."""
+MIN_EXPONENT_RATIO = 0.01
+"""Exponent over the largest exponent of a combination [1], below which the parameter is not named in it."""
+MIN_SINGULAR_VALUE_RATIO = 1e-5
+"""Singular value over the largest [1], below which it counts as zero: accuracy of the finite differences."""
+
+
+@dataclass(frozen=True, slots=True)
+class Combination:
+    """Combination prod name^exponent of parameters, statistically independent of the other combinations.
+
+    exponents          : {name: exponent}, the largest is 1
+    relative_deviation : relative standard deviation [1]; infinite if the data contain no information about it
+    is_determined      : whether the standard deviation is within the limit
+    """
+
+    exponents: Mapping[str, float]
+    relative_deviation: float
+    is_determined: bool
+
+    def __str__(self) -> str:
+        return " ".join(
+            name if power == 1.0 else f"{name}^{power:.2g}" for name, power in self.exponents.items()
+        )
+
+
+def max_deviation(unknown: Unknown) -> float:
+    """Standard deviation of the logarithm [1], up to which a parameter counts as determined."""
+    if unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
+        return MAX_RELATIVE_DEVIATION
+    return min(
+        MAX_RELATIVE_DEVIATION, INTERVAL_FRACTION * float(np.log(unknown.upper_bound / unknown.lower_bound))
+    )
+
+
+def combinations(solution: Solution) -> list[Combination]:
+    """Statistically independent combinations of the parameters of a solution, best determined first."""
+    limits = np.array([max_deviation(u) for u in solution.unknowns])
+    _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
+    independent = []
+    for value, row in zip(s, rows, strict=True):
+        powers = row / limits  # ln of the combination is row . (ln x / limits)
+        largest = powers[np.argmax(np.abs(row))]
+        significant = np.abs(row) >= MIN_EXPONENT_RATIO * np.max(np.abs(row))
+        exponents = {
+            u.name: float(p / largest)
+            for u, p, is_named in zip(solution.unknowns, powers, significant, strict=True)
+            if is_named
+        }
+        has_no_effect = value <= MIN_SINGULAR_VALUE_RATIO * s[0]
+        deviation = np.inf if has_no_effect else solution.noise / value
+        independent.append(Combination(exponents, float(deviation / abs(largest)), bool(deviation <= 1.0)))
+    return independent
+
+
+def undetermined_names(solution: Solution) -> list[str]:
+    """Names of the parameters that the data do not determine, or that are on a bound."""
+    without_effect = {
+        name for c in combinations(solution) if not np.isfinite(c.relative_deviation) for name in c.exponents
+    }
+    return [
+        u.name
+        for u in solution.unknowns
+        if solution.relative_deviations[u.name] > max_deviation(u)
+        or u.name in solution.names_at_bound
+        or u.name in without_effect
+    ]
+
+
+MAX_RESIDUAL_CORRELATION = 0.5
+"""Correlation of neighbouring residuals [1], above which the misfit is systematic and not noise."""
+
+MAX_AREA_RATIO = 2.0
+"""Ratio of measured to fitted area of the widest loop [1], or its inverse, above which a fit is rejected."""
+
+HEIGHT_PARAMETER = "h"
+"""Name of the parameter rms roughness height [m], in laws that have it."""
+
+MAX_RESIDUAL_RATIO = 0.95
+"""Residual of the law over residual of a constant, for held-out data [1], above which a fit is rejected."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Contents of a plot: data, fitted curve and misfit over one abscissa, in the units of the axis labels.
+
+    data_x, data_y     : data (n)
+    misfit             : data minus law (n)
+    law_curve          : x (m) and y (m) of the fitted law
+    axis_labels        : axis labels of x, y and misfit
+    highlighted_points : mask (n) of the points to be highlighted
+    other_laws         : {name: (x, y)} of the curves of other laws, for comparison
+    """
+
+    data_x: Array
+    data_y: Array
+    misfit: Array
+    law_curve: tuple[Array, Array]
+    axis_labels: tuple[str, str, str]
+    highlighted_points: NDArray[np.bool_] | None = None
+    other_laws: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
+
+
+Facts = dict[str, tuple[float, str, str]]
+"""Results {name: (value, unit, meaning)} that are no parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class FitResult:
+    """Result of a fit: fitted parameter file, solution, facts, plots, notes.
+
+    facts                : {name: (value, unit, meaning)} of results that are no parameters
+    pictures             : plots, drawn side by side
+    notes                : messages for the user, one line each
+    confidence_intervals : {name: ends of the 95 % confidence interval}, if they are known
+    """
+
+    parameters: ParameterFile
+    solution: Solution
+    facts: Facts
+    pictures: Sequence[Picture]
+    notes: Sequence[str] = ()
+    confidence_intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def unknown_rows(self) -> list[dict[str, Any]]:
+        """Table of the unknowns: name, value, unit, relative standard deviation, whether it is determined."""
+        undetermined, deviations = undetermined_names(self.solution), self.solution.relative_deviations
+        return [
+            {
+                "name": u.name,
+                "value": self.solution.values[u.name],
+                "unit": u.unit,
+                "relative_deviation": _finite_or_none(deviations[u.name]),
+                "determined": u.name not in undetermined,
+                **(
+                    {"interval": list(self.confidence_intervals[u.name])}
+                    if u.name in self.confidence_intervals
+                    else {}
+                ),
+            }
+            for u in self.solution.unknowns
+        ]
+
+    def rejection_reason(self) -> str | None:
+        """Reason to reject the fit, as text; None if the fit is accepted."""
+        names = [u.name for u in self.solution.unknowns]
+        if names and {*names} == {*self.solution.names_at_bound}:
+            return f"{', '.join(names)} ended on a bound of its interval; no other parameter was fitted"
+        if (height := self.solution.values.get(HEIGHT_PARAMETER, 0.0)) > MAX_HEIGHT:
+            return (
+                f"{HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, {1e6 * MAX_HEIGHT:g}] "
+                "um: too large for a roughness; check the units, and state the stiffness in series with the "
+                "joint (--series-stiffness)"
+            )
+        count = len(undetermined_names(self.solution))
+        if names and count == len(names) and not any(c.is_determined for c in combinations(self.solution)):
+            return f"the data determine none of {', '.join(names)}, nor a combination of them"
+        if "loop_area_law" in self.facts:
+            measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
+            if not measured / MAX_AREA_RATIO <= law <= measured * MAX_AREA_RATIO:
+                return (
+                    f"the area of the widest loop is {measured:.3g} J measured, {law:.3g} J by the fitted "
+                    f"law; allowed is a factor of {MAX_AREA_RATIO:g}"
+                )
+        if "held_out" in self.facts:
+            law, constant = self.facts["held_out"][0], self.facts["held_out_constant"][0]
+            if law > MAX_RESIDUAL_RATIO * constant:
+                return (
+                    f"the fit misses the held-out part of the log by {law:.3g} N.m, a constant friction "
+                    f"torque by {constant:.3g} N.m; allowed is {MAX_RESIDUAL_RATIO:g} times the latter"
+                )
+        return None
+
+    def warnings(self) -> list[str]:
+        """Warnings, one line each: undetermined parameters, parameters on bounds, model limits, notes."""
+        lines = []
+        if names := undetermined_names(self.solution):
+            lines.append(f"the data do not determine {', '.join(names)}: other values fit as well")
+            ranked = combinations(self.solution)
+            for combination in ranked:
+                if combination.is_determined:
+                    lines.append(
+                        f"the combination {combination} is determined within "
+                        f"{format_deviation(combination.relative_deviation)}"
+                    )
+                elif len(combination.exponents) > 1:
+                    lines.append(
+                        f"the combination {combination} is not determined: "
+                        f"{format_deviation(combination.relative_deviation)}"
+                    )
+        lines += [f"{name} ended on a bound of its interval" for name in self.solution.names_at_bound]
+        if self.solution.refusal_message:
+            lines.append(f"the fit ended at values that the model rejects: {self.solution.refusal_message}")
+        return lines + list(self.notes)
+
+    def document(self) -> dict[str, Any]:
+        """Result of the fit as one JSON object."""
+        return {
+            "joint": self.parameters.joint,
+            "unknowns": self.unknown_rows(),
+            "correlation": [[_finite_or_none(x) for x in row] for row in self.solution.correlation.tolist()],
+            "combinations": [
+                {
+                    "exponents": dict(combination.exponents),
+                    "relative_deviation": _finite_or_none(combination.relative_deviation),
+                    "determined": combination.is_determined,
+                }
+                for combination in combinations(self.solution)
+            ],
+            "facts": {
+                name: {"value": _finite_or_none(v), "unit": unit} for name, (v, unit, _) in self.facts.items()
+            },
+            "warnings": self.warnings(),
+            "parameters": dict(self.parameters.values_by_name),
+        }
+
+
+def correlation_note(
+    residuals: Array, quantity: str, neighbours: NDArray[np.bool_] | slice = slice(None)
+) -> list[str]:
+    """Note for the user if neighbouring residuals are correlated: the law misses the data systematically.
+
+    residuals  : (n), in the order of the measurement
+    quantity   : name of the data in the note
+    neighbours : mask (n - 1) of the pairs of consecutive residuals that count as neighbours
+
+    Returns a list of one line, or an empty list.
+    """
+    correlation = (
+        float(np.sum((residuals[1:] * residuals[:-1])[neighbours]) / np.sum(residuals**2))
+        if np.any(residuals)
+        else 0.0
+    )
+    if correlation <= MAX_RESIDUAL_CORRELATION:
+        return []
+    return [
+        f"neighbouring residuals are correlated ({correlation:.2f}): the law deviates systematically from "
+        f"the {quantity}, and the standard deviations are too small"
+    ]
+
+
+def format_deviation(deviation: float) -> str:
+    """Format a relative standard deviation [1]: in percent, as a factor, or as "orders of magnitude"."""
+    if deviation < 1.0:
+        return f"{100.0 * deviation:.2g} %"
+    return f"a factor of {np.exp(deviation):.2g}" if deviation < 5.0 else "orders of magnitude"
+
+
+def _finite_or_none(value: float) -> float | None:
+    """Return the value, or None (JSON null) if it is not finite."""
+    return float(value) if np.isfinite(value) else None
+
+
+def make_unknowns(
+    start_file: ParameterFile, names: Sequence[str], bounds: Mapping[str, tuple[float, float]]
+) -> list[Unknown]:
+    """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
+
+    bounds : {name: (low, high)} that narrow the declared intervals
+
+    Raises ValueError for a name that the joint lacks, that is not a number, or that is given twice.
+    """
+    values, result = start_file.values_by_name, []
+    declared = {n: f for n, f in flat_fields(type(start_file.values)) if isinstance(values.get(n), float)}
+    for name in names:
+        if name not in declared:
+            raise ValueError(f"{name!r} is not a parameter to fit; allowed are {', '.join(declared)}")
+        if names.count(name) > 1:
+            raise ValueError(f"{name!r} is given twice; state it once")
+        meta = declared[name].metadata
+        interval = meta["interval"].intersection(Interval(*bounds.get(name, ())))
+        result.append(Unknown(name, meta["unit"], float(values[name]), interval.low, interval.high))
+    return result
+
+
+def make_predictor(
+    start_file: ParameterFile, predict_values: Callable[[Any], Array]
+) -> Callable[[Mapping[str, float]], Array]:
+    """Make the function {name: value} of the unknowns -> predictions; other parameters as in `start_file`.
+
+    predict_values : function of the parameter set
+    """
+    return lambda values: predict_values(start_file.with_values(values, "calibration", "fit").values)
+
+
+def fitted_parameters(
+    start_file: ParameterFile, values: Mapping[str, float], origin: str, data_name: str, range_text: str
+) -> ParameterFile:
+    """Copy of a parameter file with fitted values; their source states data, range and date.
+
+    data_name, range_text : data file and range of the data, as text
+    origin                : kind of the source
+
+    The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
+
+    Raises ValueError if SOURCE_DATE_EPOCH is not a number of seconds.
+    """
+    today = build_time().date().isoformat()
+    file = start_file.with_values(values, origin, f"fitted to {data_name}, {today}, {range_text}")
+    return replace(file, name=f"fitted to {data_name}")
+
+
+def figure_size(fit_result: FitResult) -> tuple[float, float]:
+    """Width and height of the figure [inch]."""
+    return 3.6 * (1 + len(fit_result.pictures)), 5.6
+
+
+def draw_fit(figure: "Figure", fit_result: FitResult) -> None:
+    """Draw the plots of a fit side by side: data and law above, misfit below."""
+    pictures = fit_result.pictures
+    all_axes = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
+    for (above, below), picture in zip(all_axes.T, pictures, strict=True):
+        x, y = picture.data_x, picture.data_y
+        above.plot(*picture.law_curve, color=plots.BLUE, label="fitted law")
+        for (name, line), color in zip(picture.other_laws.items(), (plots.GREEN, plots.GREY), strict=False):
+            above.plot(*line, "--", color=color, lw=1.0, label=name)
+        above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
+        below.axhline(0.0, color=plots.BLUE, lw=1.0)
+        below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)
+        if picture.highlighted_points is not None:
+            for axes, values in ((above, y), (below, picture.misfit)):
+                axes.plot(
+                    x[picture.highlighted_points],
+                    values[picture.highlighted_points],
+                    "o",
+                    color=plots.RED,
+                    ms=7,
+                )
+        above.set_ylabel(picture.axis_labels[1])
+        below.set_xlabel(picture.axis_labels[0])
+        below.set_ylabel(picture.axis_labels[2])
+        above.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)

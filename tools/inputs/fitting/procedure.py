@@ -1,0 +1,69 @@
+"""Fit procedures of the joints, declared as FITS in the module `fit` of each joint in tools/joints."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from jointfmu.joints import KINDS
+
+from ...common.joint_parts import load_tool_module
+from ...common.options import Option
+
+if TYPE_CHECKING:
+    from .outcome import FitResult
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Procedure:
+    """Procedure that fits parameters of a joint to data.
+
+    name                : name of the procedure, with hyphens
+    description         : which parameters, which joint
+    takes_file          : whether the data are a measurement file
+    takes_several_files : whether `run` takes a list of paths instead of one path
+    identifying_column  : a column that all files of this procedure have; files of procedures with the same
+                          name for other joints do not have it
+    options             : further options of the command
+    run                 : function ([path or paths,] parameter file with the start values or None, names of
+                          the parameters to be fitted or None, **options) -> FitResult; it loads the module of
+                          the joint only when called. Raises ValueError for bad input, RuntimeError if the fit
+                          does not converge.
+    """
+
+    name: str
+    description: str
+    takes_file: bool
+    takes_several_files: bool = False
+    identifying_column: str = ""
+    options: Sequence[Option] = ()
+    run: "Callable[..., FitResult]"
+
+
+def lazy_fit(module_name: str) -> "Callable[..., FitResult]":
+    """Function that loads a module when called, and calls the function `fit` of this module."""
+
+    def run(*arguments: object, **options: object) -> "FitResult":
+        result: FitResult = import_module(module_name).fit(*arguments, **options)
+        return result
+
+    return run
+
+
+def fit_procedures() -> dict[str, dict[str, Procedure]]:
+    """Fit procedures of all joints: {name: {joint: procedure}}; several joints may share a name."""
+    result: dict[str, dict[str, Procedure]] = {}
+    for kind in KINDS.values():
+        module = load_tool_module(kind, "fit")
+        for procedure in module.FITS if module else ():
+            result.setdefault(procedure.name, {})[kind.name] = procedure
+    return result
+
+
+DAMPING_RATIO_OPTION = Option(
+    "damping_ratio",
+    "damping ratio of the structure without the joint [1]; to fit it: --free damping_ratio",
+    default=0.0,
+    is_number=True,
+)
+"""Option of fit procedures for vibrations: damping ratio of the structure [1]."""

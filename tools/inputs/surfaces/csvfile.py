@@ -1,0 +1,239 @@
+"""Read and write the CSV formats of this package for profiles and areal maps (docs/surfaces_reference.md).
+
+The first line declares the layout:
+
+# profile: x [um], z [um]          two columns, constant spacing
+# points: x [um], y [um], z [nm]   three columns on a regular grid; points may be missing
+# grid: dx = 0.5 um, dy = 0.5 um, z [um]   one line of z for each y
+"""
+
+import contextlib
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.files.outputs import PROGRAM_MARK, FileKind
+from jointfmu.quantity import Array
+from jointfmu.quantity.refusal import InputRefusal
+from jointfmu.quantity.units import unit_size_in, unit_sizes
+
+from ...common.columns import (
+    ColumnHead,
+    check_cell_count,
+    decode_text,
+    find_separator,
+    format_rows,
+    parse_heading,
+    parse_number,
+    read_numbered_lines,
+    read_text_lines,
+    split_cells,
+)
+from . import heights as grid
+from .heights import ArealMap, Heights, Profile
+
+SURFACE_FILE_KIND = FileKind("surface", (".csv",))
+LENGTH_UNITS = unit_sizes("m", "mm", "um", "µm", "μm", "nm")
+"""Allowed length units: {unit: size in metres}."""
+LAYOUT_COLUMNS = {"profile": ("x", "z"), "points": ("x", "y", "z"), "grid": ("z",)}
+_DECLARATION_PATTERN = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
+UNIT_LIST = ", ".join(filter(str.isascii, LENGTH_UNITS))
+"""List of the allowed length units, for messages."""
+
+
+def parse_unit(text: str, location: str) -> float:
+    """Size of a length unit in metres; ValueError, with the location in the file, for an unknown unit."""
+    try:
+        return unit_size_in(text, LENGTH_UNITS)
+    except ValueError:
+        raise ValueError(f"{location}: unit {text!r} is not one of {UNIT_LIST}") from None
+
+
+def read_declaration(path: Path) -> str | None:
+    """First line of a file if it declares one of the layouts of this package; None for any other file."""
+    with path.open("rb") as file, contextlib.suppress(UnicodeDecodeError):
+        first = decode_text(file.readline(1000)).strip()
+        return first if _DECLARATION_PATTERN.match(first) else None
+    return None
+
+
+def read_declared(path: Path, first_line: str) -> tuple[Heights, str]:
+    """Read a file whose first line declares its layout; return the heights and the unit along x."""
+    match = _DECLARATION_PATTERN.match(first_line)
+    assert match
+    layout, declaration = match[1], match[2]
+    units = dict(re.findall(r"\b([xyz])\s*\[\s*([^\]\s]+)\s*\]", declaration))
+    needed = LAYOUT_COLUMNS[layout]
+    if missing := [name for name in needed if name not in units]:
+        expected = ", ".join(f"{name} [um]" for name in missing)
+        raise ValueError(f"{path}: the header has no unit for {', '.join(missing)}; write it as {expected}")
+    factors = {name: parse_unit(units[name], f"{path}: {name}") for name in needed}
+    if layout == "grid":
+        spacings = {name: _parse_spacing(path, declaration, name) for name in ("dx", "dy")}
+        dx, dy = (size for size, _ in spacings.values())
+        unit_x = spacings["dx"][1]
+        return ArealMap(z=read_table(path) * factors["z"], dx=dx, dy=dy, name=str(path)), unit_x
+    return heights_from_columns(path, read_table(path), [factors[name] for name in needed]), units["x"]
+
+
+def read_titles(path: Path) -> list[ColumnHead] | None:
+    """Name and unit of two or three columns (x, z or x, y, z), if the first line has names, the next numbers.
+
+    None for any other file.
+    """
+    try:
+        lines = read_numbered_lines(path, 2)
+    except ValueError:
+        if path.suffix.lower() == ".csv":
+            raise
+        return None  # no text: a file of an instrument
+    delimiter = find_separator(lines[0][1]) if len(lines) == 2 else None
+    if delimiter is None:
+        return None
+    words, values = (split_cells(line, delimiter) for _, line in lines)
+    has_names = len(words) in (2, 3) and all(parse_number(word) is None and word.strip() for word in words)
+    has_numbers = len(values) == len(words) and all(parse_number(cell) is not None for cell in values)
+    return [parse_heading(word) for word in words] if has_names and has_numbers else None
+
+
+def read_titled(
+    path: Path,
+    column_heads: Sequence[ColumnHead],
+    option_units: Mapping[str, str | None],
+    header_lines: int = 1,
+) -> tuple[Heights, str]:
+    """Read columns below title lines; return the heights and the unit along x.
+
+    column_heads : name and unit of each column, as the file states them
+    option_units : {"x": unit, "z": unit} of columns without a unit in the file; y has the unit of x
+    header_lines : number of title lines
+
+    Raises ValueError for a column whose unit is missing, or given both in the file and as option.
+    """
+    units = []
+    for axis, (name, file_unit) in zip(
+        LAYOUT_COLUMNS["profile" if len(column_heads) == 2 else "points"], column_heads, strict=True
+    ):
+        option = option_units["z" if axis == "z" else "x"]
+        if file_unit and option:
+            raise InputRefusal(
+                f"{path}: column {name!r} states its unit {file_unit}; leave {option} out", "unit"
+            )
+        if not file_unit and not option:
+            raise InputRefusal(
+                f"{path}: column {name!r} states no length unit; state it, one of {UNIT_LIST}", "unit"
+            )
+        units.append(str(file_unit or option))
+    factors = [
+        parse_unit(text, f"{path}: {name}") for text, (name, _) in zip(units, column_heads, strict=True)
+    ]
+    return heights_from_columns(path, read_table(path, header_lines), factors), units[0]
+
+
+def _parse_spacing(path: Path, text: str, name: str) -> tuple[float, str]:
+    """Read a grid spacing from the declaration of a layout: its value [m], and its unit in the file."""
+    match = re.search(rf"\b{name}\s*=\s*([-+\d.]+(?:[eE][-+]?\d+)?)\s*([a-zµμ]*)", text)
+    if not match:
+        raise ValueError(f"{path}: the header states no {name}; write it as {name} = 0.5 um")
+    try:
+        return float(match[1]) * parse_unit(match[2], f"{path}: {name}"), match[2]
+    except ValueError as error:
+        if "unit" in str(error):
+            raise
+        raise ValueError(
+            f"{path}: {name} = {match[1]!r} is not a number; write it as {name} = 0.5 um"
+        ) from None
+
+
+def read_table(path: Path, header_lines: int = 0) -> Array:
+    """Read the numbers of a file below its header lines; empty cells are NaN.
+
+    The delimiter is a semicolon, tab, comma or blank; # begins a comment.
+    """
+    top = read_numbered_lines(path, header_lines + 1)
+    if len(top) <= header_lines:
+        raise ValueError(f"{path}: is not a surface scan: it holds no numbers")
+    first, line = top[header_lines]
+    delimiter = find_separator(line.partition("#")[0])
+    with contextlib.suppress(ValueError):  # empty cells, rows of other lengths, words: row by row below
+        return np.loadtxt(read_text_lines(path)[first - 1 :], delimiter=delimiter, ndmin=2)
+    values: list[Array] = []
+    for i, line in ((i, line.partition("#")[0]) for i, line in read_numbered_lines(path)[header_lines:]):
+        row = split_cells(line, delimiter) if delimiter else line.split()
+        check_cell_count(path, i, row, values[0].size if values else len(row))
+        values.append(_parse_numbers(path, i, row))
+    return np.array(values)
+
+
+def _parse_numbers(path: Path, line: int, row: Sequence[str]) -> Array:
+    """Parse the cells of one row; empty cells are NaN. Raises ValueError for a cell that is not a number."""
+    values = [parse_number(cell) if cell.strip() else np.nan for cell in row]
+    if None in values:
+        cell = row[values.index(None)].strip()
+        raise ValueError(
+            f"{path}: is not a surface scan: line {line}: {cell!r} is not a number; expected numbers in "
+            "columns"
+        )
+    return np.array(values, dtype=np.float64)
+
+
+def heights_from_columns(path: Path, values: Array, unit_factors: list[float]) -> Heights:
+    """Profile from columns x, z, or areal map from columns x, y, z.
+
+    values       : (n, 2) or (n, 3)
+    unit_factors : units of the columns in metres
+
+    Raises ValueError for points that lie on no regular grid or occur twice.
+    """
+    if values.shape[1] != len(unit_factors):
+        raise ValueError(f"{path}: has {values.shape[1]} columns, its header declares {len(unit_factors)}")
+    if len(unit_factors) == 2:
+        return _profile_from_columns(path, values[:, 0], values[:, 1] * unit_factors[1], unit_factors[0])
+    (x, dx), (y, dy) = (
+        _grid_indices(path, name, values[:, i], unit_factors[i]) for i, name in enumerate("xy")
+    )
+    if (x.max() + 1) * (y.max() + 1) > 4 * x.size:
+        raise ValueError(f"{path}: {x.size} points do not lie on a grid of x and y; resample them to a grid")
+    heights = np.full((y.max() + 1, x.max() + 1), np.nan)
+    occupied = np.zeros(heights.shape, dtype=bool)
+    occupied[y, x] = True
+    if np.count_nonzero(occupied) < x.size:
+        raise ValueError(f"{path}: some points (x, y) are repeated; give every point once")
+    heights[y, x] = values[:, 2] * unit_factors[2]
+    return ArealMap(z=heights, dx=dx, dy=dy, name=str(path))
+
+
+def _grid_indices(path: Path, name: str, values: Array, factor: float) -> tuple[grid.GridIndices, float]:
+    """Grid index of every point along x or y, and the grid spacing [m]; the points may have any order."""
+    positions, inverse = np.unique(values, return_inverse=True)
+    index, step = grid.fit_grid(path, name, positions, factor)
+    return index[inverse], step * factor
+
+
+def _profile_from_columns(path: Path, x: Array, z: Array, factor: float) -> Profile:
+    """Profile from positions x, in a unit of `factor` metres, and heights z [m].
+
+    The points may have any order, and points of the grid may be missing.
+    """
+    if x[-1] < x[0]:
+        x, z = x[::-1], z[::-1]
+    order = np.argsort(x, kind="stable")
+    in_order = bool(np.all(order == np.arange(x.size)))
+    index, step = grid.fit_grid(path, "x", x[order], factor, allow_repeats=in_order)
+    heights = np.full(index[-1] + 1, np.nan)
+    heights[index] = z[order]
+    return Profile(z=heights, dx=step * factor, name=str(path))
+
+
+def csv_text(heights: Heights) -> str:
+    """Text of a CSV file with heights in metres, with seven digits; `read_declared` reads it."""
+    if isinstance(heights, Profile):
+        x = np.arange(heights.z.size) * heights.dx
+        declaration = "# profile: x [m], z [m]"
+        body = format_rows([x, heights.z], [10, 7])
+    else:
+        declaration = f"# grid: dx = {heights.dx!r} m, dy = {heights.dy!r} m, z [m]"
+        body = format_rows(heights.z.T, [7] * heights.z.shape[1])
+    return "\n".join([declaration, f"# {PROGRAM_MARK}", *body, ""])

@@ -1,0 +1,304 @@
+"""Results of the identification of a surface: fractal parameters, roughness, warnings, plot."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jointfmu.quantity import Array
+
+from ...common import plots
+from ..fractal import second_difference_ratio
+from .fit import SelfAffineLaw
+from .form import Repair, ScanRoughness
+from .heights import ArealMap
+from .spectrum import ScaleSeries, structure_power_law
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+TEXTURE_THRESHOLD = 0.3
+"""Mean-square share of the mean line in all lines of a map [1], above which the map is textured."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """Estimated value with the limits of its confidence interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class RoughnessEstimate(Estimate):
+    """Estimated roughness G [m] with its confidence interval, from logarithms.
+
+    As D approaches 1, the interval spans hundreds of decades. If it exceeds the range of positive
+    floating-point numbers, G is not determined: value, low and high are nan.
+
+    decades : length of the interval [decades], whether or not G is determined
+    """
+
+    decades: float
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether the whole interval is in the range of positive floating-point numbers."""
+        return bool(np.isfinite(self.value))
+
+    @classmethod
+    def from_logarithms(cls, value: float, low: float, high: float) -> "RoughnessEstimate":
+        """Estimate from the natural logarithms of the value and of the limits of its interval."""
+        decades = (high - low) / np.log(10.0)
+        smallest, largest = np.log([np.finfo(float).tiny, np.finfo(float).max])
+        if not smallest <= min(value, low) <= max(value, high) <= largest:
+            return cls(np.nan, np.nan, np.nan, float(decades))
+        return cls(float(np.exp(value)), float(np.exp(low)), float(np.exp(high)), float(decades))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProfileFractal:
+    """Fractal parameters of a profile, 1 < D < 2 (Zhao 2018, Yu 2022)."""
+
+    D: Estimate
+    G: RoughnessEstimate
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArealFractal:
+    """Fractal parameters of an isotropic surface, 2 < D_s < 3 (Hu 2023, Eq. 1)."""
+
+    D_s: Estimate
+    G_s: RoughnessEstimate
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FractalResult:
+    """Result of one method in one direction ("profile", "x", "y" or "areal").
+
+    series  : structure function or spectrum over scale
+    fit     : self-affine law fitted to the series
+    profile : fractal parameters of the profile
+    areal   : fractal parameters of the surface
+    """
+
+    method: str
+    direction: str
+    series: ScaleSeries
+    fit: SelfAffineLaw
+    profile: ProfileFractal
+    areal: ArealFractal
+
+
+@dataclass(frozen=True, slots=True)
+class Identification:
+    """Identification of one surface or of the equivalent surface of two.
+
+    file_names  : names of the files
+    results     : results of all methods and directions
+    repairs     : (file, repair) of all repairs
+    warnings    : messages for the user
+    is_textured : whether a surface is textured (not isotropic)
+    scans       : roughness of each file
+    side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
+    """
+
+    file_names: tuple[str, ...]
+    results: tuple[FractalResult, ...]
+    repairs: tuple[tuple[str, Repair], ...]
+    warnings: tuple[str, ...]
+    is_textured: bool
+    scans: tuple[ScanRoughness, ...]
+    side: str | None = None
+
+    @property
+    def roughness_by_side(self) -> dict[int, ScanRoughness]:
+        """{side 1 or 2: roughness} of the measured sides; a single scan without a given side is side 1."""
+        if len(self.scans) == 2 or self.side == "both":
+            return {1: self.scans[0], 2: self.scans[-1]}
+        return {int(self.side or 1): self.scans[0]}
+
+    @property
+    def h(self) -> float:
+        """Combined rms height [m] of both sides for waves up to longest_wave; unmeasured sides are smooth."""
+        return float(np.sqrt(sum(scan.h**2 for scan in self.roughness_by_side.values())))
+
+    @property
+    def slope(self) -> float:
+        """Combined rms slope [1] of both sides; an unmeasured side is smooth."""
+        return float(np.sqrt(sum(scan.slope**2 for scan in self.roughness_by_side.values())))
+
+    @property
+    def longest_wave(self) -> float:
+        """Longest wavelength [m] of h and slope."""
+        return self.scans[0].longest_wave
+
+    def select_best(self, direction: str | None = None, method: str | None = None) -> FractalResult:
+        """Best result in a direction (None: the whole surface): self-affine, smallest standard error of D.
+
+        A result with D at an end of its interval comes last, because that end cuts its error off.
+        """
+        candidates = [r for r in self.select_direction(direction) if method in (None, r.method)]
+        return min(
+            candidates, key=lambda r: (r.fit.is_at_bound, not r.fit.is_self_affine, r.fit.covariance[0, 0])
+        )
+
+    def select_direction(self, direction: str | None = None) -> list[FractalResult]:
+        """Results of all methods in a direction (None: the whole surface)."""
+        direction = direction or self.results[0].direction
+        return [r for r in self.results if r.direction == direction]
+
+    def undetermined_reason(self, direction: str | None = None) -> str | None:
+        """Reason why D and G in a direction are not determined; None if they are.
+
+        They are determined if the surface is self-affine by all methods with D inside of its interval, if the
+        confidence intervals of D overlap, and if G is determined.
+        """
+        results = self.select_direction(direction)
+        for result in results:
+            D = result.profile.D.value
+            if result.fit.is_at_bound:
+                return f"D = {D:.2f} ({result.method}) lies at the end of 1 to 2"
+            if not result.fit.is_self_affine:
+                return f"not self-affine ({result.method})"
+        if max(r.profile.D.low for r in results) > min(r.profile.D.high for r in results):
+            values = ", ".join(
+                f"{r.profile.D.value:.2f} [{r.profile.D.low:.2f}, {r.profile.D.high:.2f}] ({r.method})"
+                for r in results
+            )
+            return f"the methods disagree, D = {values}"
+        G = self.select_best(direction).profile.G
+        return None if G.is_determined else f"the interval of G spans {G.decades:.0f} decades"
+
+
+def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
+    """Mean-square share of the mean line in the lines along x and along y [1].
+
+    Near 0: isotropic surface. 1: all lines are equal.
+    """
+    shares = []
+    for z in (heights.z, heights.z.T):
+        lag = max(2, z.shape[1] // 32)
+        second = z[:, 2 * lag :] - 2.0 * z[:, lag:-lag] + z[:, : -2 * lag]
+        total = float(np.mean(second**2))
+        shares.append(float(np.mean(second.mean(axis=0) ** 2)) / total if total > 0.0 else 1.0)
+    return shares[0], shares[1]
+
+
+def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[str]:
+    """Warnings for the user about the results of one surface.
+
+    results : of all directions and methods; the first two are of the whole surface
+    """
+    lines = []
+    if is_textured:
+        lines.append(
+            "the surface is textured (its lines repeat): D_s and G_s of an isotropic surface do not describe "
+            "it, use D and G along x and y"
+        )
+    for result in results:
+        label = f"{result.method}, {result.direction}"
+        if not (result.fit.is_self_affine or result.fit.covers_interval):
+            lines.append(
+                f"{label}: not self-affine over {result.fit.min_scale:.3g} to "
+                f"{result.fit.max_scale:.3g} m: D drifts by "
+                f"{result.fit.drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
+            )
+        if result.fit.decades < 1.0:
+            lines.append(f"{label}: the range spans {result.fit.decades:.2f} decades, less than one")
+        if result.fit.covers_interval:
+            lines.append(
+                f"{label}: over all scales D runs through its interval from 1 to 2, and only a piece of "
+                f"{result.fit.decades:.2f} decades is straight; state a range to take it"
+            )
+        if result.fit.is_at_bound:
+            lines.append(f"{label}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
+    G = min(results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
+    if G.decades > 4.0:
+        lines.append(
+            f"G is {'hardly' if G.is_determined else 'not'} determined: its interval spans {G.decades:.1f} "
+            "decades; a larger patch or more decades are needed"
+        )
+    structures, spectra = results[0].profile.D, results[1].profile.D
+    if structures.low > spectra.high or spectra.low > structures.high:
+        lines.append(f"the methods disagree: D = {structures.value:.3f} and {spectra.value:.3f}")
+    return lines
+
+
+DIRECTION_COLOURS = {"profile": plots.BLUE, "areal": plots.BLUE, "x": plots.RED, "y": plots.GREEN}
+
+
+def draw_identification(identification: Identification, path: str | Path) -> None:
+    """Plot structure functions and spectra with the fitted laws, as .png or .svg."""
+    with plots.open_figure(path, (9.6, 5.0)) as figure:
+        axes = dict(zip(("structure", "psd"), figure.subplots(1, 2), strict=True))
+        for result in identification.results:
+            _draw_result(axes[result.method], result)
+        axes["structure"].set_title("structure function", loc="left")
+        axes["structure"].set_xlabel("lag τ [m]")
+        axes["structure"].set_ylabel("S(τ) [m²]")
+        axes["psd"].set_title("power spectral density, one-sided", loc="left")
+        axes["psd"].set_xlabel("frequency ω [1/m]")
+        axes["psd"].set_ylabel("P(ω) [m³]")
+        label = f"h = {1e6 * identification.h:.3g} µm: all waves to the right"
+        axes["psd"].axvline(1.0 / identification.longest_wave, color=plots.GREY, ls="--", lw=1.0, label=label)
+        for panel in axes.values():
+            panel.set_xscale("log")
+            panel.set_yscale("log")
+            _set_ticks(panel.xaxis)
+            _set_ticks(panel.yaxis)
+            panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14))
+
+
+def _draw_result(axes: "Axes", result: FractalResult) -> None:
+    """Plot one result: all data, data in the range of the fit, and the fitted law."""
+    x, y, law = _plot_data(result)
+    inside = (result.series.scale >= result.fit.min_scale * 0.999) & (
+        result.series.scale <= result.fit.max_scale * 1.001
+    )
+    colour = DIRECTION_COLOURS[result.direction]
+    D, low, high = (
+        (result.areal.D_s.value, result.areal.D_s.low, result.areal.D_s.high)
+        if result.direction == "areal"
+        else (result.profile.D.value, result.profile.D.low, result.profile.D.high)
+    )
+    name = "D_s" if result.direction == "areal" else "D"
+    label = (
+        f"{result.direction}: {name} = {D:.3f} ({low:.3f} to {high:.3f}), "
+        f"{1e6 * result.fit.min_scale:.3g} to {1e6 * result.fit.max_scale:.3g} µm"
+    )
+    axes.plot(x, y, "o", ms=3.5, mfc="none", color=colour, alpha=0.5)
+    axes.plot(x[inside], y[inside], "o", ms=3.5, color=colour)
+    axes.plot(x[inside], law[inside], "-", lw=1.2, color=colour, label=label)
+
+
+def _set_ticks(axis: Any) -> None:
+    """Set tick labels of a logarithmic axis: at 1, 2, 5 in each decade below two decades, else at decades."""
+    from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    if high < 100.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(10, 10)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _plot_data(result: FractalResult) -> tuple[Array, Array, Array]:
+    """Abscissa, data and fitted law of the plot, corrected for the smoothing over scales.
+
+    The structure function is the one without tilt, V/(4 - 4^H).
+    """
+    series, fit = result.series, result.fit
+    expected = series.expected_value(fit.H)
+    is_structure = series.method == "structure"
+    unsmoothed = structure_power_law(series.scale, fit.H) if is_structure else series.scale ** (2.0 * fit.H)
+    first = expected[np.argmin(np.abs(series.scale - fit.min_scale))]
+    law = np.exp(fit.log_power) * fit.reference_wavelength ** (-2.0 * fit.H) * (expected + fit.offset * first)
+    data, law = series.value * unsmoothed / expected, law * unsmoothed / expected
+    if is_structure:
+        return series.scale, data / second_difference_ratio(fit.H), law / second_difference_ratio(fit.H)
+    return 1.0 / series.scale, data * series.scale, law * series.scale

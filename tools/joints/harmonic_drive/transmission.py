@@ -1,0 +1,65 @@
+"""Harmonic drive between motor and link of a robot."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from jointfmu.joints.harmonic_drive import KIND
+from jointfmu.joints.harmonic_drive.drive import HARMONICS, Drive
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
+
+from ...exchange.robots.transmission import Transmission
+
+
+def make_transmission(file: ParameterFile) -> Transmission:
+    """Transmission of a robot with the spring and friction of a drive.
+
+    Raises ValueError if the joint of the file is not a drive.
+    """
+    if file.joint != KIND.name:
+        raise ValueError(f"{file.name} is a {file.joint}, no drive of a motor; allowed is a {KIND.name}")
+    drive: Drive = file.values
+    spring = HarmonicDriveSpring.tabulate(drive)
+
+    def wind_up(torques: ArrayLike) -> Array:
+        memory, found = spring.initial_history(), []
+        for torque in np.asarray(torques, dtype=np.float64):
+            out, memory = spring.advance_torque(torque, memory)
+            found.append(float(out["phi_rel"]))
+        return np.array(found)
+
+    return Transmission(
+        name=file.name,
+        ratio=drive.ratio,
+        damping=drive.d,
+        rated_torque=drive.rated_torque,
+        max_torque=float(spring.curve.end[1]),
+        dry_friction=drive.friction_coulomb,
+        viscous_friction=drive.friction_viscous,
+        static_friction=drive.friction_coulomb + drive.friction_stribeck,
+        stribeck_speed=drive.stribeck_speed,
+        presliding_angle=drive.presliding,
+        compute_wind_up=wind_up,
+        omitted_effects=tuple(_list_missing_effects(drive)),
+    )
+
+
+def _list_missing_effects(drive: Drive) -> Iterator[str]:
+    """Effects of the drive that the model `Transmission` lacks, as text."""
+    if drive.load_loss or drive.effective_load_loss_back:
+        loss, back = (
+            share * drive.rated_torque / abs(drive.ratio)
+            for share in (drive.load_loss, drive.effective_load_loss_back)
+        )
+        yield (
+            "friction that grows with the load: at rated torque "
+            f"{loss:.4g} N.m at the motor where it drives, {back:.4g} N.m where the load does"
+        )
+    if drive.friction_coulomb or drive.friction_viscous:
+        yield "the temperature of the lubricant: friction is that at 20 degrees C"
+    error = sum(abs(getattr(drive, f"error_{n}")) for n in HARMONICS)
+    if error:
+        yield f"the kinematic error, up to {error:.3g} rad"

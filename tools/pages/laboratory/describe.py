@@ -1,0 +1,346 @@
+"""Description of the laboratory's modules as JSON: variables, parameter sets, curves, published points."""
+
+import math
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import MISSING, dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from jointfmu_fmu_src.native.compiled.compiled_models import cached_result
+from jointfmu_fmu_src.native.compiled.compiler import compile_webassembly
+from jointfmu_fmu_src.native.data import split_parameters
+from jointfmu_fmu_src.native.page import find_ramp_panels
+from jointfmu_fmu_src.xml_parts import ListedVariable, list_variables
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.kind import JointKind
+from jointfmu.joints.model import Model
+from jointfmu.parameters import (
+    ParameterFile,
+    declared_entries,
+    format_parameter_file,
+    is_height,
+    load_parameter_file,
+)
+from jointfmu.quantity import units
+from jointfmu.quantity.interval import Interval
+
+from ...common.joint_parts import load_tool_module
+from ...common.shown import choose_display_unit
+from ...run.ramps.loops import variable_suffix
+from ...studies.published.computed import load_published_numbers
+from ...studies.published.reference import ROLES, read_points
+from .part import LaboratoryModel
+
+_LABORATORY_SOURCE_NAME = "laboratory.c"
+_MAP_SOURCE_NAME = "map.c"
+_CODE_GENERATION_LOCK = Lock()
+
+
+@dataclass(frozen=True, slots=True)
+class PageModule:
+    """A model with the parameter files that share its C code.
+
+    files : parameter files; the first one gives the start values
+    """
+
+    model: Model
+    files: Sequence[ParameterFile]
+
+    @property
+    def map_source(self) -> Path | None:
+        """Path of the C source for the map of the contact; None if the joint has no module `laboratory`.
+
+        The file need not exist.
+        """
+        module = load_tool_module(KINDS[self.model.joint], "laboratory")
+        return Path(str(module.__file__)).with_name(_MAP_SOURCE_NAME) if module else None
+
+    def collect_sources(self) -> dict[str, str]:
+        """Collect all C sources, of the FMU and of the functions that the page calls: {file name: text}."""
+        # imported here because it needs casadi, which pages of the report do not need
+        from jointfmu_fmu_src.native.code.generate import generate_sources, read_token
+
+        files = generate_sources(self.model.name, self.files[0])
+        return files | self._page_sources() | {"token.h": f'#define TOKEN "{read_token(files)}"\n'}
+
+    def compile_module(self) -> bytes:
+        """Compile the module to WebAssembly (a WASI reactor without imports), or read it from the cache.
+
+        It exports the functions of laboratory.c. Raises ImportError if ziglang is missing, RuntimeError with
+        the first error of the compiler.
+        """
+        return cached_result(
+            f"{format_parameter_file(self.files[0])} {self._page_sources()}",
+            self.model,
+            self._compile_uncached,
+        )
+
+    def _page_sources(self) -> dict[str, str]:
+        """C sources of the functions that the page calls: {file name: text}."""
+        paths = [
+            Path(__file__).with_name(_LABORATORY_SOURCE_NAME),
+            *([self.map_source] if self.map_source and self.map_source.is_file() else []),
+        ]
+        return {path.name: path.read_text(encoding="utf-8") for path in paths}
+
+    def _compile_uncached(self) -> bytes:
+        with _CODE_GENERATION_LOCK:  # casadi is not thread-safe
+            files = self.collect_sources()
+        units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
+        return compile_webassembly(self.model.name, files, units)
+
+
+def list_modules() -> list[PageModule]:
+    """List the modules of all joints and shipped parameter files, in display order."""
+    return [
+        module for kind in KINDS.values() for model in kind.models for module in _group_by_code(kind, model)
+    ]
+
+
+def compile_modules(page_modules: Sequence[PageModule]) -> list[bytes]:
+    """Compile modules in parallel threads; returns the binaries."""
+    with ThreadPoolExecutor() as pool:
+        return list(pool.map(PageModule.compile_module, page_modules))
+
+
+def _group_by_code(kind: JointKind, model: Model) -> Iterator[PageModule]:
+    """Group the shipped files of a joint into modules.
+
+    Files share the C code if they have the same law and the same values of all parameters that the FMU does
+    not expose.
+    """
+    groups: dict[tuple[object, ...], list[ParameterFile]] = {}
+    for file in _load_shipped_files(kind):
+        exposed = model.with_parameters(kind.name, file.values).parameter_fields()
+        fixed = tuple((name, value) for name, value in file.values_by_name.items() if name not in exposed)
+        groups.setdefault((file.law, fixed), []).append(file)
+    for files in groups.values():
+        yield PageModule(model.with_parameters(kind.name, files[0].values), files)
+
+
+def _load_shipped_files(kind: JointKind) -> list[ParameterFile]:
+    """Load the shipped parameter files of a joint, the default file first."""
+    default = kind.default_file()
+    return [
+        load_parameter_file(path, kind.name)
+        for path in sorted(default.parent.glob("*.toml"), key=lambda p: p != default)
+    ]
+
+
+_SLIDER_END_RATIO = 2.0
+"""Largest value of an input's slider over the nominal value of the input [1]."""
+_SLIDER_FACTOR = 10.0
+"""Factor between start value and both ends of a parameter's slider, if no interval is known [1]."""
+
+
+def describe_module(module: PageModule) -> dict[str, object]:
+    """JSON object of a module: everything except the binary."""
+    model, first = module.model, module.files[0]
+    kind, bench = KINDS[model.joint], _laboratory_model(model)
+    bound = set(_bound_parameters(first))
+    curves = (*find_ramp_panels(model), *bench.panels)  # the panels of the documentation come first
+    rows = [
+        _variable_document(v, model, bench) | {"bound": v.name in bound} for v in list_variables(model, first)
+    ]
+    return {
+        "name": model.name,
+        "joint": kind.name,
+        "title": kind.title,
+        "law": first.law,
+        "default": first.law == next(iter(kind.laws)),
+        "entries": _entry_documents(model, first),
+        "fixed": list(split_parameters(model, first).data_values),
+        "height": next(filter(is_height, first.values_by_name), None),
+        "doc": model.doc,
+        "variables": rows,
+        "surfaces": [surface.parameter_prefix for surface in kind.surfaces],
+        "sets": [_parameter_set_document(file, model) for file in module.files],
+        "ramp": {"input": model.ramp.input_name, "end": model.ramp.end_value},
+        "panels": [{"over": p.abscissa, "quantities": list(p.quantities)} for p in curves],
+        "pairs": conjugate_pairs(model),
+        "path": list(bench.path_inputs or (model.ramp.input_name,)),
+        "points": list(_published_points(model, bench)),
+        "measured": [m._asdict() for m in bench.measured_curves],
+        "map": _map_document(bench, first),
+        "turn": bench.transmission and bench.transmission._asdict(),
+        "example": bench.example and bench.example._asdict(),
+    }
+
+
+def conjugate_pairs(model: Model) -> dict[str, str]:
+    """Energy-conjugate pairs of inputs and outputs: {input: output}.
+
+    The output has the same suffix as the input. For the input of the ramp without a suffix it is the first
+    output with a matching unit.
+    """
+    conjugates = {}
+    for i in model.inputs:
+        candidates = [o.name for o in model.outputs if {i.unit, o.unit} in ({"N", "m"}, {"N.m", "rad"})]
+        same = [name for name in candidates if variable_suffix(name) == variable_suffix(i.name)]
+        if same or (candidates and not variable_suffix(i.name) and i.name == model.ramp.input_name):
+            conjugates[i.name] = (same or candidates)[0]
+    return conjugates
+
+
+def _laboratory_model(model: Model) -> LaboratoryModel:
+    """Additions of the joint's module `laboratory` to a model; an empty object if there are none."""
+    module = load_tool_module(KINDS[model.joint], "laboratory")
+    benches: dict[str, LaboratoryModel] = module.LABORATORY if module else {}
+    return benches.get(model.name, LaboratoryModel())
+
+
+def _variable_document(
+    variable: ListedVariable, model: Model, laboratory_model: LaboratoryModel
+) -> dict[str, object]:
+    unit = variable.attributes.get("unit", "1")
+    row: dict[str, object] = {
+        "name": variable.name,
+        "causality": variable.causality,
+        "doc": variable.doc,
+        "start": variable.start,
+        "boolean": variable.is_boolean,
+    }
+    typical = float(variable.attributes.get("nominal", 0.0))
+    if variable.causality != "output":
+        row |= {"low": _interval_end(variable, "min"), "high": _interval_end(variable, "max")}
+        field = model.parameter_fields().get(variable.name)
+        row["whole"] = bool(field and field.metadata.get("whole"))
+        row["span"] = span = laboratory_model.slider_spans.get(variable.name) or _slider_span(
+            variable, model, row
+        )
+        row["log"] = variable.causality == "parameter" and span[0] > 0.0 and span[1] > 5.0 * span[0]
+        typical = span[1] if variable.causality == "input" or not variable.start else float(variable.start)
+    shown = choose_display_unit(unit, typical)
+    return row | {"unit": unit, "shown": shown, "factor": units.conversion_factor(unit, shown)}
+
+
+def _interval_end(variable: ListedVariable, end_name: str) -> float | None:
+    return float(variable.attributes[end_name]) if end_name in variable.attributes else None
+
+
+def _slider_span(
+    variable: ListedVariable, model: Model, variable_document: dict[str, Any]
+) -> tuple[float, float]:
+    """Lower and upper end of a slider [SI]."""
+    if variable.is_boolean:
+        return 0.0, 1.0
+    start = float(variable.start or 0.0)
+    low = -math.inf if variable_document["low"] is None else variable_document["low"]
+    high = math.inf if variable_document["high"] is None else variable_document["high"]
+    if variable.causality == "input":
+        driven = {i.name: i.unit for i in model.inputs}[model.ramp.input_name]
+        unit = variable.attributes["unit"]
+        end = (
+            model.ramp.end_value
+            if unit == driven
+            else _SLIDER_END_RATIO * float(variable.attributes["nominal"])
+        )
+        return max(low, -end), end
+    if start == 0.0:
+        return 0.0, high if math.isfinite(high) else 1.0
+    if abs(low) > 1e-300 and math.isfinite(high - low) and high - low <= 1.0 + abs(low):
+        margin = 0.02 * (high - low)
+        return max(low + margin, 0.0), high - margin
+    if variable_document["whole"]:
+        return low, 4.0 * start
+    return max(start / _SLIDER_FACTOR, low), min(start * _SLIDER_FACTOR, high)
+
+
+def _bound_parameters(file: ParameterFile) -> Iterator[str]:
+    """Yield the parameters that must not change because values compiled into the code depend on them."""
+    kind = KINDS[file.joint]
+    for name, value in file.values_by_name.items():
+        if isinstance(value, float):
+            try:
+                changed = file.with_values({name: value + 1.0}, "user", "").values
+            except ValueError:
+                continue
+            if any(line.startswith(name) for line in kind.find_contradictions(changed)):
+                yield name
+
+
+def _entry_documents(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
+    """Entries that a parameter file may have: {structured name: {unit, value, default, interval}}.
+
+    value    : value in the module's first file; roughnesses and start values of inputs have none
+    default  : value if a file does not have the entry
+    interval : lower and upper end, and whether they are open, of numbers that the C code does not check
+    """
+    exposed, flat, variables = model.parameter_fields(), file.values_by_name, KINDS[model.joint].variables
+    rows: dict[str, dict[str, object]] = {}
+    for name, item in declared_entries(model.joint, type(file.values)).items():
+        section, _, leaf = name.partition(".")
+        if section not in ("inputs", "roughness", "comparison") and name not in flat:
+            continue  # the entry belongs to another alternative of a group
+        meta = item.metadata
+        rows[name] = row = {"unit": meta.get("unit")}
+        if name in flat:
+            row["value"] = flat[name]
+            if item.default is not MISSING:
+                row["default"] = item.default
+        elif section == "inputs":
+            row["default"] = variables[leaf].start
+        if "interval" in meta and name not in exposed and "series" not in meta:
+            row["interval"] = _interval_ends(meta["interval"])
+    return rows
+
+
+def _interval_ends(interval: Interval) -> list[float | bool | None]:
+    """Lower and upper end of an interval, None if infinite, and whether the ends are open."""
+    ends = [end if math.isfinite(end) else None for end in (interval.low, interval.high)]
+    return [*ends, interval.low_open, interval.high_open]
+
+
+def _parameter_set_document(file: ParameterFile, model: Model) -> dict[str, object]:
+    """JSON object of a parameter file: values of exposed parameters, start values of inputs, TOML text."""
+    names = model.parameter_fields()
+    values = {name: value for name, value in file.values_by_name.items() if name in names}
+    inputs = {v.name: file.start_value(v.name) for v in model.inputs}
+    return {
+        "name": file.name,
+        "values": values,
+        "fixed": {},
+        "inputs": inputs,
+        "toml": format_parameter_file(file),
+    }
+
+
+def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterator[dict[str, object]]:
+    outputs = {v.name: v for v in model.outputs}
+    known = {v.name for v in model.inputs} | set(model.parameter_fields())
+    for paper in load_published_numbers(KINDS[model.joint]).papers:
+        for point in read_points(paper):
+            shown = laboratory_model.published_points.get(point.quantity)
+            if shown is None or not set(point.where) <= set(shown.arguments):
+                continue
+            at = {shown.arguments[name]: value for name, value in point.where.items()}
+            if not set(at) <= known:  # the law does not have this parameter
+                continue
+            factor = units.conversion_factor(point.unit, outputs[shown.output].unit)
+            yield {
+                "id": f"{paper}: {point.id}",
+                "place": point.place,
+                "role": point.role,
+                "doc": ROLES[point.role],
+                "output": shown.output,
+                "value": factor * float(point.value),
+                "at": at,
+            }
+
+
+def _map_document(laboratory_model: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
+    picture = laboratory_model.contact_map
+    if picture is None:
+        return None
+    marks, what = picture.compute_marks(file.values)
+    row = {
+        "name": picture.name,
+        "doc": picture.doc,
+        "shown": picture.display_unit,
+        "marks": marks,
+        "what": what,
+    }
+    return row | {"factor": units.conversion_factor(picture.unit, picture.display_unit)}

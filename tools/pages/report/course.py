@@ -1,0 +1,125 @@
+"""Load histories of a joint for its report: load ramp and load cycles."""
+
+import numpy as np
+
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
+
+from ...run.engine import open_joint
+from ...run.ramps.loops import CyclicPath, HysteresisLoops, find_conjugate_output, loops_from_results
+from ...run.ramps.ramp import RampResult
+
+_RAMP_POINTS = 101
+"""Number of points of the load ramp."""
+_LOAD_CYCLE = CyclicPath(points=80)
+"""Load cycle: points per cycle, shape, number of cycles."""
+AMPLITUDE_RATIOS = (0.25, 0.5, 1.0)
+"""Amplitudes of the load cycles over the largest amplitude [1]."""
+_MAX_DOUBLINGS, _BISECTIONS = 10, 12
+"""Doublings of the load in the search for the end of the law, and bisections to locate it."""
+_GROSS_SLIP_RATIO = 0.95
+"""Force over the force at gross slip [1] above which the joint counts as slipping."""
+
+
+class LoadHistory:
+    """Load ramp and load cycles of a joint. All other inputs have the start values of the file.
+
+    file, spring : parameter file, tabulated curves of the joint
+    model        : model of the FMU, with ramp and load cycle for this file
+    start_values : {input: start value}
+    law_limit    : (value of the ramped input, warning) at the end of the law's range; None if there is no end
+                   near the ramp
+    """
+
+    def __init__(self, model: Model, file: ParameterFile) -> None:
+        self.file, self.spring = file, model.tabulate(file.values)
+        self.start_values = {v.name: file.start_value(v.name) for v in model.inputs}
+        self.model = model.with_parameters(file.joint, file.values).with_load_range(
+            self.spring, self.start_values
+        )
+        self._engine = open_joint(self.model, file)
+        self.law_limit = self._find_law_limit()
+
+    def compute_ramp(self) -> dict[str, Array]:
+        """Compute inputs and outputs (n) along the load ramp; points are dense where curves bend."""
+        ramp = self.model.ramp
+        points = {ramp.input_name: ramp.sample_inputs(_RAMP_POINTS)}
+        return self._engine.follow(points, each_from_rest=True).columns
+
+    @property
+    def loop_inputs(self) -> dict[str, float]:
+        """Inputs during the load cycles: start values, or the settings of the model if these are zero."""
+        assert self.model.load_cycle
+        settings = self.model.load_cycle.settings
+        return {name: value or float(settings.get(name, 0.0)) for name, value in self.start_values.items()}
+
+    def compute_loops(self) -> HysteresisLoops:
+        """Compute hysteresis loops of increasing amplitude, each from rest, of a joint with friction."""
+        loop, driven = self.model.load_cycle, {v.name: v.unit for v in self.model.inputs}
+        assert loop
+        outputs = {v.name: v.unit for v in self.model.outputs}
+        output = find_conjugate_output(driven, outputs, loop.input_name, None, self.model.name)
+        swing = CyclicPath(centre=self.loop_inputs[loop.input_name], points=_LOAD_CYCLE.points)
+        largest = self._largest_amplitude(output)
+        results = [
+            self._follow_path(loop.input_name, swing.input_values(a * largest), driven | outputs)
+            for a in AMPLITUDE_RATIOS
+        ]
+        return loops_from_results(results, loop.input_name, output, swing)
+
+    def _largest_amplitude(self, output: str) -> float:
+        """Largest amplitude of the load cycles.
+
+        It is the amplitude of the model, or, if that is less, twice the displacement at gross slip.
+        """
+        loop = self.model.load_cycle
+        assert loop
+        largest = loop.amplitude
+
+        def force_range(amplitude: float) -> float:
+            points = self.loop_inputs[loop.input_name] + np.array([0.0, amplitude])
+            return float(np.ptp(self._follow_path(loop.input_name, points, {}).columns[output]))
+
+        end = force_range(largest)
+        if _GROSS_SLIP_RATIO * force_range(2.0 * largest) > end:
+            return largest
+        low, high = 0.0, largest
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if force_range(middle) > _GROSS_SLIP_RATIO * end else (middle, high)
+        return min(largest, float(f"{2.0 * high:.2g}"))
+
+    def _follow_path(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
+        """Compute the outputs along a path of one input, from rest."""
+        columns = self._engine.follow({**self.loop_inputs, name: points}).columns
+        read = (name, *(v.name for v in self.model.outputs))
+        return RampResult({key: columns[key] for key in read}, units, ())
+
+    def _find_law_limit(self) -> tuple[float, str] | None:
+        """Find the end of the law: smallest ramped input with a new warning, and the warning.
+
+        New is a warning that is absent at zero. None if none appears up to 2^10 times the end of the ramp.
+        """
+        model = self.model
+
+        def warnings_at(x: float) -> dict[int, str]:
+            columns = self._engine.follow({model.ramp.input_name: x}, each_from_rest=True).columns
+            return model.find_warnings(
+                self.spring, {name: float(column[0]) for name, column in columns.items()}
+            )
+
+        before = warnings_at(0.0)
+
+        def new_warnings(x: float) -> list[str]:
+            return [text for number, text in warnings_at(x).items() if number not in before]
+
+        low, high = 0.0, 2.0**-_MAX_DOUBLINGS * model.ramp.end_value
+        while not new_warnings(high):
+            low, high = high, 2.0 * high
+            if high > 2.0**_MAX_DOUBLINGS * model.ramp.end_value:
+                return None
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if new_warnings(middle) else (middle, high)
+        return high, new_warnings(high)[0]

@@ -1,0 +1,309 @@
+"""The report page of one joint: curves, loops, friction, sources of the numbers, validity."""
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from jointfmu_fmu_src.folders import find_asset
+from jointfmu_fmu_src.joint_parts.chart import encode_panels
+from jointfmu_fmu_src.native.page import draw_further_charts, find_ramp_panels
+from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
+
+from jointfmu.files.writing import write_text
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ORIGINS, ParameterFile
+from jointfmu.progress import set_step
+from jointfmu.quantity.units import conversion_factor
+from jointfmu.version import __version__
+
+from ...common.joint_parts import load_tool_module
+from ...common.pressure import judge_file
+from ...common.shown import FileEntry, choose_display_unit, format_quantity, format_unit, list_entries
+from ...run.ramps.loops import HysteresisLoops
+from .course import LoadHistory
+from .figure import ComparisonRow, Figure, Panel, Series, page_script, style_sheet
+
+_STIFFNESS_UNITS = ("N/m", "N.m/rad")
+_CONSTANT_STIFFNESS_RATIO = 0.02
+"""Relative change [1] below which a stiffness is called constant."""
+
+
+def summarise_joint(
+    load_history: LoadHistory, loops: HysteresisLoops | None, entries: Sequence[FileEntry]
+) -> str:
+    """Summarise a joint in a few sentences: stiffness, hysteresis, estimated parameters.
+
+    loops   : hysteresis loops; None for a joint without friction history
+    entries : entries of the parameter file
+    """
+    lines = [f"A {KINDS[load_history.file.joint].title}.", _describe_stiffness(load_history)]
+    if loops:
+        lines.append(_describe_loss(loops))
+    count = Counter(entry.kind for entry in entries)
+    uncertain = [f"{count[kind]} {text}" for kind, text in _UNCERTAIN_ORIGINS.items() if count[kind]]
+    if uncertain:
+        total = sum(count.values())
+        lines.append(
+            f"Of its {total} parameters {' and '.join(uncertain)}; all are listed below with their sources."
+        )
+    return " ".join(line for line in lines if line)
+
+
+_UNCERTAIN_ORIGINS = {"estimate": "are estimates", "calibration": "were fitted"}
+"""{origin of an uncertain parameter: text}."""
+
+
+def _format_value(value: float, unit: str) -> str:
+    """Format a value with three digits in a display unit."""
+    text, display_unit = format_quantity(value, unit, 3)
+    return f"{float(text):.6g} {display_unit}"
+
+
+def _describe_stiffness(load_history: LoadHistory) -> str:
+    """Describe the stiffness over the load ramp in a sentence; empty if no panel has a stiffness."""
+    units = {v.name: v.unit for v in (*load_history.model.inputs, *load_history.model.outputs)}
+    curves = [
+        (over, name)
+        for over, names in find_ramp_panels(load_history.model)
+        for name in names
+        if units[name] in _STIFFNESS_UNITS
+    ]
+    if not curves:
+        return ""
+    over, name = curves[0]
+    columns = load_history.compute_ramp()
+    first, last = (float(columns[name][i]) for i in (0, -1))
+    end = f"{over} = {_format_value(float(columns[over][-1]), units[over])}"
+    if abs(last - first) <= _CONSTANT_STIFFNESS_RATIO * abs(last):
+        return f"The stiffness {name} is {_format_value(last, units[name])}, nearly constant up to {end}."
+    start = _format_value(first, units[name]) if first > 0.0 else "zero"
+    verb = "rises" if last > first else "falls"
+    times = f", by a factor of {max(first, last) / min(first, last):.3g}" if min(first, last) > 0.0 else ""
+    begin = f"{over} = {_format_value(float(columns[over][0]), units[over])}"
+    return (
+        f"The stiffness {name} {verb} from {start} at {begin} to {_format_value(last, units[name])} "
+        f"at {end}{times}. "
+        "A constant spring would be right at one load only."
+    )
+
+
+def _describe_loss(loops: HysteresisLoops) -> str:
+    """Describe the energy loss of the largest loop in a sentence."""
+    row = max(loops.compute_rows(), key=lambda row: row["motion"])
+    if not row["loss"]:
+        return "The joint has no hysteresis: loading and unloading follow the same curve."
+    amplitude = f"{loops.motion_name} = {_format_value(row['motion'], loops.units[0])}"
+    return (
+        f"In a cycle between plus and minus {amplitude} the joint dissipates "
+        f"{_format_value(row['loss'], 'J')}, "
+        f"a loss factor of {row['loss_factor']:.2g}."
+    )
+
+
+ORIGIN_MEANINGS = {
+    "published": "printed in the paper",
+    "derived": "computed from printed values or from a drawing",
+    "catalogue": "a maker's catalogue",
+    "estimate": "an engineering estimate",
+    "calibration": "fitted to published or measured points",
+    "user": "set by you",
+}
+"""{origin of a number: meaning}, for all parameters.ORIGINS."""
+VALIDITY_HEADINGS = {
+    "docs/validity.md": ("In short", "What this does not show"),
+    "docs/validity_stiffness.md": (
+        "The laws on their own surfaces",
+        "Measured joints",
+        "Tangential stiffness",
+    ),
+    "docs/validity_friction.md": ("Damping",),
+}
+"""{page of the documentation: headings} that the report refers to."""
+
+
+class _ReportRow(NamedTuple):
+    """A number of the parameter file as text.
+
+    display_value, unit : value in a display unit, the unit
+    si_value            : value in SI units; empty if the display unit is the SI unit
+    doc, kind, source   : meaning, origin, source
+    """
+
+    name: str
+    display_value: str
+    unit: str
+    si_value: str
+    doc: str
+    kind: str
+    source: str
+
+
+def write_joint_report(path: Path, file: ParameterFile, fmu: str | None = None) -> None:
+    """Write the self-contained page of a parameter file for one of the joint's FMUs; default: the first.
+
+    Raises ValueError if the joint has no such FMU, or the file cannot be written.
+    """
+    write_text(path, _render_page(KINDS[file.joint].find_model(fmu), file))
+
+
+def _render_page(model: Model, file: ParameterFile) -> str:
+    set_step("curves over the load")
+    course = LoadHistory(model, file)
+    folder, rows = Path(__file__).parent, _report_rows(file)
+    module = load_tool_module(KINDS[model.joint], "report")
+    set_step("loops")
+    loops = course.compute_loops() if model.load_cycle else None
+    figures = [ramp_figure(course), *([loop_figure(course, loops)] if loops else [])]
+    if module and model.name in module.FIGURES:
+        figures += module.FIGURES[model.name](course)
+    compared = (
+        module.CATALOGUE_COMPARISONS[model.name](model, file)
+        if module and model.name in module.CATALOGUE_COMPARISONS
+        else []
+    )
+    return load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER).render(
+        model=course.model,
+        spring=course.spring,
+        fmu=True,
+        **law_variables(file),
+        file=file,
+        version=__version__,
+        figures=[(figure, encode_panels(figure.panels)) for figure in figures],
+        opening=summarise_joint(course, loops, list_entries(file)),
+        beside=_comparison_rows(compared),
+        drawings=draw_further_charts(course.model, course.spring),
+        rows=rows,
+        origins=[(kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
+        judgement=judge_file(file),
+        range=_describe_range(course),
+        topics=VALIDITY_HEADINGS,
+        style=style_sheet(),
+        script=page_script() + "drawAll();",
+    )
+
+
+def _report_rows(file: ParameterFile) -> list[_ReportRow]:
+    """Rows of all entries of the parameter file."""
+    return [
+        _ReportRow(e.name, *format_quantity(e.value, e.unit), _format_si_value(e), e.doc, e.kind, e.source)
+        for e in list_entries(file)
+    ]
+
+
+def _format_si_value(entry: FileEntry) -> str:
+    """Format the value in SI units; empty if the display unit is the SI unit, or if there is no unit."""
+    if entry.unit is None or isinstance(entry.value, bool | str | tuple):
+        return ""
+    return (
+        ""
+        if choose_display_unit(entry.unit, entry.value) == entry.unit
+        else f"{entry.value:.12g} {format_unit(entry.unit)}"
+    )
+
+
+def _to_display_unit(values: Any, unit: str) -> tuple[Any, str]:
+    """Convert values to a display unit that suits the largest of them; returns the values and the unit."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    display_unit = choose_display_unit(unit, largest)
+    return conversion_factor(unit, display_unit) * np.asarray(values), format_unit(display_unit)
+
+
+def ramp_figure(load_history: LoadHistory) -> Figure:
+    """Figure of the curves over the load ramp, with the panels that the joint defines for its page."""
+    columns = load_history.compute_ramp()
+    variables = {v.name: v for v in (*load_history.model.inputs, *load_history.model.outputs)}
+    charts, docs = [], dict[str, str]()
+    for over, names in find_ramp_panels(load_history.model):
+        x, x_unit = _to_display_unit(columns[over], variables[over].unit)
+        unit = choose_display_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
+        scale = conversion_factor(variables[names[0]].unit, unit)
+        series = [Series(name, x, scale * columns[name]) for name in names]
+        title = f"{', '.join(names)} over {over}"
+        charts.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
+        docs |= {name: variables[name].doc for name in (over, *names)}
+    ramped = variables[load_history.model.ramp.input_name]
+    end, unit = _to_display_unit(load_history.model.ramp.end_value, ramped.unit)
+    meaning = "; ".join(f"{name}: {doc}" for name, doc in docs.items() if name != ramped.name)
+    text = (
+        f"{ramped.name} ({ramped.doc}) from 0 to {float(end):.4g} {unit}; all other inputs have their start "
+        f"values. Curves: {meaning}."
+    )
+    return Figure("Curves over the load", text, charts)
+
+
+def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
+    """Figure of the hysteresis loops, with a table of their losses."""
+    units = loops.units
+    x_unit, y_unit = (
+        choose_display_unit(unit, max(float(np.max(np.abs(values))) for values in series))
+        for unit, series in zip(
+            units, ([p.motion for p in loops.loops], [p.force for p in loops.loops]), strict=True
+        )
+    )
+    x, y = conversion_factor(units[0], x_unit), conversion_factor(units[1], y_unit)
+    series = [
+        Series(
+            f"amplitude {x * loop.amplitudes[0]:.4g} {format_unit(x_unit)}", x * loop.motion, y * loop.force
+        )
+        for loop in reversed(loops.loops)
+    ]
+    inputs = {v.name: v.unit for v in load_history.model.inputs}
+    settings = [
+        f"{name} = {value:g} {format_unit(inputs[name])}"
+        for name, value in load_history.loop_inputs.items()
+        if value
+    ]
+    text = "Quasi-static load cycles, each amplitude from rest with two cycles" + (
+        f", at {', '.join(settings)}. " if settings else ". "
+    )
+    if not any(loop.energy_loss for loop in loops.loops):
+        text += "With these parameters there is no hysteresis: loading and unloading follow one curve."
+    force = f"{'-' if loops.force_sign < 0.0 else ''}{loops.force_name}"
+    panel = Panel(
+        f"{force} over {loops.motion_name}", f"{loops.motion_name} [{x_unit}]", f"{force} [{y_unit}]", series
+    )
+    return Figure("Loops", text, [panel], table=_loop_rows(loops))
+
+
+def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
+    """Table of the loops in display units: amplitude, force, stiffness, energy loss, loss factor."""
+    units = loops.row_units
+
+    def format_cell(row: dict[str, float], name: str) -> str:
+        value, unit = _to_display_unit(row[name], units[name])
+        return f"{float(value):.4g} {unit}"
+
+    rows: list[tuple[str, ...]] = [
+        ("amplitude", "force or torque", "secant stiffness", "energy loss per cycle", "loss factor")
+    ]
+    for row in loops.compute_rows():
+        rows.append((*(format_cell(row, name) for name in units), f"{row['loss_factor']:.3g}"))
+    return rows
+
+
+def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
+    """Template rows that compare published with computed numbers, in display units."""
+    cells = []
+    for row in rows:
+        unit = choose_display_unit(row.unit, row.published)
+        scale, ending = conversion_factor(row.unit, unit), f" {format_unit(unit)}".rstrip()
+        numbers = (f"{scale * value:.4g}{ending}" for value in (row.published, row.computed))
+        names = ("name", "published", "computed", "role", "source")
+        texts = (row.name.replace("_", " "), *numbers, row.role, row.source)
+        cells.append(dict(zip(names, texts, strict=True)) | {"limit": "< " if row.is_upper_limit else ""})
+    return cells
+
+
+def _describe_range(load_history: LoadHistory) -> str:
+    """Describe the load range in which the law is valid."""
+    ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
+    if load_history.law_limit is None:
+        return f"The law is valid for {ramped.name} far beyond the load ramp."
+    value, unit = _to_display_unit(load_history.law_limit[0], ramped.unit)
+    return (
+        f"The law is valid up to {ramped.name} = {float(value):.3g} {unit}. Above, the FMU warns: "
+        f"{load_history.law_limit[1]}."
+    )

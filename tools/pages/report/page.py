@@ -1,0 +1,77 @@
+"""The report page of all joints: a tab per joint with figures, comparison with published numbers, checks."""
+
+import platform
+from pathlib import Path
+from typing import Any
+
+from jointfmu_fmu_src.joint_parts.chart import encode_panels
+from jointfmu_fmu_src.templates import load_template
+
+from jointfmu.files.timestamp import build_time
+from jointfmu.files.writing import write_text
+from jointfmu.joints import KINDS
+from jointfmu.joints.kind import JointKind
+from jointfmu.version import __version__
+
+from ...common.joint_parts import load_tool_module
+from ...studies.published.reference import ROLES
+from ...studies.published.validation import format_claim, format_error, format_summary, format_tolerance
+from ...systems.system import load_systems
+from .figure import Figure, page_script, style_sheet
+from .systems import motion_figures, resonance_figures, ring_down_figures
+
+
+def build_figures(job_result: Any) -> dict[str, list[Figure]]:
+    """Build the figures of all joints: {joint: figures}.
+
+    job_result : result of `python build_fmus.py` with simulated systems
+    """
+    return {name: _joint_figures(kind, job_result) for name, kind in KINDS.items()}
+
+
+def write_report(path: Path, outcome: Any) -> None:
+    """Write the self-contained page.
+
+    outcome : result of `python build_fmus.py`, with the figures of `build_figures`
+    """
+    page = load_template(Path(__file__).with_name("page.html")).render(
+        version=__version__,
+        python=platform.python_version(),
+        when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
+        outcome=outcome,
+        roles=ROLES,
+        sentence=format_summary(outcome.validated_points),
+        shown_error=format_error,
+        shown_tolerance=format_tolerance,
+        shown_claim=format_claim,
+        fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_validated_points},
+        tabs=[_tab_terms(kind, outcome) for kind in KINDS.values()],
+        style=style_sheet(),
+        script=page_script("tabs.js"),
+    )
+    write_text(path, page)
+
+
+def _tab_terms(kind: JointKind, job_result: Any) -> dict[str, Any]:
+    """Template variables for the tab of one joint."""
+    names = [model.name for model in kind.models]
+    kinds = {name: {j.joint_kind for j in system.joints.values()} for name, system in load_systems().items()}
+    names += [name for name, joints in kinds.items() if kind.name in joints]
+    return {
+        "name": kind.name,
+        "title": kind.title,
+        "figures": [(figure, encode_panels(figure.panels)) for figure in job_result.figures[kind.name]],
+        "rows": [row for row in job_result.validated_points if row.point.joint == kind.name],
+        "checks": [check for check in job_result.checks if check.fmu in names],
+        "proofs": [proof for proof in job_result.proofs if proof.fmu.stem in names],
+    }
+
+
+def _joint_figures(kind: JointKind, job_result: Any) -> list[Figure]:
+    module = load_tool_module(kind, "figures")
+    figures: list[Figure] = module.figures(job_result) if module else []
+    figures += [
+        *resonance_figures(job_result.free_vibrations, kind.name, job_result.fmi2_folder),
+        *ring_down_figures(job_result.decays, kind.name),
+    ]
+    return figures + motion_figures(job_result.arm_results, kind.name)

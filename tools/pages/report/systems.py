@@ -1,0 +1,257 @@
+"""Figures of joints in systems: resonance, free decay, joint loads over time, and tip error of an arm."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.joints import KINDS
+from jointfmu.quantity import Array
+
+from ...common.shown import format_unit
+from ...systems.decays import Decay
+from ...systems.ringing import (
+    FreeVibration,
+    VibratingJoint,
+    VibrationTest,
+    find_vibrating_joints,
+    frequency_curve,
+)
+from ...systems.system import System
+from ...systems.wiring import find_model, find_signals
+from .figure import Figure, Panel, Series
+
+RESONANCE_SIZE, DECAY_SIZE = (9.6, 4.0), (11.4, 3.8)
+"""Sizes [inch] of the pictures of resonance and of free decay."""
+_ENVELOPE_SIDES = ((1.0, "above"), (-1.0, "below"))
+"""Sign and name of both envelopes."""
+
+
+def resonance_figures(
+    results: Mapping[str, Sequence[FreeVibration]], joint: str, folder: Path
+) -> list[Figure]:
+    """Resonance figures of all systems with a joint of this kind.
+
+    results : {system: results at each load}
+    folder  : folder with the FMUs (FMI 2.0)
+    """
+    return [
+        _resonance_figure(name, item, results[name], folder)
+        for name, item in _vibrating_systems(joint)
+        if name in results
+    ]
+
+
+def _vibrating_systems(joint: str) -> list[tuple[str, VibratingJoint]]:
+    """Systems in which the vibrating joint is of this kind: (name, vibrating joint)."""
+    return [(name, item) for name, item in find_vibrating_joints().items() if item.joint.joint_kind == joint]
+
+
+def _resonance_figure(
+    name: str, vibrating_joint: VibratingJoint, vibrations: Sequence[FreeVibration], folder: Path
+) -> Figure:
+    body, moving = vibrating_joint.test, vibrating_joint.moving_body.name
+    return Figure(
+        f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load_axis.name}",
+        f"The {moving} vibrates freely about a working point, {body.doc}. First chart: resonance frequency; "
+        "circles are peaks of the spectrum of the simulated signal, the line is the square root of "
+        f"{body.stiffness_output} over the inertia of the {moving}. Second chart: free decay at the first "
+        f"{body.load_axis.name}, with the envelopes of the stated damping. Friction is left out.",
+        resonance_panels(vibrations, vibrating_joint, folder),
+    )
+
+
+def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
+    """Free-decay figures of all systems with a slipping joint of this kind."""
+    return [
+        _ring_down_figure(name, item, decays[name])
+        for name, item in _vibrating_systems(joint)
+        if name in decays
+    ]
+
+
+def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
+    body, moving, (point, *_) = vibrating_joint.test, vibrating_joint.moving_body.name, decays
+    has_law = point.half_eta_loop is not None
+    deflection = (
+        f"{body.deflection_axis.factor * body.slip_deflection.deflection:g} "
+        f"{format_unit(body.deflection_axis.unit)}"
+    )
+    return Figure(
+        f"In a system: free decay of the {name.replace('_', ' ')}",
+        f"The {moving}, {body.doc}, is released from a deflection of {deflection} "
+        f"({body.slip_deflection.doc}) at "
+        f"{body.load_axis.factor * point.load:g} {body.load_axis.unit}. Circles: frequency and damping "
+        "ratio of the "
+        "simulated signal in windows of two to five periods, over the mean amplitude. Line: values from the "
+        "energy loss of the joint's hysteresis loops of the same amplitude, with viscous damping"
+        + (
+            "; dashes: half of eta_loop, the law before its discretization into sliders. "
+            if has_law
+            else ". "
+        )
+        + "Because of friction the joint becomes stiffer and less damped as the amplitude decreases.",
+        decay_panels(decays, body),
+    )
+
+
+def resonance_panels(
+    vibrations: Sequence[FreeVibration], vibrating_joint: VibratingJoint, folder: Path
+) -> list[Panel]:
+    """Panels: resonance over the load, and one free decay with the envelopes of the stated damping."""
+    vibrations, body = sorted(vibrations, key=lambda point: point.load), vibrating_joint.test
+    x = [body.load_axis.factor * point.load for point in vibrations]
+    hertz = 0.5 / np.pi
+    loads, expected = frequency_curve(vibrating_joint, folder, vibrations)
+    over = [
+        Series("sqrt(K/J)", body.load_axis.factor * loads, hertz * expected),
+        Series("simulated", x, [hertz * p.frequency for p in vibrations], "empty"),
+    ]
+    first, scale = vibrations[0], body.deflection_axis.factor
+    envelope = (
+        scale * first.signal[0] * np.exp(-first.expected_damping * first.expected_frequency * first.time)
+    )
+    time = 1e3 * first.time
+    decay = [Series("decay", time, scale * first.signal)]
+    decay += [
+        Series(f"envelope, {side}", time, sign * envelope, dashed=True) for sign, side in _ENVELOPE_SIDES
+    ]
+    return [
+        Panel("Resonance over the load", body.load_axis.label, "resonance [Hz]", over),
+        Panel(
+            f"Free decay at {x[0]:g} {body.load_axis.unit}", "time [ms]", body.deflection_axis.label, decay
+        ),
+    ]
+
+
+def decay_panels(decays: Sequence[Decay], vibration_test: VibrationTest) -> list[Panel]:
+    """Panels of the first free decay, and of frequency and damping over the amplitude.
+
+    The results of the decay are compared with those of the joint's hysteresis loops.
+    """
+    scale, hertz, first = vibration_test.deflection_axis.factor, 0.5 / np.pi, decays[0]
+    frequency, damping = [], []
+    for point in decays:
+        load = (
+            f", {vibration_test.load_axis.factor * point.load:g} {vibration_test.load_axis.unit}"
+            if len(decays) > 1
+            else ""
+        )
+        x = scale * point.amplitude
+        frequency += [
+            Series(f"loops{load}", x, hertz * point.expected_frequency),
+            Series(f"decay{load}", x, hertz * point.frequency, "empty"),
+        ]
+        damping += [
+            Series(f"loops{load}", x, 100.0 * point.expected_damping),
+            Series(f"decay{load}", x, 100.0 * point.damping, "empty"),
+        ]
+        if point.half_eta_loop is not None:
+            damping.append(Series(f"eta_loop/2{load}", x, 100.0 * point.half_eta_loop, dashed=True))
+    over = f"amplitude [{vibration_test.deflection_axis.unit}]"
+    signal = [Series("decay", 1e3 * first.time, scale * first.signal)]
+    title = f"Decay at {vibration_test.load_axis.factor * first.load:g} {vibration_test.load_axis.unit}"
+    return [
+        Panel(title, "time [ms]", vibration_test.deflection_axis.label, signal),
+        Panel("Frequency over the amplitude", over, "frequency [Hz]", frequency),
+        Panel("Damping over the amplitude", over, "damping ratio [%]", damping),
+    ]
+
+
+MOTION_SIZE = (11.4, 3.8)
+"""Size [inch] of the picture of a simulated system."""
+_PLOT_INTERVALS = 400
+"""Number of intervals of a curve over time; the smallest and the largest point of each is drawn."""
+SystemResults = Mapping[str, Array]
+"""Results of a simulated system: {COMPONENT.OUTPUT: values (n)} and `time` (n) [s]."""
+
+
+def output_units(system: System) -> dict[str, str]:
+    """Units of all outputs and of `time`: {COMPONENT.OUTPUT: unit}."""
+    outputs = {
+        f"{name}.{v.name}": v.unit
+        for name, part in system.components.items()
+        for v in find_model(part).outputs
+    }
+    return {"time": "s"} | outputs
+
+
+def joint_load_outputs(system: System) -> dict[str, tuple[str, str]]:
+    """Outputs of the joints that act as force or torque on the connected body: {joint: (output, unit)}."""
+    outputs = {}
+    for wire in find_signals(system):
+        if wire.source in system.joints:
+            variable = KINDS[system.joints[wire.source].joint_kind].variables[wire.output]
+            outputs[wire.source] = (f"{wire.source}.{wire.output}", variable.unit)
+    return outputs
+
+
+def wind_up_and_tip_error(system: System, results: SystemResults) -> tuple[Array, Array, Array]:
+    """Commanded angles and wind-up (times, axes) [rad] of an arm, and its tip error (times) [m].
+
+    The tip error is the distance between the tip at the angles of the links and at the commanded angles.
+    """
+    commanded, links = [], []
+    for name in system.arm.axis_names:
+        drive = system.joints[f"{name}_drive"]
+        assert drive.parameter_file
+        commanded.append(results[f"{name}_motor.phi"] / drive.parameter_file.values_by_name["ratio"])
+        links.append(results[f"{name}_link.phi"])
+    q, real = np.stack(commanded, axis=1), np.stack(links, axis=1)
+    error = np.linalg.norm(system.arm.tip_position(real) - system.arm.tip_position(q), axis=1)
+    return q, real - q, error
+
+
+def _thin_series(name: str, time: Array, values: Array) -> Series:
+    """Series with the smallest and the largest point of each of _PLOT_INTERVALS intervals."""
+    size = -(-values.size // _PLOT_INTERVALS)
+    intervals = [(k, values[k : k + size]) for k in range(0, values.size, size)]
+    indices = sorted({k + int(f(interval)) for k, interval in intervals for f in (np.argmin, np.argmax)})
+    return Series(name, time[indices], values[indices])
+
+
+def system_panels(system: System, results: SystemResults) -> list[Panel]:
+    """Panels of the joint loads over time; for an arm also of wind-up and tip error."""
+    over = "time [s]"
+    outputs = joint_load_outputs(system)
+    unit = " or ".join(dict.fromkeys(unit for _, unit in outputs.values()))
+    curves = [
+        _thin_series(name.removesuffix("_drive"), results["time"], results[output])
+        for name, (output, _) in outputs.items()
+    ]
+    charts = [Panel("Loads of the joints", over, f"load [{unit}]", curves)]
+    if system.arm:
+        _, wind_up, error = wind_up_and_tip_error(system, results)
+        curves = [
+            _thin_series(name, results["time"], 1e3 * values)
+            for name, values in zip(system.arm.axis_names, wind_up.T, strict=True)
+        ]
+        charts.append(Panel("Wind-up of the drives", over, "wind-up [mrad]", curves))
+        tip = [_thin_series("tip", results["time"], 1e3 * error)]
+        charts.append(Panel("Error of the tip", over, "error [mm]", tip))
+    return charts
+
+
+def motion_figures(results_by_system: Mapping[str, tuple[System, SystemResults]], joint: str) -> list[Figure]:
+    """Figures of the motion of all arms that have a joint of this kind."""
+    return [
+        _motion_figure(system, run)
+        for system, run in results_by_system.values()
+        if joint in {part.joint_kind for part in system.joints.values()}
+    ]
+
+
+def _motion_figure(system: System, results: SystemResults) -> Figure:
+    _, wind_up, error = wind_up_and_tip_error(system, results)
+    (largest, worst) = np.max(np.abs(wind_up), axis=0), float(np.max(error))
+    soft = system.arm.axis_names[int(np.argmax(largest))]
+    return Figure(
+        f"In a system: the {system.name.replace('_', ' ')}",
+        f"The motors move the arm from the upright pose to the final pose within {system.arm.duration:g} s. "
+        "Charts: torques of the drives on their links; wind-up of the drives; tip error, the distance of the "
+        f"tip from its position with rigid drives. The tip error is at most {1e3 * worst:.2f} mm, and "
+        f"{1e3 * error[-1]:.2f} mm at the end, under the weight. The {soft} has the largest wind-up, "
+        f"{1e3 * np.max(largest):.2f} mrad. The loads of the drives are those of a rigid arm: the effect of "
+        "one drive's wind-up on the other drives is neglected.",
+        system_panels(system, results),
+    )

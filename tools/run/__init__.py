@@ -1,0 +1,1 @@
+"""Running FMUs: importer, ramps and loops, proofs."""

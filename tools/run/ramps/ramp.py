@@ -1,0 +1,185 @@
+"""Load ramps: run an FMU in fmpy along a ramp of one input from zero; all outputs at all points."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointfmu.progress import track_progress
+from jointfmu.quantity import Array
+
+from ...common import columns
+from ..host import open_instance, unpack_fmu
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
+
+
+@dataclass(frozen=True, slots=True)
+class RampResult:
+    """Result of a run along a ramp or path.
+
+    columns  : {variable: values (n)}, the varied inputs first, then all outputs
+    units    : {variable: unit}
+    messages : log messages of the FMU
+    """
+
+    columns: dict[str, Array]
+    units: dict[str, str]
+    messages: tuple[str, ...]
+
+    def format_csv(self) -> str:
+        """Format the columns as CSV text with headings `name [unit]`; numbers are exact."""
+        heads = [(name, self.units[name]) for name in self.columns]
+        return columns.format_table(heads, list(self.columns.values()))
+
+
+MAX_RAMP_END = 1e12
+"""Largest absolute end of a ramp [SI]."""
+
+
+def ramp_points(end: float, step: float) -> Array:
+    """Points of a ramp: 0, step, 2 step, ..., end; the last step may be shorter.
+
+    Raises ValueError if a value is not finite, if |end| is above MAX_RAMP_END, or if the step is zero or has
+    the other sign than `end`.
+    """
+    for name, value in (("to", end), ("step", step)):
+        if not np.isfinite(value):
+            raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
+    if abs(end) > MAX_RAMP_END:
+        raise ValueError(
+            f"to = {end:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): limit for loads and motions"
+        )
+    if step == 0.0 or end / step < 0.0:
+        allowed = "(-inf, 0)" if end < 0.0 else "(0, inf)"
+        raise ValueError(f"step = {step:g} is outside {allowed}: steps must lead from 0 to {end:g}")
+    count = end / step
+    if count > 1e7:
+        raise ValueError(f"step = {step:g} makes {count:.3g} points, allowed are 1e7")
+    whole = np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * step + 0.0
+    reached = bool(np.isclose(whole[-1], end, rtol=1e-12, atol=0.0))
+    return np.asarray(whole if reached else np.append(whole, end), dtype=np.float64)
+
+
+def run_ramp(
+    fmu: str | Path,
+    input_name: str,
+    end: float,
+    step: float,
+    settings: Mapping[str, object] | None = None,
+) -> RampResult:
+    """Run an FMU along a ramp of one input from zero, with one step of one second for each point.
+
+    All other inputs are constant.
+
+    Parameters
+    ----------
+    fmu        : path of a co-simulation FMU, FMI 2.0 or 3.0
+    input_name : name of the varied input
+    end, step  : [unit of the input] end and step of the ramp
+    settings   : start values of parameters and other inputs
+
+    Raises
+    ------
+    ValueError   : the FMU cannot run here (see `host.unpack_fmu`, `host.open_instance`), a name is unknown, a
+        value is impossible, or the FMU rejects a value (with the message of the FMU)
+    RuntimeError : the FMU does not instantiate
+    """
+    return run_path(fmu, input_name, ramp_points(end, step), settings)
+
+
+def run_path(
+    fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, object] | None = None
+) -> RampResult:
+    """Run an FMU along points (n) of one input, with one step of one second each. Raises as `run_ramp`."""
+    return run_paths(fmu, {input_name: points}, None, settings)
+
+
+def run_paths(
+    fmu: str | Path,
+    inputs: Mapping[str, Array],
+    time: Array | None = None,
+    settings: Mapping[str, object] | None = None,
+) -> RampResult:
+    """Run an FMU along points of several inputs.
+
+    inputs : {input: values (n) or (1)}
+    time   : (n) [s] increasing from zero; None: one second for each point
+
+    Raises as `run_ramp`, and ValueError for inputs of different lengths, or a time that does not increase
+    from 0.
+    """
+    rows, count = broadcast_columns({**inputs} if time is None else {**inputs, "time": time}, str(fmu))
+    clock = rows.pop("time", np.arange(float(count)))
+    if not (clock[0] == 0.0 and np.all(np.diff(clock) > 0.0) and np.all(np.isfinite(clock))):
+        raise ValueError(f"{fmu}: the times must start at 0 s and increase")
+    with unpack_fmu(fmu) as (folder, description):
+        return _simulate_paths(folder, description, rows, clock, dict(settings or {}), str(fmu))
+
+
+def broadcast_columns(columns: Mapping[str, Array], fmu_label: str) -> tuple[dict[str, Array], int]:
+    """Broadcast columns (n) or (1) to the same length n; returns the columns and n.
+
+    Raises ValueError for different lengths.
+    """
+    sizes = {name: column.size for name, column in columns.items() if column.size != 1}
+    if len(set(sizes.values())) > 1:
+        told = ", ".join(f"{name} {size}" for name, size in sizes.items())
+        raise ValueError(f"{fmu_label}: inputs of different lengths ({told}), allowed are 1 and one other")
+    count = max(sizes.values(), default=1)
+    return {name: np.broadcast_to(column, count) for name, column in columns.items()}, count
+
+
+def variable_units(fmu: str | Path) -> dict[str, str]:
+    """Units of all variables of an FMU: {variable: unit}. Raises ValueError as `host.unpack_fmu`."""
+    with unpack_fmu(fmu) as (_, description):
+        return {v.name: v.unit or "1" for v in description.modelVariables}
+
+
+def _simulate_paths(
+    folder: str,
+    model_description: "ModelDescription",
+    inputs: Mapping[str, Array],
+    time: Array,
+    settings: dict[str, object],
+    fmu_label: str,
+) -> RampResult:
+    variables = {v.name: v for v in model_description.modelVariables}
+    allowed = [v.name for v in model_description.modelVariables if v.causality == "input"]
+    outputs = [v for v in model_description.modelVariables if v.causality == "output"]
+    for name in inputs:
+        if name not in allowed:
+            raise ValueError(f"{fmu_label}: unknown input {name!r}, allowed are {', '.join(allowed)}")
+        if name in settings:
+            raise ValueError(f"{fmu_label}: {name} is the input of the ramp; do not set it too")
+    settable = [v.name for v in model_description.modelVariables if v.causality in ("input", "parameter")]
+    for name, value in settings.items():
+        if name not in settable:
+            raise ValueError(f"{fmu_label}: unknown name {name!r}, allowed are {', '.join(settable)}")
+        wanted = bool if variables[name].type == "Boolean" else float
+        if not isinstance(value, wanted):
+            expected = "true or false" if wanted is bool else "a number"
+            raise ValueError(f"{fmu_label}: {name} = {value!r} is not {expected}")
+    messages: list[str] = []
+    rows: list[list[float]] = []
+    points = np.stack([*inputs.values()], axis=-1) if inputs else np.empty((time.size, 0))
+    with open_instance(folder, model_description, fmu_label, messages) as fmu:
+        try:
+            fmu.enter_initialization()
+            fmu.set_values({**settings, **dict(zip(inputs, points[0].tolist(), strict=True))})
+            fmu.fmu.exitInitializationMode()
+            driven, read = fmu.group_reals([*inputs]), fmu.group_reals([v.name for v in outputs])
+            for i, values in enumerate(track_progress(points.tolist(), Path(fmu_label).stem, len(points))):
+                driven.set_values(*values)
+                if i:
+                    fmu.do_step(float(time[i - 1]), float(time[i] - time[i - 1]))
+                rows.append(read.get_values())
+        except Exception as error:
+            raise ValueError(f"{fmu_label}: {messages[0] if messages else error}") from None
+    table = np.asarray(rows).reshape(len(points), len(outputs))
+    columns = dict(inputs) | {v.name: table[:, i] for i, v in enumerate(outputs)}
+    units = {name: variables[name].unit or "1" for name in columns}
+    return RampResult(columns, units, tuple(messages))

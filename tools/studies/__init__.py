@@ -1,0 +1,1 @@
+"""Studies of models: published numbers, checks of FMUs, uncertainty."""

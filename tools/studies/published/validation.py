@@ -1,0 +1,216 @@
+"""Comparison of all published numbers with the computed ones: errors, verdicts, counts, text."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from math import isfinite
+from typing import Any
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, load_default
+
+from ...common.shown import align_columns
+from .computed import load_published_numbers
+from .reference import ROLES, UNTESTED_ROLES, Point, compute_trivial_guesses, read_points
+
+_TABLE_HEAD = (
+    *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
+    *("guess", "its error", "nearer", "number", "role", "verdict"),
+)
+_MAX_ROUNDING_RATIO = 1e-6
+"""Error over tolerance [1] below which an error is displayed as zero: it is rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValidatedPoint:
+    """Published number with the computed value and the verdict.
+
+    computed_value : computed value, in the unit of the published one
+    error          : relative error of the computed value, or absolute in the unit of the point if its
+        tolerance is absolute; 0 or 1 for a claim
+    has_passed     : whether the error is within the tolerance
+    guess          : trivial guess from calibration points; None: the point has no guess
+    guess_error    : error of the trivial guess, as `error`
+    """
+
+    point: Point
+    computed_value: float | bool
+    error: float
+    has_passed: bool
+    guess: float | None = None
+    guess_error: float | None = None
+
+    @property
+    def nearer_estimate(self) -> str:
+        """Nearer one to the published value: `law` (computed value) or `guess`; empty without a guess."""
+        if self.guess_error is None:
+            return ""
+        return "law" if abs(self.error) < abs(self.guess_error) else "guess"
+
+    def to_json(self) -> dict[str, Any]:
+        """Convert to a JSON object, with the verdict as a word."""
+        p = self.point
+        return asdict(p) | {
+            "where": dict(p.where),
+            "computed": self.computed_value if isfinite(self.computed_value) else None,
+            "error": self.error if isfinite(self.error) else None,
+            "guess": self.guess,
+            "guess_error": self.guess_error,
+            "guess_rule": str(p.guess) if p.guess else None,
+            "nearer": self.nearer_estimate or None,
+            "verdict": "pass" if self.has_passed else "miss",
+        }
+
+
+def compare_point(point: Point, computed_value: float | bool, guess: float | None = None) -> ValidatedPoint:
+    """Compare a computed value, and the trivial guess if there is one, with the published number."""
+    if isinstance(point.value, bool):
+        error = float(computed_value is not point.value)
+        return ValidatedPoint(point, computed_value, error, error == 0.0)
+    error = _point_error(point, computed_value)
+    guessed = None if guess is None else _point_error(point, guess)
+    return ValidatedPoint(point, computed_value, error, abs(error) <= point.tolerance, guess, guessed)
+
+
+def _point_error(point: Point, value: float) -> float:
+    return (value - point.value) / (1.0 if point.absolute else abs(point.value))
+
+
+def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
+    """Compute all published numbers and compare them.
+
+    parameter_sets : {joint: parameter file}; joints without an entry have their default file
+    """
+    given, rows = parameter_sets or {}, []
+    for kind in KINDS.values():
+        own = load_published_numbers(kind)
+        for paper in own.papers:
+            values = (given.get(kind.name) or load_default(kind.name)).values
+            observables, known = own.observables, read_points(paper)
+            guessed = compute_trivial_guesses(known)
+            rows += [
+                compare_point(p, observables[p.quantity](values, **p.where), guessed.get(p.id)) for p in known
+            ]
+    return rows
+
+
+def missed_points(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
+    """Points outside their tolerance, without calibration points and points met by construction."""
+    return [row for row in rows if row.point.role not in UNTESTED_ROLES and not row.has_passed]
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Counts of a comparison, which the command, the README, the report and the pages state.
+
+    numbers        : number of published numbers, without claims
+    printed        : how many of them the papers print
+    derived        : how many of them are computed from printed numbers
+    roles          : {role: number of points}, with claims
+    met            : {role: number of points within their tolerance}
+    guessed        : {role: number of points with a trivial guess}
+    nearer         : {role: number of points to which the law is nearer than the guess}
+    contradictions : ids of claims that the equations of the same paper contradict
+    missed         : ids of `missed_points`
+    """
+
+    numbers: int
+    printed: int
+    derived: int
+    roles: dict[str, int]
+    met: dict[str, int]
+    guessed: dict[str, int]
+    nearer: dict[str, int]
+    contradictions: list[str]
+    missed: list[str]
+
+
+def count_points(rows: Sequence[ValidatedPoint]) -> Counts:
+    """Count the points of a comparison."""
+    numbers = [row.point for row in rows if row.point.role != "claim"]
+    printed = sum(point.printed for point in numbers)
+    guessed = [row for row in rows if row.nearer_estimate]
+
+    def count_by_role(points: Sequence[ValidatedPoint]) -> dict[str, int]:
+        found = Counter(row.point.role for row in points)
+        return {role: found[role] for role in ROLES}
+
+    return Counts(
+        numbers=len(numbers),
+        printed=printed,
+        derived=len(numbers) - printed,
+        roles=count_by_role(rows),
+        met=count_by_role([row for row in rows if row.has_passed]),
+        guessed=count_by_role(guessed),
+        nearer=count_by_role([row for row in guessed if row.nearer_estimate == "law"]),
+        contradictions=[row.point.id for row in rows if row.point.text is not None],
+        missed=[row.point.id for row in missed_points(rows)],
+    )
+
+
+def format_table(rows: Sequence[ValidatedPoint]) -> str:
+    """Format the comparison as a table in text."""
+    return "\n".join(align_columns([_TABLE_HEAD, *map(_format_cells, rows)]))
+
+
+def _format_cells(row: ValidatedPoint) -> tuple[str, ...]:
+    p = row.point
+    if isinstance(p.value, bool):
+        shown = (format_claim(row), str(row.computed_value).lower(), "-", "-")
+        source = "text"
+    else:
+        shown = (
+            f"{p.value:.6g}",
+            f"{row.computed_value:.6g}",
+            format_error(p, row.error),
+            format_tolerance(p),
+        )
+        source = "printed" if p.printed else "derived"
+    guess = ("-", "-", "-")
+    if row.guess is not None and row.guess_error is not None:
+        guess = (f"{row.guess:.6g}", format_error(p, row.guess_error), row.nearer_estimate)
+    return (p.paper, p.id, p.unit, *shown, *guess, source, p.role, "pass" if row.has_passed else "MISS")
+
+
+def format_error(point: Point, error: float) -> str:
+    """Format an error: in per cent, or in the unit of the point if its tolerance is absolute."""
+    scale, unit = _error_scale(point)
+    small = abs(error) <= _MAX_ROUNDING_RATIO * point.tolerance
+    return ("0" if small else f"{scale * error:+.3g}") + unit
+
+
+def format_tolerance(point: Point) -> str:
+    """Format a tolerance, in the unit of `format_error`."""
+    scale, unit = _error_scale(point)
+    return f"{scale * point.tolerance:.3g}{unit}"
+
+
+def _error_scale(point: Point) -> tuple[float, str]:
+    """Factor and unit text of errors and tolerances; percentage points for a number in per cent."""
+    if not point.absolute:
+        return 100.0, " %"
+    return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")
+
+
+def format_claim(row: ValidatedPoint) -> str:
+    """Format the truth of a claim; if the paper's equations contradict its text, also that of the text."""
+    p = row.point
+    return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
+
+
+def format_summary(rows: Sequence[ValidatedPoint]) -> str:
+    """Summary in one line: counts by role, how often the law is nearer than the guess, missed points."""
+    found = count_points(rows)
+    roles = ", ".join(
+        f"{n} {role}" + ("" if found.met[role] == n else f" ({found.met[role]} met)")
+        for role, n in found.roles.items()
+        if role != "claim"
+    )
+    nearer = ", ".join(f"{found.nearer[role]} of {n} ({role})" for role, n in found.guessed.items() if n)
+    return (
+        f"{found.numbers} numbers, {found.printed} printed in the papers and {found.derived} computed from "
+        f"printed ones: {roles}; {found.roles['claim']} claims; "
+        f"nearer than the trivial guess: {nearer or 'none'}; "
+        f"text against its own equations: {', '.join(found.contradictions) or 'none'}; "
+        f"missed: {', '.join(found.missed) or 'none'}"
+    )

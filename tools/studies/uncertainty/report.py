@@ -1,0 +1,196 @@
+"""Results of an uncertainty propagation as table, CSV, JSON and plots."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...common import columns, plots
+from .problem import Problem
+from .propagate import QUANTILES, Bands, Sensitivity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+MAX_TABLE_ROWS = 6
+"""Maximum number of loads in the printed table."""
+
+
+def table_loads(problem: Problem) -> list[float]:
+    """Loads above zero in the printed table."""
+    return [float(load) for load in problem.loads[_table_indices(problem.loads)] if load > 0.0]
+
+
+def _table_indices(values: Any) -> Any:
+    """Indices of at most MAX_TABLE_ROWS equally spaced values of a ramp."""
+    return np.unique(np.linspace(0, values.size - 1, MAX_TABLE_ROWS).astype(int))
+
+
+def format_bands_csv(problem: Problem, bands: Bands) -> str:
+    """CSV text of the bands: one row for each load; nominal value, mean, standard deviation, quantiles.
+
+    Numbers are written without rounding.
+    """
+    load = problem.curves.load
+    heads, values = [(load.name, load.unit)], [bands.loads]
+    for name, unit in bands.units.items():
+        statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.standard_deviation))
+        for statistic, by_output in statistics:
+            heads.append((f"{name} {statistic}", unit))
+            values.append(by_output[name])
+        heads += [(f"{name} {100 * q:g} %", unit) for q in QUANTILES]
+        values += list(bands.quantiles[name])
+    return columns.format_table(heads, values)
+
+
+def as_json(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
+    """Bands, refused samples and Sobol' indices as one JSON object."""
+    outputs = {
+        name: {
+            "unit": unit,
+            "nominal": bands.nominal[name].tolist(),
+            "mean": bands.mean[name].tolist(),
+            "sd": bands.standard_deviation[name].tolist(),
+            "quantiles": {
+                f"{q:g}": row.tolist() for q, row in zip(QUANTILES, bands.quantiles[name], strict=True)
+            },
+        }
+        for name, unit in bands.units.items()
+    }
+    refused, load = bands.refusals, problem.curves.load
+    return {
+        "joint": problem.joint,
+        "parameters": {parameter.name: parameter.text for parameter in problem.uncertain_parameters},
+        "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
+        "samples": bands.sample_count,
+        "refused": {"count": refused.count, "example": dict(refused.example), "reason": refused.reason},
+        "reduction_error": bands.reduction_error,
+        "outputs": outputs,
+        "indices": None if sensitivity is None else _indices_json(sensitivity),
+    }
+
+
+def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
+    numbers = ("first", "first_half", "total", "total_half")
+    return {
+        "rows": sensitivity.base_samples,
+        "loads": sensitivity.loads.tolist(),
+        "outputs": {
+            output: {
+                parameter: {number: getattr(indices, number)[:, i].tolist() for number in numbers}
+                for i, parameter in enumerate(sensitivity.parameter_names)
+            }
+            for output, indices in sensitivity.outputs.items()
+        },
+    }
+
+
+def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
+    """Printed table: bands at a few loads, and Sobol' indices at the end of the ramp."""
+    lines = []
+    load_indices = _table_indices(bands.loads)
+    quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
+    for name in bands.nonzero_outputs:
+        head = f"{problem.curves.load.name} [{problem.curves.load.unit}]"
+        lines.append(f"{name} [{bands.units[name]}]")
+        lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
+        for j in load_indices:
+            row = [bands.loads[j], bands.nominal[name][j]]
+            row += [bands.quantiles[name][i, j] for i in quantile_indices.values()]
+            lines.append("".join(f"{x:16.5g}" for x in row))
+        lines.append("")
+    if sensitivity is not None:
+        lines += _indices_table(problem, sensitivity, bands.nonzero_outputs)
+    varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in problem.uncertain_parameters)
+    lines.append(f"over {problem.curves.load.name}: {problem.curves.load.doc}")
+    lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on it'}")
+    if zero := [name for name in bands.units if name not in bands.nonzero_outputs]:
+        lines.append(f"zero at all loads: {', '.join(zero)}")
+    lines.append(f"{bands.sample_count} samples, {bands.refusals.count} refused by the law")
+    if bands.refusals.count:
+        example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refusals.example.items())
+        lines.append(f"the first refused: {example}: {bands.refusals.reason}")
+    lines.append(
+        "fast evaluation against the exported spring: largest relative difference "
+        f"{bands.reduction_error:.1e}"
+    )
+    return "\n".join(lines)
+
+
+def _indices_table(problem: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
+    """Lines of a table: Sobol' indices at the end of the load ramp."""
+    load = f"{problem.curves.load.name} = {sensitivity.loads[-1]:g} {problem.curves.load.unit}"
+    lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
+    width = max(len(name) for name in sensitivity.parameter_names) + 2
+    lines.append(" " * width + "".join(f"{name:>32}" for name in outputs))
+    for i, parameter in enumerate(sensitivity.parameter_names):
+        cells = []
+        for indices in (sensitivity.outputs[name] for name in outputs):
+            first = f"{indices.first[-1, i]:.3f} +- {indices.first_half[-1, i]:.3f}"
+            total = f"{indices.total[-1, i]:.3f} +- {indices.total_half[-1, i]:.3f}"
+            cells.append(f"{first} / {total}")
+        lines.append(f"{parameter:<{width}}" + "".join(f"{cell:>32}" for cell in cells))
+    return [*lines, ""]
+
+
+_COLOURS = (plots.BLUE, plots.RED, plots.GREEN, "#b8860b", "#7b4fa3", "#3a9ca6", plots.GREY, "#a65628")
+
+
+def draw_bands_and_indices(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -> None:
+    """Draw bands and Sobol' indices over the load, one column of plots for each output that is not zero.
+
+    Solid lines are total indices, dashed lines first-order indices.
+    """
+    names = bands.nonzero_outputs
+    rows = 1 if sensitivity is None or bands.loads.size == 1 else 2
+    with plots.open_figure(path, (4.2 * len(names), 3.6 * rows)) as figure:
+        grid = figure.subplots(rows, len(names), squeeze=False)
+        for column, name in enumerate(names):
+            label = f"{name} [{bands.units[name]}]"
+            if bands.loads.size == 1:
+                _draw_distribution(grid[0, column], bands, name, label)
+                continue
+            _draw_bands(grid[0, column], bands, name, label, load)
+            if sensitivity is not None:
+                _draw_indices(grid[1, column], sensitivity, name, load, legend=column == 0)
+
+
+def _draw_bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None:
+    """Draw median and quantile bands of an output over the load."""
+    q = dict(zip(QUANTILES, bands.quantiles[name], strict=True))
+    for low, high, shade in ((0.01, 0.99, 0.12), (0.05, 0.95, 0.2), (0.25, 0.75, 0.3)):
+        text = f"{100 * low:g} to {100 * high:g} %"
+        axes.fill_between(
+            bands.loads, q[low], q[high], color=plots.BLUE, alpha=shade, linewidth=0, label=text
+        )
+    axes.plot(bands.loads, q[0.5], color=plots.BLUE, label="median")
+    axes.plot(bands.loads, bands.nominal[name], color=plots.RED, linestyle="--", label="parameter file")
+    axes.set(xlabel=load, ylabel=label, xlim=(0.0, bands.loads[-1]), ylim=(0.0, None))
+    axes.legend(fontsize=8)
+
+
+def _draw_distribution(axes: "Axes", bands: Bands, name: str, label: str) -> None:
+    """Draw the cumulative distribution of an output at a single load."""
+    axes.plot(bands.quantiles[name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
+    axes.axvline(bands.nominal[name][0], color=plots.RED, linestyle="--", label="parameter file")
+    axes.set(xlabel=label, ylabel="samples below [%]", ylim=(0.0, 100.0))
+    axes.legend(fontsize=8)
+
+
+def _draw_indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
+    """Draw the Sobol' indices of an output over the load."""
+    indices = sensitivity.outputs[name]
+    for i, parameter in enumerate(sensitivity.parameter_names):
+        colour = _COLOURS[i % len(_COLOURS)]
+        low = indices.total[:, i] - indices.total_half[:, i]
+        high = indices.total[:, i] + indices.total_half[:, i]
+        axes.fill_between(sensitivity.loads, low, high, color=colour, alpha=0.2, linewidth=0)
+        axes.plot(sensitivity.loads, indices.total[:, i], color=colour, label=parameter)
+        axes.plot(sensitivity.loads, indices.first[:, i], color=colour, linestyle="--")
+    axes.set(xlabel=load, ylabel=f"Sobol' indices of {name}", xlim=(0.0, None), ylim=(0.0, 1.05))
+    if legend:
+        axes.plot([], [], color=plots.GREY, label="total")
+        axes.plot([], [], color=plots.GREY, linestyle="--", label="first order")
+        axes.legend(fontsize=8)
