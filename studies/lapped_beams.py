@@ -21,11 +21,11 @@ from oracles.lap_beam.brake_reuss import (
     form,
     laws,
     published,
-    solid_bar,
+    solid_bar_frequency,
 )
-from oracles.lap_beam.loops import Joint, damping, foundation, frequency, masing, with_friction
+from oracles.lap_beam.loops import Joint, damping, foundation, frequency, masing_losses, with_friction
 from oracles.lap_beam.plan import Fineness
-from oracles.lap_beam.reduction import Structure, reduced, spectrum
+from oracles.lap_beam.reduction import Structure, reduce_beam, spectrum
 from oracles.measured_joints import joint_law, measured
 from scipy.stats import qmc
 
@@ -40,11 +40,11 @@ STEPS = 8
 
 
 def reduced_joints(structure, gap=None):
-    """Reduced beam on its sliders for each law, with plane faces or a gap [m] at places x, y."""
+    """ReducedBeam beam on its sliders for each law, with plane faces or a gap [m] at places x, y."""
     preload, found = data()["beam"]["preload"], {}
     for name, law in laws().items():
         curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
-        part = reduced(structure, curve, preload, shear, gap)
+        part = reduce_beam(structure, curve, preload, shear, gap)
         found[name] = Joint(part, foundation(curve, shear, FRICTION_COEFFICIENT))
     return found
 
@@ -59,7 +59,7 @@ def curves(joint):
 def masing_curves(joint, turns=CYCLE_AMPLITUDES):
     """States at AMPLITUDES[turns], and frequency and damping there by Masing's rules."""
     states = joint.backbone(AMPLITUDES)
-    ratios = [damping(*pair) for pair in zip(masing(states), states, strict=True)]
+    ratios = [damping(*pair) for pair in zip(masing_losses(states), states, strict=True)]
     columns = [s.q for s in states], [frequency(s) for s in states], ratios
     return states[turns], Curves(*(np.array(values)[turns] for values in columns))
 
@@ -68,7 +68,7 @@ def print_linear_frequencies(structure, found):
     """Frequencies of small motions; returns the first frequency of the glued lap [Hz]."""
     count = structure.interface.quadrature_area.size
     heading("Linear frequencies [Hz]", "interface", "f1", "f2", "f3")
-    row("solid bar (Timoshenko)", f"{solid_bar(structure.beam):.1f}", "", "")
+    row("solid bar (Timoshenko)", f"{solid_bar_frequency(structure.beam):.1f}", "", "")
     glued = spectrum(structure, np.full((count, 3), GLUED_STIFFNESS))[0]
     row("lap in one piece", *(f"{f:.1f}" for f in glued))
     for name, joint in found.items():
@@ -111,7 +111,7 @@ def print_meshes():
     heading("Meshes", "near holes [mm]", "far [mm]", "layers", "patches", "f1 [Hz]")
     for near, far, layers in ((4e-3, 6e-3, 2), (2.6e-3, 3.6e-3, 2), (2.6e-3, 3.6e-3, 3), (2.6e-3, 3.6e-3, 4)):
         structure = Structure.of(beam(), Fineness(near=near, far=far, layers=layers))
-        normal = structure.tightened(tabulate_approach(law), preload).stiffness
+        normal = structure.solve_preload(tabulate_approach(law), preload).stiffness
         springs = np.outer(normal, [law.shear_stiffness_ratio(), law.shear_stiffness_ratio(), 1.0])
         found = spectrum(structure, springs, 1)[0][0]
         row(f"{1e3 * near:g}", f"{1e3 * far:g}", layers, normal.size, f"{found:.2f}")
@@ -218,11 +218,11 @@ def predict_measured_beam(one, preload, friction, Ra, modulus, height):
     one = replace(one, E=modulus)
     law = joint_law({"E": modulus, "nu": one.nu, "A_0": entries["A_0"], "Rq": 1.25 * Ra}, H=entries["H"])
     curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
-    part = reduced(Structure.of(one, MESH), curve, preload, shear, crown(height, one.lap))
+    part = reduce_beam(Structure.of(one, MESH), curve, preload, shear, crown(height, one.lap))
     joint = Joint(part, foundation(curve, shear, friction))
     states = joint.backbone(MEASURED_AMPLITUDES)
     f = np.array([frequency(state) for state in states])
-    ratios = [damping(*pair) for pair in zip(masing(states), states, strict=True)]
+    ratios = [damping(*pair) for pair in zip(masing_losses(states), states, strict=True)]
     peaks = np.array([state.q for state in states]) * part.tip * (2.0 * np.pi * f) ** 2
     at = np.log(known["acceleration"])
     zeta = np.exp(np.interp(at, np.log(peaks), np.log(ratios)))
@@ -241,7 +241,7 @@ def print_measured_beam():
     low, middle, high = np.quantile(np.array(rows), BAND, axis=0)
     names = ["f [Hz]", *(f"zeta at {a:g} m/s2 [%]" for a in known["acceleration"]), "fall of f [%]"]
     facts = [known["frequency"], *known["damping"], known["fall"]]
-    guesses = [solid_bar(one), 0.0, 0.0, 0.0, 0.0]
+    guesses = [solid_bar_frequency(one), 0.0, 0.0, 0.0, 0.0]
     columns = (
         "measured",
         "5 %",

@@ -36,7 +36,7 @@ def print_elastic():
     """Law over boundary elements, elastic, on surfaces with fresh seeds."""
     print(f"\nseeds of development {list(cases.DEVELOPMENT)}, here {cases.SEEDS}")
     kinds = [(H, roll_off) for H in cases.HURST for roll_off in cases.LOADS]
-    found = {kind: cases.pressed(*kind) for kind in track_progress(kinds, "surfaces")}
+    found = {kind: cases.elastic_contacts(*kind) for kind in track_progress(kinds, "surfaces")}
     beyond = all_cases = 0
     for roll_off, loads in cases.LOADS.items():
         band = f"waves up to {wave_name(roll_off)}, at y (x)"
@@ -44,13 +44,13 @@ def print_elastic():
         heading(title, "H", *(f"{y:g} ({y * roll_off**2:.2g})" for y in loads), "beyond 30 %")
         for H in cases.HURST:
             one = found[H, roll_off]
-            ratio, use = one["law"] / one["k"], cases.held(roll_off, one["area"])
+            ratio, use = one["law"] / one["k"], cases.in_valid_range(roll_off, one["area"])
             mean = one["law"].mean(axis=0) / one["k"].mean(axis=0)
             cells = [f"{m:.2f} ({r.min():.2f} to {r.max():.2f})" for m, r in zip(mean, ratio.T, strict=True)]
             missed = int((np.abs(ratio - 1.0) > 0.3)[use].sum())
             row(H, *cells, f"{missed} of {use.sum()}")
             beyond, all_cases = beyond + missed, all_cases + int(use.sum())
-    print(f"\nbeyond 30 %: {beyond} of {all_cases} single cases with x >= {cases.FEWEST:g}")
+    print(f"\nbeyond 30 %: {beyond} of {all_cases} single cases with x >= {cases.MIN_LOAD:g}")
     heading("the same with the tail of the heights, mean, waves up to side/16", "H", *cases.LOADS[16])
     for H in cases.HURST:
         one = found[H, 16]
@@ -75,9 +75,9 @@ def print_joints():
     """Law over measured joints, and the other three laws over measured joints."""
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
     heading("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
-    for joint in cases.rough():
+    for joint in cases.joints_with_roughness():
         law = joint_law(joint)
-        middle = compare.measured_middle(joint, cases.MEASURED)
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
         height = f"{law.h * 1e6:.2f}"
         row(joint["id"], height, "p/(0.45 h)", *two_digits(cases.MEASURED / (law.gamma * law.h) / middle))
         row(joint["id"], height, "roughness", *two_digits(level(law, cases.MEASURED) / middle))
@@ -89,7 +89,7 @@ def print_joints():
     }
     heading("the same of the other laws, whatever the finish", "joint", "law", *pressures)
     for joint in measured()["normal"]:
-        middle = compare.measured_middle(joint, cases.MEASURED)
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
         for text, law in {**others, "hu2023": hu, "yu2022": yu}.items():
             k = stiffness_curve(law, cases.MEASURED)[0]
             row(joint["id"], text, *(f"{one:.2g}" for one in k / middle))
@@ -99,21 +99,23 @@ def print_second_scale():
     """Law with longer waves, and with a second scale in series, over measured joints."""
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
     heading("law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures)
-    for joint in cases.rough():
+    for joint in cases.joints_with_roughness():
         law = joint_law(joint)
-        middle = compare.measured_middle(joint, cases.MEASURED)
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
         for wave in WAVES:
             k = level(replace(law, longest_wave=wave), cases.MEASURED)
             row(joint["id"], f"longest wave {wave * 1e3:g} mm", *two_digits(k / middle))
         row(
-            joint["id"], "with the tail of the heights", *two_digits(cases.tail(law, cases.MEASURED) / middle)
+            joint["id"],
+            "with the tail of the heights",
+            *two_digits(cases.stiffness_with_tail(law, cases.MEASURED) / middle),
         )
         for h in HEIGHTS:
-            k = cases.wavy(law, cases.MEASURED, h, WAVES[-1])
+            k = cases.two_scale_stiffness(law, cases.MEASURED, h, WAVES[-1])
             row(joint["id"], f"in series {h * 1e6:g} µm over 40 mm", *two_digits(k / middle))
     heading("best two scales in series, 0.1 to 2 MPa", "joint", "h [µm]", "h_w [µm]", *pressures, "exponent")
-    for joint in cases.rough():
-        middle = compare.measured_middle(joint, cases.MEASURED)
+    for joint in cases.joints_with_roughness():
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
         h, k = fit_second_scale(joint, middle)
         power = compare.exponent(cases.MEASURED[FITTED], k[FITTED])
         row(joint["id"], *(f"{one * 1e6:.3g}" for one in h), *two_digits(k / middle), f"{power:.2f}")
@@ -124,7 +126,7 @@ def fit_second_scale(joint, middle):
 
     def stiffness(logs):
         h, second = np.exp(logs)
-        return cases.wavy(joint_law(joint, h=h), cases.MEASURED, second, WAVES[-1])
+        return cases.two_scale_stiffness(joint_law(joint, h=h), cases.MEASURED, second, WAVES[-1])
 
     def miss(logs):
         return np.log(stiffness(logs) / middle)[FITTED]

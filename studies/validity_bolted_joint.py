@@ -87,7 +87,7 @@ LENGTH_RATIOS = (0.5, 2.0, 6.0)
 
 @dataclass(frozen=True)
 class TensileJoint:
-    """Reduced joint under a tensile load at its heads.
+    """ReducedBeam joint under a tensile load at its heads.
 
     bolt, members, interface : [N/m] stiffness of each; the members without the interface
     factor : load factor of small loads [1]

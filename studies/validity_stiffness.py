@@ -64,7 +64,7 @@ def print_sizes():
             row(name, f"{p / 1e6:.3g}", f"{level:.2g}", *(f"{h:.2g}" for h in heights))
     zhao = compare.cases()["zhao2018"].law
     s, u = zhao.spots(), solve_largest_spot(zhao, 1e6)
-    term = replace(s.regime_terms["normal"][0], upper=np.log(10.0))
+    term = replace(s.regime_terms["normal"][0], upper_log_area=np.log(10.0))
     share = float(
         replace(s, regime_terms={"normal": (term,)}).total("normal", u) / s.sum_over_spots("normal", u)
     )
@@ -81,7 +81,7 @@ def print_parameters():
         rms = rms_height(3.0 - case.D, case.G, *band)
 
         def stiffness(D, G, case=case, p=p):
-            return stiffness_curve(compare.rougher(case, D, G), p)[0][0]
+            return stiffness_curve(compare.law_of_surface(case, D, G), p)[0][0]
 
         over_g = [stiffness(case.D, factor * case.G) for factor in (0.9, 1.1)]
         over_d = []
@@ -208,7 +208,7 @@ def print_laws():
     results = {}
     for name, case in compare.cases().items():
         for side in track_progress(case.sides, name):
-            b, law = compare.against(case, side), compare.law_state(case, side)
+            b, law = compare.boundary_element_results(case, side), compare.law_state(case, side)
             results[name, side] = case, b, law
             title = f"{name}, side {side * 1e3:.3g} mm, h_rms {b['rms'].mean() * 1e6:.2g} µm"
             names = (
@@ -252,11 +252,14 @@ def print_grids():
     heading("k [N/m3] and real area, zhao2018", *names)
     for side in case.sides:
         for points, finest in ((128, 8), (128, 4), (256, 16), (256, 8), (256, 4)):
-            found = compare.against(case, side, range(2), points=points, finest=finest)
+            found = compare.boundary_element_results(case, side, range(2), points=points, finest=finest)
             k, area = found["k"].mean(axis=0), found["area"].mean(axis=0)
             row(f"{side * 1e3:.3g}", points, finest, f"{k[0]:.2g}", f"{k[-1]:.2g}", f"{area[-1]:.2g}")
     case = replace(case, pressures=np.array([1e6, 4e6, 16e6]))
-    found, law = compare.against(case, 1e-3, points=128)["k"], compare.law_state(case, 1e-3)["k"]
+    found, law = (
+        compare.boundary_element_results(case, 1e-3, points=128)["k"],
+        compare.law_state(case, 1e-3)["k"],
+    )
     print("\nzhao2018 on 1 mm2 at 1, 4, 16 MPa: boundary elements", *(spread(k) for k in found.T), end="")
     print(", law", *(f"{k:.2g}" for k in law))
 

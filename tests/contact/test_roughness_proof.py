@@ -21,7 +21,7 @@ pytestmark = needs("tamaas")
 def pressed():
     """Boundary elements and law on three Hurst exponents and two bands, 128 points."""
     return {
-        (H, roll_off): cases.pressed(H, roll_off, seeds=seeds, points=128)
+        (H, roll_off): cases.elastic_contacts(H, roll_off, seeds=seeds, points=128)
         for H in cases.HURST
         for roll_off, seeds in SEEDS.items()
     }
@@ -40,7 +40,7 @@ def test_no_seed_of_development_is_used_again():
 @slow
 def test_stiffness_is_that_of_boundary_elements(pressed):
     for (_, roll_off), one in pressed.items():
-        held = cases.held(roll_off, one["area"].max(axis=0))
+        held = cases.in_valid_range(roll_off, one["area"].max(axis=0))
         assert held.sum() >= 3
         ratio = one["law"] / one["k"]
         miss = np.abs(one["law"].mean(axis=0) / one["k"].mean(axis=0) - 1.0)
@@ -52,7 +52,7 @@ def test_few_single_surfaces_of_many_hills_are_beyond(pressed):
     missed = count = 0
     for (_, roll_off), one in pressed.items():
         if roll_off == 4:
-            held = cases.held(roll_off, one["area"])
+            held = cases.in_valid_range(roll_off, one["area"])
             missed += int((np.abs(one["law"] / one["k"] - 1.0) > 0.3)[held].sum())
             count += int(held.sum())
     assert count > 30
@@ -69,7 +69,7 @@ def test_the_exponent_is_that_of_boundary_elements(pressed):
 @slow
 def test_many_hills_are_stiffer_than_the_law_at_light_load():
     """The tail of the heights: k h/p rises with falling load however many hills there are."""
-    one = cases.pressed(0.55, 16, seeds=range(400, 402), points=256)
+    one = cases.elastic_contacts(0.55, 16, seeds=range(400, 402), points=256)
     ratio = (one["law"] / one["k"]).mean(axis=0)
     assert ratio[0] < ratio[-1] - 0.1
     assert 0.55 < ratio[0] < 0.9
@@ -86,11 +86,11 @@ def test_plastic_loading_is_softer_in_the_law_than_in_boundary_elements():
 
 
 def test_every_cast_iron_joint_of_known_roughness_is_met_within_a_factor():
-    joints = [joint for joint in cases.rough() if joint["material"].startswith("cast iron")]
+    joints = [joint for joint in cases.joints_with_roughness() if joint["material"].startswith("cast iron")]
     assert len(joints) == 3
     p = np.geomspace(0.5e6, 2e6, 5)
     for joint in joints:
-        ratio = level(joint_law(joint), p) / interface_laws.measured_middle(joint, p)
+        ratio = level(joint_law(joint), p) / interface_laws.mean_measured_stiffness(joint, p)
         assert np.all((ratio > 1.0 / 2.5) & (ratio < 2.5)), joint["id"]
 
 
@@ -98,23 +98,23 @@ def test_the_plain_line_has_the_published_ratios():
     """p/(0.45 h) at 1 MPa over C = 0.65, m = 0.45; C = 0.3 and 0.5, m = 0.5 in um, kgf/cm2."""
     p = np.array([1e6])
     expected = {"cast_iron.ground": 1.04, "cast_iron.scraped_fine": 0.66, "cast_iron.scraped_medium": 0.63}
-    for joint in cases.rough():
+    for joint in cases.joints_with_roughness():
         if joint["id"] in expected:
             line = p / (GAMMA * joint_law(joint).h)
-            ratio = line / interface_laws.measured_middle(joint, p)
+            ratio = line / interface_laws.mean_measured_stiffness(joint, p)
             assert ratio == pytest.approx(expected[joint["id"]], abs=0.005)
 
 
 def test_the_steel_joints_are_missed_sixfold():
     p = np.array([1e6])
-    for joint in cases.rough():
+    for joint in cases.joints_with_roughness():
         if joint["material"].startswith("steel"):
-            ratio = level(joint_law(joint), p) / interface_laws.measured_middle(joint, p)
+            ratio = level(joint_law(joint), p) / interface_laws.mean_measured_stiffness(joint, p)
             assert 1 / 9 < ratio[0] < 1 / 4
 
 
 def test_every_roughness_says_how_it_is_known():
-    for joint in cases.rough():
+    for joint in cases.joints_with_roughness():
         assert joint["Rq_read"]
         assert joint["A_0"] > 0.0
     data = measured("brake_reuss")
@@ -136,9 +136,9 @@ def test_a_filter_leaves_half_of_its_wave():
 def test_a_second_scale_in_series_does_not_explain_light_load():
     """A series element only softens, and the joints are stiffer than the law at 0.1 MPa."""
     p = cases.MEASURED[:1]
-    for joint in cases.rough():
+    for joint in cases.joints_with_roughness():
         law = joint_law(joint)
         alone = level(law, p)
-        assert alone < 0.5 * interface_laws.measured_middle(joint, p)
+        assert alone < 0.5 * interface_laws.mean_measured_stiffness(joint, p)
         for height in (0.1e-6, 1e-6, 10e-6):
-            assert cases.wavy(law, p, height, 40e-3) < alone
+            assert cases.two_scale_stiffness(law, p, height, 40e-3) < alone

@@ -7,9 +7,9 @@ import pytest
 from clients import needs
 from oracles.lap_beam import brake_reuss as cases
 from oracles.lap_beam.brake_reuss import AMPLITUDES, FRICTION_COEFFICIENT, GLUED_STIFFNESS
-from oracles.lap_beam.loops import Joint, damping, foundation, frequency, masing, with_friction
+from oracles.lap_beam.loops import Joint, damping, foundation, frequency, masing_losses, with_friction
 from oracles.lap_beam.plan import Fineness
-from oracles.lap_beam.reduction import Structure, reduced, spectrum
+from oracles.lap_beam.reduction import Structure, reduce_beam, spectrum
 
 from jointfmu.mechanics.curve import tabulate_approach
 
@@ -26,7 +26,7 @@ def test_bars_on_each_other_have_the_frequency_of_timoshenko(shear, height):
     structure = Structure.of(BAR, Fineness(far=12e-3, layers=2))
     normal = np.full(structure.interface.quadrature_area.size, GLUED_STIFFNESS)
     found, _ = spectrum(structure, np.column_stack([shear * np.ones_like(normal)] * 2 + [normal]))
-    expected = cases.solid_bar(replace(BAR, side=height * BAR.side))
+    expected = cases.solid_bar_frequency(replace(BAR, side=height * BAR.side))
     assert found[found > 1.0][0] == pytest.approx(expected, rel=5e-4)
 
 
@@ -36,7 +36,7 @@ def joint():
     structure = Structure.of(cases.beam(), Fineness(near=6e-3, far=8e-3, layers=1))
     law = cases.laws()["roughness"]
     curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
-    part = reduced(structure, curve, cases.data()["beam"]["preload"], shear)
+    part = reduce_beam(structure, curve, cases.data()["beam"]["preload"], shear)
     return Joint(part, foundation(curve, shear, FRICTION_COEFFICIENT))
 
 
@@ -51,9 +51,11 @@ def test_the_bolts_press_with_their_preload(joint):
 def test_small_loads_meet_the_linear_mode(joint):
     """A load of which the patches slip by less than 1e-4 of their displacement."""
     q = 1e-9
-    state = joint.loaded(joint.at_rest(), q * joint.square)
+    state = joint.apply_load(joint.at_rest(), q * joint.square)
     assert state.q == pytest.approx(q, rel=1e-5)
-    assert np.allclose(state.moved, q * joint.beam.shape, atol=1e-3 * q * np.abs(joint.beam.shape).max())
+    assert np.allclose(
+        state.displacement, q * joint.beam.shape, atol=1e-3 * q * np.abs(joint.beam.shape).max()
+    )
 
 
 @needs("gmsh")
@@ -62,7 +64,7 @@ def test_frequency_falls_and_damping_rises_with_amplitude(joint):
     ratio with the first; patches of little pressure slip wholly, which takes up to 0.15 off the exponent, and
     the finite number of sliders scatters it by 0.1."""
     states = joint.backbone(AMPLITUDES)
-    zeta = np.array([damping(*pair) for pair in zip(masing(states), states, strict=True)])
+    zeta = np.array([damping(*pair) for pair in zip(masing_losses(states), states, strict=True)])
     assert np.all(np.diff([frequency(state) for state in states]) < 0.0)
     assert np.all(np.diff(zeta[3:]) > 0.0)
     slope = np.polyfit(np.log([state.q for state in states[4:9]]), np.log(zeta[4:9]), 1)[0]
@@ -79,11 +81,11 @@ def test_a_whole_cycle_closes_and_its_area_is_its_loss(joint):
     assert q[-1] == pytest.approx(q[0], rel=1e-3)
     assert q[8] == pytest.approx(-q[0], rel=1e-3)
     assert np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(q)) == pytest.approx(loss, rel=0.05)
-    assert masing(states)[-1] == pytest.approx(loss, rel=0.2)
+    assert masing_losses(states)[-1] == pytest.approx(loss, rel=0.2)
 
 
 @needs("gmsh")
 def test_damping_by_masing_is_never_negative(joint):
     """With much friction little slips; the contact then stiffens under the load, which is no loss."""
     states = with_friction(joint, 0.6).backbone(AMPLITUDES)
-    assert np.all(masing(states) > 0.0)
+    assert np.all(masing_losses(states) > 0.0)

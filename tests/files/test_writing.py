@@ -63,7 +63,7 @@ def test_a_check_leaves_nothing_and_refuses_what_is_in_the_way(tmp_path):
 @pytest.mark.parametrize(
     ("command", "work"),
     [
-        (["build", "GearContact"], "jointfmu_fmu_src.building.build"),
+        (["build", "GearContact"], "jointfmu_fmu_src.building.build_fmus"),
         (["modelica"], "jointfmu_tools.exchange.modelica.library.render_library"),
         (["system", "robot_joint"], "jointfmu_tools.exchange.modelica.library.render_system"),
     ],

@@ -1,5 +1,7 @@
-"""Coulomb's friction by many springs of one touch and one limit each, for proofs that share no code with the
-package's sliders: of a convex curve p(delta), spring by spring, moved by the radial return of plasticity.
+"""Coulomb friction by many independent springs, each with one touch and one limit.
+
+The springs represent a convex curve p(delta). Each moves by the radial return of plasticity. The code is
+independent of the package's sliders.
 """
 
 from dataclasses import dataclass
@@ -16,12 +18,12 @@ from .sphere_friction import load_levels
 Array = NDArray[np.float64]
 
 WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.04
-"""Pressures [Pa] between which the springs lie close; lowest level, distance of levels [1]."""
+"""Range of pressures [Pa] with close springs; lowest load level, logarithmic step of the levels [1]."""
 
 
 @dataclass(frozen=True)
 class Springs:
-    """Springs of a curve; each range between two edges (n + 1) [m] is one, at the mean height of its range.
+    """Springs of a curve: one for each interval between edges (n + 1) [m], at its mean height.
 
     curve : pressure [Pa] over approach [m]; `ratio` K_T/K_N [1], `friction` mu [1]
     """
@@ -40,12 +42,12 @@ class Springs:
 
     @cached_property
     def stiffness(self) -> Array:
-        """(n) [Pa/m] normal to the surface."""
+        """Normal stiffness (n) [Pa/m] of the springs."""
         return np.diff(self.curve.derivatives(self.edges, 1)[1])
 
     @cached_property
     def heights(self) -> Array:
-        """(n) [m] where the springs touch: p is right wherever a range is full."""
+        """Heights (n) [m] at which the springs touch; the pressure is exact at the edges."""
         load, slope = self.curve.derivatives(self.edges, 1)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
         moment, carries = np.diff(self.edges * slope - load), self.stiffness > 1e-12 * slope[-1]
@@ -56,10 +58,10 @@ class Springs:
         return np.zeros((count, 2, self.edges.size - 1))
 
     def advance(self, force: Array, before: Array, after: Array, shift: Array) -> SliderUpdate:
-        """After a short straight path from approaches (P) to others [m], by shifts (P, 2) [m].
+        """Move along a short straight path between approaches (P) [m], by tangential increments (P, 2) [m].
 
-        A spring sticks, or its force returns along itself to friction times what presses it; heat is force
-        times slip. First order in the path where its direction or the approach changes.
+        A spring sticks, or its force returns radially to the friction limit; the heat is force times slip.
+        First order in the increment where the direction or the approach changes.
         """
         limit = self.friction * self.stiffness * np.maximum(after[:, None] - self.heights, 0.0)
         slope = self.ratio * np.where(limit > 0.0, self.stiffness, 0.0)

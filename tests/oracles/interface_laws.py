@@ -20,7 +20,7 @@ POINTS, FINEST = 256, 8
 
 @dataclass(frozen=True)
 class Case:
-    """A law with the surface and the material that it describes, for boundary elements.
+    """Interface law with its surface and material, for boundary elements.
 
     modulus, hardness : [Pa]; D, G : of the isotropic surface [1, m]; sides : [m], of the squares pressed;
     pressures : [Pa]
@@ -33,13 +33,13 @@ class Case:
     sides: tuple[float, ...]
     pressures: np.ndarray
 
-    def on(self, side):
-        """The law for the nominal area of one square."""
+    def with_side(self, side):
+        """Law with the nominal area of one square."""
         return replace(self.law, A_0=side**2)
 
 
 def cases():
-    """The three default parameter sets; the longer side is that of the joint's own nominal area."""
+    """Cases of the three default parameter sets; the longer side is that of the nominal area of the joint."""
     zhao, hu, yu = (load_default(j).values for j in ("bolted_joint", "harmonic_drive", "gear_contact"))
     hu = hu.law
     profile, flank = zhao.surface, yu.surface1
@@ -71,8 +71,8 @@ def cases():
     }
 
 
-def rougher(case, D, G):
-    """The case's law for another isotropic surface, D and G [1, m]."""
+def law_of_surface(case, D, G):
+    """Law of the case with another isotropic surface, D and G [1, m]."""
     law = case.law
     if hasattr(law.surface, "s_min"):
         return replace(law, surface=replace(law.surface, D=D, G=G))
@@ -94,8 +94,9 @@ def exponent(x, y):
     return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 
-def against(case, side, seeds=SEEDS, **grid):
-    """Boundary elements of a case's surface, elastic to the hardness: {quantity: (seeds, pressures)}, SI.
+def boundary_element_results(case, side, seeds=SEEDS, **grid):
+    """Boundary elements on the surface of a case, elastic up to the hardness: {quantity: (seeds, pressures)},
+    SI.
 
     k : of small motions [N/m3]; loading : dp/d(approach) [N/m3]; area, plastic : shares [1]; rms : [m]
     """
@@ -114,8 +115,8 @@ def against(case, side, seeds=SEEDS, **grid):
 
 
 def law_state(case, side):
-    """The law on the same nominal area: k [N/m3], area and plastic share of the real area [1]."""
-    law = case.on(side)
+    """Law on the nominal area of one square: k [N/m3], area and plastic share of the real area [1]."""
+    law = case.with_side(side)
     u = solve_largest_spot(law, case.pressures)
     s, state = law.spots(), evaluate_at_pressure(law, case.pressures)
     if "elastic_fraction" in state:
@@ -123,7 +124,7 @@ def law_state(case, side):
     elif "elastic_area" in s.regime_terms:
         elastic = s.sum_over_spots("elastic_area", u) / s.sum_over_spots("area", u)
     else:  # Zhao: the second term of the area is that of the elastic spots
-        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).total(
+        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).sum_over_spots(
             "area", u
         ) / s.sum_over_spots("area", u)
     return {
@@ -134,7 +135,7 @@ def law_state(case, side):
 
 
 def elastic(H, roll_off, loads, seeds=SEEDS, **grid):
-    """Elastic contact without units: {quantity: (seeds, loads)}; loads in E* h'_rms.
+    """Dimensionless elastic contact: {quantity: (seeds, loads)}; loads in E* h'_rms.
 
     alpha : k h_rms/p; kappa : (A_r/A_0) E* h'_rms/p; isolated : stiffness of the spots on their own over k
     """
@@ -182,7 +183,7 @@ def measured_stiffness(joint, pressure):
     return np.min(values, axis=0) * scale, np.max(values, axis=0) * scale
 
 
-def measured_middle(joint, pressure):
+def mean_measured_stiffness(joint, pressure):
     """Stiffness [N/m3] of a measured joint in the middle of its printed ranges."""
     middle = {name: [float(np.mean(joint[name]))] for name in ("C", "m")}
     return measured_stiffness(joint | middle, pressure)[0]

@@ -30,7 +30,7 @@ from jointfmu.parameters import ParameterFile
 from .contact_patches import gross_slip_forces, random_poles
 from .coulomb_springs import Springs
 from .lap_beam.loops import Joint as Loops
-from .lap_beam.reduction import AT_ONCE, Reduced, patches
+from .lap_beam.reduction import RIGHT_SIDES_PER_SOLVE, ReducedBeam, patches
 
 Array = NDArray[np.float64]
 
@@ -261,7 +261,7 @@ class FrictionElements:
         ]
         K = linear.stiffness
         motion = np.linalg.solve(K, wrench) * force
-        beam = Reduced(
+        beam = ReducedBeam(
             np.array([0.5 / np.pi]),  # unit square of the frequency: the load is the motion
             0.0,
             approach,
@@ -285,7 +285,7 @@ class FrictionElements:
         """Generalized force (n) [N.m] and heat so far (n) [J] along a sequence of loads from rest."""
         state, rows, heat = self.loops.at_rest(), [], 0.0
         for load in loads:
-            state = self.loops.loaded(state, load)
+            state = self.loops.apply_load(state, load)
             heat += 0.5 * state.loss
             rows.append((load * self.stiffness + 0.5 * (load - state.q), heat))
         force, loss = np.array(rows).T
@@ -300,8 +300,8 @@ def compliance(
     free = np.setdiff1d(np.arange(matrix.shape[0]), np.concatenate([held[0], first + held[1]]))
     factor = Cholesky(matrix[free][:, free])
     rows = sp.vstack(apart).tocsr()[np.arange(3 * count).reshape(3, count).T.ravel()][:, free]
-    columns = [rows @ factor.solve(rows[i : i + AT_ONCE].T.toarray()) for i in range(0, 3 * count, AT_ONCE)]
-    return np.hstack(columns)
+    blocks = (rows[i : i + RIGHT_SIDES_PER_SOLVE] for i in range(0, 3 * count, RIGHT_SIDES_PER_SOLVE))
+    return np.hstack([rows @ factor.solve(block.T.toarray()) for block in blocks])
 
 
 def follow_loads(

@@ -11,21 +11,21 @@ from jointfmu.contact.laws.roughness import RoughnessLaw
 from jointfmu.contact.surface import ElasticConstants
 
 HARDNESS, SLOPE, FRICTION = 2e9, 0.15, 0.15
-"""[Pa, 1, 1] of the joints: no stiffness of small motions depends on them."""
+"""Assumed properties of the joints [Pa, 1, 1]; the stiffness of small motions does not depend on them."""
 GAMMA = 0.45
-"""Of the law [1]."""
+"""Constant gamma of the law `roughness` [1]."""
 LONGEST, MACHINED = 1e-3, 0.8
-"""Longest wave [m] that machining leaves and Hurst exponent [1] of the joints, both estimates."""
+"""Estimated longest wave [m] and Hurst exponent [1] of the machined joints."""
 
 
 def measured(name="measured_joints"):
-    """Measured joints, or another file of models/reference."""
+    """Read the measured joints, or another file of models/reference."""
     text = (files("jointfmu_models") / "reference" / f"{name}.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
 
 def joint_law(joint, **changes):
-    """The law for an entry of models/reference with the roughness `Rq` of each of its two sides."""
+    """Law `roughness` for an entry of models/reference with the roughness `Rq` of each side."""
     body = ElasticConstants(E=joint["E"], nu=joint["nu"])
     law = RoughnessLaw(
         h=np.sqrt(2.0) * joint["Rq"],

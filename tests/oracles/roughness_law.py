@@ -19,23 +19,23 @@ from .boundary_element import press, slope
 from .measured_joints import FRICTION, GAMMA, joint_law, level, measured
 
 DEVELOPMENT = (*range(8), *range(100, 106), *range(200, 212))
-"""Seeds that the constants of the law were chosen with; the proof uses none of them."""
+"""Seeds with which the constants of the law were chosen; the comparison uses none of them."""
 SEEDS = {1: range(300, 316), 4: range(300, 306), 16: range(300, 302)}
-"""Of the surfaces with waves up to side/1, side/4 and side/16: one hill differs from another most."""
+"""{roll-off: seeds} of surfaces with waves up to side/1, side/4 and side/16."""
 POINTS = {1: 256, 4: 256, 16: 512}
-"""Along a side of them."""
+"""{roll-off: grid points along a side}."""
 HURST = (0.3, 0.55, 0.8)
 LOADS = {1: (0.1, 0.3, 0.5, 0.9, 1.5), 4: (0.02, 0.06, 0.18, 0.5, 1.5), 16: (0.001, 0.003, 0.01, 0.03, 0.1)}
-"""Loads y [1] of the surfaces with waves up to side/1, side/4 and side/16."""
-FEWEST, LIGHTEST, FLATTENED, FULLEST = 0.3, 0.01, 1.5, 0.15
-"""Least x, least and largest y, largest real area where the law is meant to hold [1]."""
+"""{roll-off: loads y [1]}."""
+MIN_LOAD, MIN_PRESSURE, MAX_PRESSURE, MAX_AREA = 0.3, 0.01, 1.5, 0.15
+"""Range of validity of the law [1]: least x, least and largest y, largest real area."""
 NO_HARDNESS = 1e30
-"""[Pa]."""
+"""Hardness [Pa] of an elastic contact."""
 MEASURED = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
 
 
-def without_units(H, roll_off, h, gradient, hardness=NO_HARDNESS):
-    """The law on the unit square of boundary_element.py, whose contact modulus is 1."""
+def dimensionless_law(H, roll_off, h, gradient, hardness=NO_HARDNESS):
+    """Law on the unit square of boundary_element.py, whose contact modulus is 1."""
     body = ElasticConstants(E=2.0, nu=0.0)
     return RoughnessLaw(
         h=h,
@@ -52,7 +52,7 @@ def without_units(H, roll_off, h, gradient, hardness=NO_HARDNESS):
     )
 
 
-def pressed(H, roll_off, seeds=None, points=None):
+def elastic_contacts(H, roll_off, seeds=None, points=None):
     """Boundary elements and the law, elastic: {quantity: (seeds, loads)}; k, law, tail [E* over side]."""
     found = {name: [] for name in ("p", "k", "law", "tail", "area")}
     y = np.array(LOADS[roll_off])
@@ -65,21 +65,21 @@ def pressed(H, roll_off, seeds=None, points=None):
         found["p"].append(p)
         found["k"].append([c.stiffness for c in contacts])
         found["area"].append([c.area for c in contacts])
-        law = without_units(H, roll_off, z.std(), slope(z))
+        law = dimensionless_law(H, roll_off, z.std(), slope(z))
         found["law"].append(level(law, p))
-        found["tail"].append(tail(law, p))
+        found["tail"].append(stiffness_with_tail(law, p))
     return {name: np.array(rows) for name, rows in found.items()}
 
 
-def held(roll_off, area):
-    """Where the law is meant to hold, of areas (..., loads)."""
+def in_valid_range(roll_off, area):
+    """Mask of the range of validity, for real areas (..., loads)."""
     y = np.array(LOADS[roll_off])
-    return (y * roll_off**2 >= FEWEST) & (y >= LIGHTEST) & (y <= FLATTENED) & (area <= FULLEST)
+    return (y * roll_off**2 >= MIN_LOAD) & (y >= MIN_PRESSURE) & (y <= MAX_PRESSURE) & (area <= MAX_AREA)
 
 
 def exponents(one, roll_off):
-    """Exponents of k over p where the law is meant to hold, (seeds,) of boundary elements and of the law."""
-    use = held(roll_off, one["area"].max(axis=0))
+    """Exponents of k over p in the range of validity, (seeds) of boundary elements and of the law."""
+    use = in_valid_range(roll_off, one["area"].max(axis=0))
     return tuple(
         np.array([compare.exponent(p[use], k[use]) for p, k in zip(one["p"], one[name], strict=True)])
         for name in ("k", "law")
@@ -97,19 +97,20 @@ def plastic(H, roll_off, hardness, load, seeds, points=64):
         gradient = slope(z)
         p = load * hardness * gradient * np.array([0.9, 1.0, 1.1])
         low, one, high = press(z, p, hardness * gradient, iterations=100)
-        state = evaluate_at_pressure(without_units(H, roll_off, z.std(), gradient, hardness * gradient), p[1])
+        law = dimensionless_law(H, roll_off, z.std(), gradient, hardness * gradient)
+        state = evaluate_at_pressure(law, p[1])
         loading = (p[2] - p[0]) / (low.separation - high.separation)
         rows.append((state["K_loading"] / loading, state["K_N"] / one.stiffness, state["A_r"] / one.area))
     return np.array(rows).T
 
 
-def rough():
-    """The measured joints whose roughness is stated."""
+def joints_with_roughness():
+    """Measured joints with a stated roughness."""
     return [joint for joint in measured()["normal"] if "Rq" in joint]
 
 
 def filtered_wave(sigma):
-    """Wavelength [m] of which a Gaussian filter of standard deviation sigma [m] leaves a half."""
+    """Wavelength [m] that a Gaussian filter of standard deviation sigma [m] halves."""
     return float(np.pi * np.sqrt(2.0 / np.log(2.0)) * sigma)
 
 
@@ -122,13 +123,13 @@ def brake_reuss(**changes):
     return {name: float(state[q] / law.A_0 / data[name]) for name, q in names.items()}
 
 
-def wavy(law, p, h, wave):
+def two_scale_stiffness(law, p, h, wave):
     """Stiffness per area [N/m3] of the law in series with a second scale: rms height and longest wave [m]."""
     return 1.0 / (1.0 / level(law, p) + 1.0 / level(replace(law, h=h, longest_wave=wave), p))
 
 
-def tail(law, p):
-    """Stiffness per area [N/m3] of the law if many hills grew as the tail of the heights makes them.
+def stiffness_with_tail(law, p):
+    """Stiffness per area [N/m3] of the law with the tail of the height distribution for many hills.
 
     1/gamma (y/0.2)^-0.08 for 1/gamma: what boundary elements of up to 1024 hills have from y = 0.001 to 1.
     """

@@ -81,7 +81,7 @@ def pressed():
     found = {}
     for name, case in interface_laws.cases().items():
         few = replace(case, pressures=case.pressures[1::2])
-        elements = interface_laws.against(few, few.sides[-1], range(1), points=128)
+        elements = interface_laws.boundary_element_results(few, few.sides[-1], range(1), points=128)
         found[name] = few, elements, interface_laws.law_state(few, few.sides[-1])
     return found
 
@@ -111,7 +111,7 @@ def test_the_law_has_no_stiffness_on_a_small_area_where_boundary_elements_have()
     case = interface_laws.cases()["zhao2018"]
     case = replace(case, pressures=np.array([1e6, 4e6]))
     assert np.all(interface_laws.law_state(case, 1e-3)["k"] == 0.0)
-    assert np.all(interface_laws.against(case, 1e-3, range(1), points=64)["k"] > 1e12)
+    assert np.all(interface_laws.boundary_element_results(case, 1e-3, range(1), points=64)["k"] > 1e12)
 
 
 def test_zhaos_continuous_choice_alone_lies_among_measured_cast_iron():

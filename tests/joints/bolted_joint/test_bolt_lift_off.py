@@ -79,7 +79,9 @@ def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):
         return np.array([out[f"F_bolt[{j + 1}]"] for j in range(round(spring.joint.n_bolts))])
     x, y = spring.bolts.position.T
     elongation = six[2] + six[3] * y - six[4] * x
-    return np.maximum(preload - EMBEDDING + moment * spring.bolts.lever + STIFFNESS * elongation, 0.0)
+    return np.maximum(
+        preload - EMBEDDING + moment * spring.bolts.force_per_moment + STIFFNESS * elongation, 0.0
+    )
 
 
 def without_bolts(spring):
@@ -232,7 +234,7 @@ def test_without_preload_bolts_are_at_lift_off(spring):
 
 
 def test_a_moment_that_unloads_a_row_takes_no_more_than_its_force(spring):
-    most = (PRELOAD - EMBEDDING) / np.max(-spring.bolts.lever)
+    most = (PRELOAD - EMBEDDING) / np.max(-spring.bolts.force_per_moment)
     out, _ = at(spring, *STILL, moment=1.5 * most)
     force = spring.bolts.preload_force(spring.joint, PRELOAD, 1.5 * most)
     assert np.min(force) == 0.0

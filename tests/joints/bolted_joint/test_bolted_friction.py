@@ -95,7 +95,7 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
         patches,
         **{
             name: getattr(patches, name)[:1]
-            for name in ("area_share", "position", "preload_shape", "moment_shape")
+            for name in ("area_share", "position", "preload_pressure_ratio", "moment_pressure_ratio")
         },
     )
     np.testing.assert_array_equal(force_transfer(points, one), np.ones((1, points.area_share.size)))

@@ -191,7 +191,7 @@ def test_numbers_of_the_drawing_are_in_the_file(capsys, tmp_path):
     file = load_parameter_file(path)
     joint, plate = file.values, file.values.pattern
     assert (plate.length, plate.width, plate.hole_diameter) == (0.2, 0.1, 0.0135)
-    assert plate.bolts.tolist() == [[-0.08, -0.03], [0.08, -0.03], [-0.08, 0.03], [0.08, 0.03]]
+    assert plate.bolts_from_middle.tolist() == [[-0.08, -0.03], [0.08, -0.03], [-0.08, 0.03], [0.08, 0.03]]
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == pytest.approx((4.0, 2.0, 0.06))
     assert pytest.approx(0.2 * 0.1 - 4 * math.pi / 4 * 0.0135**2) == joint.A_0
     assert joint.h == pytest.approx(RQ_OVER_RA * 0.8e-6 * math.sqrt(2.0))

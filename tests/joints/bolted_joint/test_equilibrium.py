@@ -15,7 +15,10 @@ LOAD = np.array([1.0, 2.0])
 
 def state(a, residual):
     return SimpleNamespace(
-        modal_coordinates=a, residual=residual, residual_norm=np.max(np.abs(residual)), tolerance=1e-12
+        modal_coordinates=a,
+        residual=residual,
+        residual_norm=np.max(np.abs(residual)),
+        residual_tolerance=1e-12,
     )
 
 

@@ -100,7 +100,7 @@ def test_state_outside_the_law_is_refused(joint, state):
 
 def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
     area = joint.points.area_share * joint.joint.A_0
-    mesh = NodePairs("own.csv", found.nodes, joint.points.position, area, None)
+    mesh = NodePairs("own.csv", found.node_labels, joint.points.position, area, None)
     same = springs_on_mesh(joint, mesh, 15e3, 4500.0)
     np.testing.assert_allclose(same.K_n, found.K_n, rtol=1e-9)  # the triangulation's round-off
     assert same.stiffness_correction == pytest.approx(1.0, rel=1e-9)
@@ -231,16 +231,16 @@ def test_ansys_is_read_by_mapdl_archive(found, tmp_path, normal):
     place = dict(zip(archive.nnum.tolist(), archive.nodes, strict=True))
     for side in (0, 1):
         labels = archive.node_components[f"JOINT_SIDE_{side + 1}"]
-        assert labels.tolist() == sorted(found.nodes[:, side])
-        read = np.array([place[n] for n in found.nodes[:, side]])
+        assert labels.tolist() == sorted(found.node_labels[:, side])
+        read = np.array([place[n] for n in found.node_labels[:, side]])
         np.testing.assert_allclose(read[:, axes[:2]], 1e3 * found.position, rtol=1e-12, atol=1e-12)
         assert not read[:, axes[2]].any()
     constants = dict(zip(archive.rlblock_num.tolist(), archive.rlblock, strict=True))
     elements = np.array(archive.elem)  # material, type, real constants, five more, element, one more, I, J
-    assert elements[:, 8].tolist() == list(range(1, 2 * len(found.nodes) + 1))
+    assert elements[:, 8].tolist() == list(range(1, 2 * len(found.node_labels) + 1))
     for kind, tangential, normals in ((1, found.K_t, found.K_n), (2, found.C_t, found.C_n)):
         mine = elements[elements[:, 1] == kind]
-        assert mine[:, 10:].tolist() == found.nodes.tolist()
+        assert mine[:, 10:].tolist() == found.node_labels.tolist()
         matrices = np.array([symmetric(constants[r]) for r in mine[:, 2]])
         diagonal = np.diagonal(matrices, axis1=1, axis2=2)
         np.testing.assert_allclose(diagonal[:, axes[0]], tangential / 1e3, rtol=DIGITS)
@@ -288,7 +288,7 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
         axis = "XYZ".index(name.split("_")[1][1])
         assert dofs in (None, (axis + 1, axis + 1))  # a converted dashpot has an axis of its own
         sums[keyword][axis] += value * len(elements[name])
-    whole = [found.totals[n] / 1e3 for n in TOTAL_OUTPUTS]
+    whole = [found.joint_totals[n] / 1e3 for n in TOTAL_OUTPUTS]
     np.testing.assert_allclose(sums["SPRING"] + sums["DASHPOT"], whole, rtol=DIGITS)
 
 
@@ -350,14 +350,16 @@ def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
     assert "*NODE" not in text
     assert {kind for kind, _, _ in values.values()} == {"SPRING"}
     rows = [[int(v) for v in row.split(",")] for rows in elements.values() for row in rows]
-    assert sorted(row[0] for row in rows) == list(range(5000, 5000 + 3 * len(found.nodes)))
-    assert sorted(row[1:] for row in rows) == sorted(found.nodes.tolist() * 3)
+    assert sorted(row[0] for row in rows) == list(range(5000, 5000 + 3 * len(found.node_labels)))
+    assert sorted(row[1:] for row in rows) == sorted(found.node_labels.tolist() * 3)
     sums = [0.0] * 3
     for name, (_, dofs, value) in values.items():
         assert dofs[0] == dofs[1]
         sums[dofs[0] - 1] += value * len(elements[name])
     # the joint's normal along the model's x
-    np.testing.assert_allclose(sums, [found.totals[n] / 1e3 for n in ("K_zz", "K_xx", "K_yy")], rtol=DIGITS)
+    np.testing.assert_allclose(
+        sums, [found.joint_totals[n] / 1e3 for n in ("K_zz", "K_xx", "K_yy")], rtol=DIGITS
+    )
 
 
 def test_csv_is_read_by_the_standard_library(found):

@@ -19,12 +19,12 @@ GLUED_STIFFNESS = 1e17
 
 
 def data():
-    """The entries of models/reference/brake_reuss.toml."""
+    """Read models/reference/brake_reuss.toml."""
     return measured("brake_reuss")
 
 
 def beam():
-    """Geometry and material."""
+    """Geometry and material of the beam."""
     entries = data()
     known = {name: value for name, value in entries["beam"].items() if name != "preload"}
     return LapBeam(**known | {"bolts": tuple(known["bolts"]), "E": entries["E"], "nu": entries["nu"]})
@@ -58,7 +58,7 @@ def crown(height, lap):
 
 
 def laws():
-    """{name: law}: from the deviation of the gap, and the same form at the published level."""
+    """Laws: `roughness` from the rms height of the gap, `published` scaled to the published stiffness."""
     entries = data()
     ours = joint_law(entries | {"Rq": entries["h"] / np.sqrt(2.0)}, H=entries["H"])
 
@@ -68,7 +68,7 @@ def laws():
     return {"roughness": ours, "published": replace(ours, h=brentq(excess, 0.5 * ours.h, 2.0 * ours.h))}
 
 
-def solid_bar(one):
+def solid_bar_frequency(one):
     """First bending frequency [Hz] of a free bar without a joint (Timoshenko; shear by Cowper)."""
     area, inertia = one.across * one.side, one.across * one.side**3 / 12.0
     shear = 10.0 * (1.0 + one.nu) / (12.0 + 11.0 * one.nu) * one.E / (2.0 * (1.0 + one.nu)) * area
@@ -105,5 +105,5 @@ class Curves:
 
 
 def published(name):
-    """What the authors computed, `flat` or `curved`."""
+    """Published curves of the authors, `flat` or `curved`."""
     return Curves(**{key: np.array(values) for key, values in data()["published"][name].items()})

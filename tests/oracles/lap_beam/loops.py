@@ -13,14 +13,14 @@ from scipy.linalg import lu_factor, lu_solve
 from jointfmu.mechanics.sliders import Foundation
 
 from ..sphere_friction import load_levels, sliders_at_levels
-from .reduction import Reduced
+from .reduction import ReducedBeam
 
 WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.2
-"""Pressures [Pa] between which the heights of the sliders lie close; lowest level, distance of levels [1]."""
+"""Pressures [Pa] with close slider heights; lowest load level, logarithmic step of the levels [1]."""
 TOLERANCE = 1e-9
-"""Largest residual displacement over the largest one [1] at which an equilibrium counts as found."""
-MOST, SHORT = 200, 1e-4
-"""Steps of Newton's method at most, and that over the motion [1] which is not halved further."""
+"""Largest residual displacement over the largest displacement [1] of an equilibrium."""
+MAX_NEWTON_ITERATIONS, MIN_STEP = 200, 1e-4
+"""Largest number of Newton steps; smallest step of the line search over the displacement [1]."""
 
 
 def foundation(curve, ratio, friction):
@@ -33,26 +33,26 @@ def foundation(curve, ratio, friction):
 
 @dataclass(frozen=True)
 class State:
-    """Beam under a load.
+    """State of the beam under a modal load.
 
     load     : a [m kg^0.5/s2]; `q` [m kg^0.5] the modal coordinate
-    moved    : (P, 3) [m] relative displacement of the patches since tightening
+    displacement : (P, 3) [m] relative displacement of the patches since tightening
     force    : (P, 2, n) [Pa] of the sliders
     loss     : [J] turned into heat on the way here, whole width
     """
 
     load: float
     q: float
-    moved: np.ndarray
+    displacement: np.ndarray
     force: np.ndarray
     loss: float = 0.0
 
 
 @dataclass(frozen=True)
 class Joint:
-    """The reduced beam on sliders."""
+    """Reduced beam on friction sliders."""
 
-    beam: Reduced
+    beam: ReducedBeam
     sliders: Foundation
 
     @property
@@ -61,20 +61,20 @@ class Joint:
         return (2.0 * np.pi * self.beam.frequency) ** 2
 
     def at_rest(self):
-        """The tightened beam."""
+        """State of the preloaded beam without load."""
         count = self.beam.area.size
         return State(0.0, 0.0, np.zeros((count, 3)), self.sliders.virgin_forces(count))
 
-    def loaded(self, state, load):
-        """The state after a straight path of the load; Newton's method on the patches.
+    def apply_load(self, state, load):
+        """State after a monotonic change of the load, by Newton's method on the patches.
 
-        Raises RuntimeError if it does not end.
+        Raises RuntimeError if the iteration does not converge.
         """
         beam, given = self.beam, load * self.beam.shape / self.square
-        moved = state.moved + (load - state.load) * beam.shape / self.square
+        moved = state.displacement + (load - state.load) * beam.shape / self.square
         weighted = beam.compliance * np.repeat(beam.area, 3)
         base, step, last = moved, 0.0 * moved, np.inf
-        for _ in range(MOST):
+        for _ in range(MAX_NEWTON_ITERATIONS):
             sliders, traction, tangent = self._interface(state, moved)
             extra = traction - beam.springs * moved
             residual = (moved - given).ravel() + weighted @ extra.ravel()
@@ -83,18 +83,20 @@ class Joint:
                 return State(
                     load, float(q), moved, sliders.force, float(2.0 * beam.area @ sliders.dissipated_energy)
                 )
-            size, short = np.linalg.norm(residual), np.abs(step).max() < SHORT * np.abs(moved).max()
+            size, short = np.linalg.norm(residual), np.abs(step).max() < MIN_STEP * np.abs(moved).max()
             if size < last or short:
                 base, step, last = moved, -self._step(weighted, tangent, residual), size
             else:
                 step = 0.5 * step
             moved = base + step
-        raise RuntimeError(f"no equilibrium at a load of {load:g} m kg^0.5/s2 after {MOST} steps")
+        raise RuntimeError(
+            f"no equilibrium at a load of {load:g} m kg^0.5/s2 after {MAX_NEWTON_ITERATIONS} steps"
+        )
 
     def _interface(self, state, moved):
         """Sliders, tractions (P, 3) [Pa] beyond those at tightening and their derivatives (P, 3, 3)."""
-        before, after = (self.beam.approach + w[:, 2] for w in (state.moved, moved))
-        shift = (moved - state.moved)[:, :2]
+        before, after = (self.beam.approach + w[:, 2] for w in (state.displacement, moved))
+        shift = (moved - state.displacement)[:, :2]
         sliders = self.sliders.advance(state.force, before, after, shift)
         pressure, normal = self.sliders.curve.derivatives(after, 1)
         first = self.sliders.curve.derivatives(self.beam.approach, 0)[0]
@@ -115,18 +117,18 @@ class Joint:
         return lu_solve(lu_factor(product, overwrite_a=True, check_finite=False), residual).reshape(-1, 3)
 
     def backbone(self, amplitudes):
-        """States at loads that grow to those of linear amplitudes q [m kg^0.5]."""
+        """States on first loading, at the loads of linear amplitudes q [m kg^0.5]."""
         states = [self.at_rest()]
         for q in amplitudes:
-            states.append(self.loaded(states[-1], q * self.square))
+            states.append(self.apply_load(states[-1], q * self.square))
         return states[1:]
 
     def cycle(self, top, steps):
-        """Loss [J] of a cycle between a state and its opposite load, and its states; `steps` each way."""
+        """Loss [J] and states of a cycle between a state and its opposite load; `steps` each way."""
         down = top.load * np.linspace(1.0, -1.0, steps + 1)[1:]
         states = [top]
         for load in np.concatenate([down, -down]):
-            states.append(self.loaded(states[-1], load))
+            states.append(self.apply_load(states[-1], load))
         return sum(state.loss for state in states[1:]), states
 
 
@@ -135,8 +137,8 @@ def frequency(state):
     return float(np.sqrt(state.load / state.q) / (2.0 * np.pi))
 
 
-def masing(states):
-    """Losses [J] of cycles by Masing's rules from the states of a backbone: four times that of first loading.
+def masing_losses(states):
+    """Losses [J] of cycles by Masing's rules: four times the loss of first loading.
 
     The area under the backbone would take an elastic stiffening of the contact for a negative loss.
     """

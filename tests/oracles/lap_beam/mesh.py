@@ -12,7 +12,7 @@ from jointfmu_tools.fem.elasticity import ElasticBody
 from skfem import MeshHex, MeshQuad
 
 HEADS = "head{}"
-"""Name of the facets of bolt i on which its shank pulls: the floor of a disc, above the hole."""
+"""Name of the facets that the shank of bolt i loads: the floor of a disc, above the hole."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def bodies(beam, view, size):
 
 
 def contact(beam, view):
-    """The contact as a plane mesh."""
+    """Plane mesh of the contact."""
     touching = (np.abs(view.centres[0]) < 0.5 * beam.lap) & ~view.within(0.5 * beam.hole, beam.holes)
     used, cells = np.unique(view.cells[:, touching], return_inverse=True)
     return MeshQuad(np.ascontiguousarray(view.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1)))
@@ -95,7 +95,7 @@ def _half(beam, view, size, side):
 
 
 def _pulled(mesh, beam, height):
-    """{name: facets} on which the shanks pull."""
+    """Facets that the shanks load: {name: facets}."""
     x, y, z = mesh.p[:, mesh.facets].mean(axis=1)
     free = np.zeros(z.size, dtype=bool)
     free[mesh.boundary_facets()] = True

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 GROWTH = 1.6
-"""Of neighbouring elements [1]."""
+"""Growth of the size of neighbouring elements [1]."""
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,11 @@ class Fineness:
 
     @property
     def levels(self):
-        """Where the layers end, over half the height [1]."""
+        """Levels of the layers over half the height [1]."""
         return (GROWTH ** np.arange(self.layers + 1) - 1.0) / (GROWTH**self.layers - 1.0)
 
     def arms(self, reach):
-        """Where the elements of an arm end [m], from the lap, for its length [m]."""
+        """Element ends [m] of an arm of a length [m], from the lap on."""
         sizes = []
         while sum(sizes) < reach:
             sizes.append(min(self.arm, self.far * GROWTH ** len(sizes)))
@@ -45,7 +45,7 @@ class Plan:
         object.__setattr__(self, "centres", self.points[:, self.cells].mean(axis=1))
 
     def within(self, radius, places):
-        """(m) whether a cell lies within a radius [m] of one of the places along x."""
+        """Mask (m) of the cells within a radius [m] of places along x."""
         x, y = self.centres
         return np.any([np.hypot(x - at, y) < radius for at in places], axis=0) if places else x > np.inf
 

@@ -1,6 +1,6 @@
-"""The lapped beam tightened, its first mode, and all that its interface needs to know of the bodies.
+"""Preloaded lapped beam, reduced exactly to its first mode and the compliance of its contact patches.
 
-All but the interface is linear: under loads along the mode it is the compliance of the patches, exactly.
+Only the interface is nonlinear, so for loads along the mode the reduction is exact.
 """
 
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ from .plan import plan
 from .shanks import shanks
 
 SHIFT = 100.0
-"""Frequency [Hz] below all modes with strain, at whose negative square the eigensolver looks."""
+"""Shift of the eigensolver [Hz], below all elastic modes."""
 RIGID = 3
-"""Motions without strain in the plane of symmetry."""
-AT_ONCE = 64
-"""Right sides that are solved at once."""
+"""Number of rigid modes in the plane of symmetry."""
+RIGHT_SIDES_PER_SOLVE = 64
+"""Number of right sides in one solution."""
 AXES = (0, 1, 2)
 
 
@@ -49,7 +49,7 @@ class Structure:
 
     @property
     def symmetric(self):
-        """Unknowns of each body that the plane of symmetry holds."""
+        """Unknowns of each body that are fixed by the symmetry."""
         return tuple(3 * np.flatnonzero(body.nodes[1] < 1e-9) + 1 for body in self.bodies)
 
     def relative(self, axis):
@@ -61,20 +61,20 @@ class Structure:
             ]
         )
 
-    def tightened(self, law, preload, gap=None):
-        """Equilibrium without friction under a preload [N] of each bolt; gap [m] at places x, y or None."""
+    def solve_preload(self, law, preload, gap=None):
+        """Solve the frictionless contact under a preload [N] of each bolt; gap [m] at places x, y or None."""
         heads = [f"head{i}" for i in range(len(self.beam.bolts))]
         pull = [sum(b.uniform_load(b.mesh.boundaries[name]) for name in heads) for b in self.bodies]
         loads = [0.5 * preload * sign * load for sign, load in zip((1.0, -1.0), pull, strict=True)]
         first, second = self.symmetric
         slides = 3 * _ends(self.bodies[1])[0]
-        held = (np.union1d(first, pins(self.bodies[0])), np.union1d(second, slides))
+        held = (np.union1d(first, pinned_unknowns(self.bodies[0])), np.union1d(second, slides))
         model = ContactModel(self.bodies, self.interface, law, gap, fixed_unknowns=held)
         area = self.interface.quadrature_area.sum()
         return model.solve(loads, 0.5 * preload * len(heads) / area)
 
     def stiffness(self, springs):
-        """[N/m] of the beam on springs (P, 3) [N/m3] at its patches, along x, y and z."""
+        """Stiffness matrix [N/m] with springs (P, 3) [N/m3] along x, y and z at the patches."""
         total = sp.block_diag([body.stiffness for body in self.bodies], format="csr") + self.bolts
         for axis in AXES:
             opening = self.relative(axis)
@@ -89,8 +89,8 @@ def _ends(body):
     return line[np.argmin(x[line])], line[np.argmax(x[line])]
 
 
-def pins(body):
-    """Three unknowns that stop the motions of a body in the plane of symmetry."""
+def pinned_unknowns(body):
+    """Three unknowns that fix the rigid motion of a body in the plane of symmetry."""
     first, last = _ends(body)
     return np.array([3 * first, 3 * first + 2, 3 * last + 2])
 
@@ -112,8 +112,8 @@ def patches(interface):
 
 
 @dataclass(frozen=True)
-class Reduced:
-    """The first mode of the tightened beam, and its patches.
+class ReducedBeam:
+    """First mode of the preloaded beam, and its contact patches.
 
     frequencies : [Hz] of the lowest modes, linear
     tip        : [1/kg^0.5] deflection of the end in the first mode of a whole beam of modal mass 1 kg
@@ -135,7 +135,7 @@ class Reduced:
 
     @property
     def frequency(self):
-        """[Hz] of the first mode."""
+        """Frequency [Hz] of the first mode."""
         return float(self.frequencies[0])
 
 
@@ -164,12 +164,12 @@ def _free(structure):
     )
 
 
-def reduced(structure, law, preload, shear, gap=None):
-    """Tighten the bolts to a preload [N] each, then mode and compliance; shear is K_T/K_N [1].
+def reduce_beam(structure, law, preload, shear, gap=None):
+    """Preload the bolts [N], then compute mode and compliance; `shear` is K_T/K_N [1].
 
     gap : [m] of the unloaded faces at places x, y; None: they are plane
     """
-    solution = structure.tightened(law, preload, gap)
+    solution = structure.solve_preload(law, preload, gap)
     normal = solution.stiffness
     springs = np.stack([shear * normal, shear * normal, normal], axis=1)
     frequencies, shapes = spectrum(structure, springs)
@@ -178,7 +178,7 @@ def reduced(structure, law, preload, shear, gap=None):
     compliance = _compliance(structure, springs)
     at = structure.interface
     tip = float(shape[_tip(structure)])
-    return Reduced(
+    return ReducedBeam(
         frequencies,
         tip,
         solution.approach,
@@ -191,19 +191,19 @@ def reduced(structure, law, preload, shear, gap=None):
 
 
 def _tip(structure):
-    """Unknown of the deflection of the left end."""
+    """Index of the deflection of the left end."""
     x, y, z = structure.bodies[0].nodes
     return 3 * int(np.argmin(x + 1e-3 * np.abs(y) + 1e-3 * np.abs(z))) + 2
 
 
 def _compliance(structure, springs):
-    """Relative displacement (3 P) of the patches by pairs of forces (3 P): patch by patch x, y, z."""
-    free = np.setdiff1d(_free(structure), pins(structure.bodies[0]))
+    """Compliance (3 P, 3 P) [m/N] of the patches under pairs of forces, patch by patch x, y, z."""
+    free = np.setdiff1d(_free(structure), pinned_unknowns(structure.bodies[0]))
     factor = Cholesky(structure.stiffness(springs)[free][:, free])
     stacked = sp.vstack([structure.relative(axis) for axis in AXES]).tocsr()
     count = stacked.shape[0] // 3
     opening = stacked[np.arange(3 * count).reshape(3, count).T.ravel()][:, free]
     columns = []
-    for i in range(0, 3 * count, AT_ONCE):
-        columns.append(opening @ factor.solve(opening[i : i + AT_ONCE].T.toarray()))
+    for i in range(0, 3 * count, RIGHT_SIDES_PER_SOLVE):
+        columns.append(opening @ factor.solve(opening[i : i + RIGHT_SIDES_PER_SOLVE].T.toarray()))
     return np.hstack(columns)
