@@ -179,7 +179,7 @@ def test_what_can_be_written_and_fitted_is_known_without_scipy():
         "from jointfmu_tools.cli.commands import export, fit\n"
         "from jointfmu_tools.cli.command import Parser\n"
         "words = Parser().add_subparsers()\n"
-        "export.add(words), fit.add(words)\n"
+        "export.add_command(words), fit.add_command(words)\n"
         "print([name for name in ('scipy', 'matplotlib') if name in sys.modules])\n"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

@@ -438,7 +438,7 @@ def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
 def test_a_point_of_another_role_cannot_be_fitted(monkeypatch):
     """A fit that names one does not find it."""
     _, (fit,) = FITS["bolted_joint"]
-    peeking = replace(fit, points=("p_max.9kN", "psi.1.5"))
+    peeking = replace(fit, point_ids=("p_max.9kN", "psi.1.5"))
     refitted(monkeypatch, (peeking,))
     with pytest.raises(KeyError, match=r"psi\.1\.5"):
         calibrate(load_default("bolted_joint"))
