@@ -31,7 +31,7 @@ protected
   Modelica.Units.SI.Force rolling "Force from the change of the number of pairs, per displacement of one base circle";
 
   function energy "Energy of a tooth pair at a deflection"
-    extends Modelica.Icons.CFunction;
+    extends Modelica.Icons.Function;
     input Real x "Deflection, not negative";
     input Real table[:, 5] "Deflection, force, stiffness, its derivative before and after the node";
     input Real nodes[:] "Energy at each node";
@@ -63,7 +63,7 @@ protected
   end energy;
 
   function power "Time derivative of the energy of a tooth pair"
-    extends Modelica.Icons.CFunction;
+    extends Modelica.Icons.Function;
     input Real x "Deflection, not negative";
     input Real table[:, 5] "Deflection, force, stiffness, its derivative before and after the node";
     input Real nodes[:] "Energy at each node";
@@ -75,7 +75,7 @@ protected
   end power;
 
   function extraPair "Fraction of the additional pair in contact: 0 to 1, symmetric in the phase"
-    extends Modelica.Icons.CFunction;
+    extends Modelica.Icons.Function;
     input Real phase "Phase of the mesh cycle";
     input Real part "Fraction of the cycle with the additional pair";
     input Real width "Fraction of the cycle in which the pair takes up its load";
@@ -89,7 +89,7 @@ protected
   end extraPair;
 
   function extraPairSlope "Derivative of extraPair with respect to the phase"
-    extends Modelica.Icons.CFunction;
+    extends Modelica.Icons.Function;
     input Real phase "Phase of the mesh cycle";
     input Real part "Fraction of the cycle with the additional pair";
     input Real width "Fraction of the cycle in which the pair takes up its load";
@@ -105,7 +105,7 @@ protected
   end extraPairSlope;
 
   function extraPairIntegral "Integral of extraPair minus its mean, from the middle of the contact of the pair; antisymmetric in the phase"
-    extends Modelica.Icons.CFunction;
+    extends Modelica.Icons.Function;
     input Real phase "Phase of the mesh cycle";
     input Real part "Fraction of the cycle with the additional pair";
     input Real width "Fraction of the cycle in which the pair takes up its load";

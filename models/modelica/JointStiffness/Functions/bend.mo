@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function bend "Derivative of the stiffness with respect to the displacement; zero beyond the table"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real x "Displacement";
   input Real table[:, 5] "Displacement, load, stiffness, its derivative before and after the node";
   output Real k_x "Derivative of the stiffness";

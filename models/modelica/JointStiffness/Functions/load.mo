@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function load "Load at a displacement"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real x "Displacement";
   input Real table[:, 5] "Displacement, load, stiffness, its derivative before and after the node";
   output Real y "Load";

@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function slide "Forces of sliders after a straight path, at most their friction"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real before[2, :] "Their forces before, along x and y";
   input Real shift[2] "Path along the surface";
   input Real K_before[size(before, 2)] "Their stiffness before";

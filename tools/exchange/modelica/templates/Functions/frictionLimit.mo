@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function frictionLimit "Limit of dry friction that a load raises, on one side"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real unloaded "Limit without load";
   input Real load_loss "Share of the load that friction against it has";
   input Real loss_back "Share of the load that friction which holds it has";

@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function limited "Torques of sliders, at most their friction"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real stuck[:] "Torques if all stuck";
   input Real friction[size(stuck, 1)] "Their friction";
   output Real held[size(stuck, 1)] "What friction holds";

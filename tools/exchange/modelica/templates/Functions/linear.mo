@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function linear "Linear interpolation; beyond its ends the last value"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real x "Argument";
   input Real table[:, 2] "Argument, value";
   output Real y "Value";

@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function smoothStep "From 0 at x <= 0 to 1 at x >= 1, twice continuously differentiable"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real x "Argument";
   output Real y "Value";
 protected

@@ -1,6 +1,6 @@
 within JointStiffness.Functions;
 function stiffness "Derivative of the load with respect to the displacement"
-  extends Modelica.Icons.CFunction;
+  extends Modelica.Icons.Function;
   input Real x "Displacement";
   input Real table[:, 5] "Displacement, load, stiffness, its derivative before and after the node";
   output Real k "Stiffness";
