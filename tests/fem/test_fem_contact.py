@@ -52,8 +52,8 @@ def imbalance(solution):
     """Forces (n) [N] on each body that nothing balances: the reactions of the supports, and round-off."""
     model = solution.model
     nodal = (
-        model.interface.interpolation_matrix.T
-        @ (model.interface.quadrature_area * solution.pressure)
+        model.contact_interface.interpolation_matrix.T
+        @ (model.contact_interface.quadrature_area * solution.pressure)
         * (0.5 if model.is_mirrored else 1.0)
     )
     parts = zip(model.bodies, solution.loads, model.approach_matrices(), solution.displacement, strict=True)
@@ -166,18 +166,18 @@ def plates():
 @needs("gmsh")
 def test_contact_carries_the_bolts(plates, law):
     solution = plates.solve(law, 4e3)
-    field = solution.field
+    field = solution.contact_field
     assert field.force == pytest.approx(8e3, rel=ROUND_OFF)
     assert np.abs((field.area * field.pressure) @ field.position).max() < ROUND_OFF * 8e3 * 0.06
     assert np.all(field.area > 0.0)
     assert solution.peak_pressure >= field.pressure.max()
-    for out in imbalance(solution.contact):
+    for out in imbalance(solution.contact_solution):
         assert np.abs(out).max() < ROUND_OFF * 8e3
 
 
 @needs("gmsh")
 def test_pressures_balance_the_moment(plates, law):
-    field = plates.solve(law, 4e3, 30.0).field
+    field = plates.solve(law, 4e3, 30.0).contact_field
     assert (field.area * field.pressure) @ field.position[:, 1] == pytest.approx(30.0, rel=ROUND_OFF)
     assert field.force == pytest.approx(8e3, rel=ROUND_OFF)
 
@@ -191,22 +191,22 @@ def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
     monkeypatch.setattr(newton, "Cholesky", lambda matrix: factorised.append(1) or Cholesky(matrix))
     found = first.solve_load_case(4e3, 30.0)
     # both end at TOLERANCE of the load, 1e-11, which may lie on a part of the nodes
-    np.testing.assert_allclose(found.contact.pressure, expected.contact.pressure, rtol=1e-7)
+    np.testing.assert_allclose(found.contact_solution.pressure, expected.contact_solution.pressure, rtol=1e-7)
     np.testing.assert_array_equal(found.bolt_force, expected.bolt_force)
-    assert found.contact.newton_steps < expected.contact.newton_steps
+    assert found.contact_solution.newton_steps < expected.contact_solution.newton_steps
     assert not factorised
 
 
 @needs("gmsh")
 def test_a_mirror_image_equals_two_bodies(plates, law):
     assembly = plates.assembly
-    sides = [elastic_body(plates.plan, assembly, side, 0.5) for side in (1, 2)]
+    sides = [elastic_body(plates.plan_mesh, assembly, side, 0.5) for side in (1, 2)]
     heads = [
         np.stack([body.uniform_load(body.mesh.boundaries[f"head{i}"]) for i in (1, 2)], axis=1)
         for body in sides
     ]
     whole = replace(plates, bodies=tuple(sides), bolt_head_loads=tuple(heads))
-    one, two = (joint.solve(law, 4e3, 30.0).contact for joint in (plates, whole))
+    one, two = (joint.solve(law, 4e3, 30.0).contact_solution for joint in (plates, whole))
     assert two.pressure == pytest.approx(one.pressure, rel=1e-7)  # round-off over the approach's spread
     assert two.node_pressure == pytest.approx(one.node_pressure, rel=1e-7)
 
@@ -231,7 +231,7 @@ def test_bodies_of_different_kind(law):
 
 def pulled(plates, law, *forces, held=None):
     """Both heads pulled by forces [N] along +z, away from the contact."""
-    model = ContactModel(plates.bodies, plates.interface, law, fixed_unknowns=held)
+    model = ContactModel(plates.bodies, plates.contact_interface, law, fixed_unknowns=held)
     return model, [plates.bolt_head_loads[0] @ np.array(forces)]
 
 

@@ -21,7 +21,7 @@ def lap(length=0.1, width=0.04, thickness=2e-3, nu=0.0, hole=2e-3):
 
 def even(joint, tangential, normal):
     """Springs [N/m3] that are the same everywhere."""
-    return np.tile([tangential, tangential, normal], (joint.interface.quadrature_area.size, 1))
+    return np.tile([tangential, tangential, normal], (joint.contact_interface.quadrature_area.size, 1))
 
 
 def block(nu=0.0):

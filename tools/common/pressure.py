@@ -94,7 +94,7 @@ def judge_joint_stiffness(
 
 def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
     """Warning that the written file has only the interface of a joint with elastic members; else empty."""
-    if not getattr(parameter_file.values, "elastic", False):
+    if not getattr(parameter_file.values, "has_elastic_members", False):
         return []
     return [
         f"{parameter_file.name!r} is a complete joint (sides = elastic), but this file has the "

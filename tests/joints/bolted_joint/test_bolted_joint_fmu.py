@@ -390,8 +390,8 @@ def test_the_picture_of_points_without_an_outline() -> None:
     moved = replace(some, area_share=share, position=some.position - share @ some.position)
     moved = replace(
         moved,
-        preload_shape=some.preload_pressure_ratio / (share @ some.preload_pressure_ratio),
-        moment_shape=some.moment_pressure_ratio - share @ some.moment_pressure_ratio,
+        preload_pressure_ratio=some.preload_pressure_ratio / (share @ some.preload_pressure_ratio),
+        moment_pressure_ratio=some.moment_pressure_ratio - share @ some.moment_pressure_ratio,
     )
     joint = replace(file.values, pattern=NodalField(**nodal_field_entries(moved)))
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))

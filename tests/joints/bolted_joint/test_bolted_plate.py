@@ -386,7 +386,7 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
     values = load_parameter_file(path).values
     found = BoltedJointSpring.for_joint(values).compliances(15e3)
-    np.testing.assert_allclose(found.total_compliance, seen[0].compliances.total, rtol=2e-3)
+    np.testing.assert_allclose(found.total_compliance, seen[0].compliances.total_compliance, rtol=2e-3)
     for name, compliance in zip(STIFFNESS_UNITS, found.total_compliance, strict=True):
         whole = facts[f"joint_K_{name if name.startswith('r') else 2 * name}"]
         assert 1.0 / compliance == pytest.approx(whole, rel=1e-9), name

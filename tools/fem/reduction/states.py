@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
@@ -182,11 +181,6 @@ class CellwiseJoint:
         return cls(spring, 0.5 * (compliance + compliance.T), rigid, start, preload)
 
     @cached_property
-    def _body_stiffness(self) -> Array:
-        """Inverse (3 n + b, 3 n + b) [N/m] of the compliance of the bodies."""
-        return np.asarray(np.linalg.inv(self.compliance))
-
-    @cached_property
     def _preload_pressure(self) -> Array:
         """Pressure (n) [Pa] of the cells in the preloaded joint."""
         return self.reduced_joint.curve.derivatives(self.preload_approach, 0)[0]
@@ -231,16 +225,15 @@ class CellwiseJoint:
     def solve_forces(self, motion: Array) -> Array:
         """Solve for the forces (3 n + b) [N] at a motion (6) [m, rad] of side 2's attachment.
 
-        Newton's method may stop before it has converged: a state needs no exact equilibrium. Its matrix
-        (identity + compliance tangent), multiplied by the inverse of the compliance, is symmetric.
+        Newton's method may stop before it has converged: a state needs no exact equilibrium.
         """
         prescribed = self.rigid_displacement @ motion
         g = np.zeros_like(prescribed)
         force, tangent = self.cell_forces(g)
         residual = g + self.compliance @ force - prescribed
         for _ in range(MAX_NEWTON_STEPS):
-            factor = la.cho_factor(tangent.add_to(self._body_stiffness), overwrite_a=True, check_finite=False)
-            step = -la.cho_solve(factor, self._body_stiffness @ residual, check_finite=False)
+            matrix = np.eye(g.size) + tangent.multiply(self.compliance)
+            step = -np.linalg.solve(matrix.T, residual)
             for halvings in range(5):
                 g_trial = g + 0.5**halvings * step
                 force, tangent = self.cell_forces(g_trial)
@@ -278,15 +271,6 @@ class CellTangent:
 
     diagonal: Array
     cross: Array
-
-    def add_to(self, matrix: Array) -> Array:
-        """Sum with a matrix (3 n + b, 3 n + b)."""
-        total, index, n = matrix.copy(), np.arange(self.diagonal.size), self.cross.size
-        along_x, along_y = index[n : 2 * n], index[2 * n : 3 * n]
-        total[index, index] += self.diagonal
-        total[along_x, along_y] += self.cross
-        total[along_y, along_x] += self.cross
-        return total
 
     def multiply(self, matrix: Array) -> Array:
         """Product with a matrix (3 n + b, k)."""
