@@ -189,9 +189,9 @@ from conftest import Fmu
 instance = Fmu(Path(sys.argv[1])).start()
 import pythonfmu
 assert not list(Path(pythonfmu.__file__).parent.rglob("binaries")), "the FMU has brought no copy"
-from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.building import build_fmus
 path, own = list(sys.path), pythonfmu.__file__
-build(["GearContact"], ["python"], None, Path(sys.argv[2]))
+build_fmus(["GearContact"], ["python"], None, Path(sys.argv[2]))
 assert (sys.path, sys.modules["pythonfmu"].__file__) == (path, own)
 instance.at({"f": 1.0})
 instance.free_instance()
@@ -421,7 +421,7 @@ def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, syst
         return found[0]
 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as out:
-        patch.setattr(pipeline, "build", built)
+        patch.setattr(pipeline, "build_fmus", built)
         patch.setattr(pipeline, "build_systems", built_systems)
         patch.setattr(pipeline, "run_job", watched)
         assert pipeline.main(folder) == 0, out.getvalue()

@@ -280,7 +280,9 @@ def test_the_fmu_needs_numpy_and_nothing_else(fmus: Path, name: str) -> None:
         if path.startswith("resources/pythonfmu/"):
             continue  # ships with itself; its builder is never imported by a slave
         foreign = found - set(sys.stdlib_module_names) - {"numpy", "pythonfmu"} - package
-        assert not foreign, path
+        # the package's own file imports its public interface on first access, which no slave asks for
+        lazy = {"jointfmu_tools"} if path.count("/") == 2 and path.endswith("/__init__.py") else set()
+        assert foreign == lazy, path
     assert any("numpy" in found for found in sources.values())
 
 

@@ -459,7 +459,7 @@ BAD = {
     "build-out": (["build", "GearContact", "--out", "{tmp}/text.toml"], ["text.toml", "cannot be written"]),
     "ramp-nothing": (["ramp"], ["FMU", "--input"]),
     "ramp-file": (["ramp", "{tmp}/none.fmu", *RAMP[2:]], ["none.fmu", "no such file"]),
-    "ramp-text": (["ramp", "{tmp}/text.fmu", *RAMP[2:]], ["text.fmu", "no FMU"]),
+    "ramp-text": (["ramp", "{tmp}/text.fmu", *RAMP[2:]], ["text.fmu", "is not an FMU"]),
     "ramp-input": (ramp(input="force"), ["'force'", "f"]),
     "ramp-output": (ramp(input="K_N"), ["'K_N'", "f"]),
     "ramp-step-0": (ramp(step="0"), ["step = 0", "(0, inf)"]),

@@ -563,7 +563,7 @@ def test_no_listing_of_an_fmu_that_fails(
 ) -> None:
     path = copy(fmu, tmp_path / fmu.name, replaced("smoke_test_ref.csv", b"4.0,", b"4.0,1"))
     assert cli.main(["prove", str(path), "--listing", str(tmp_path / "out")]) == 1
-    assert "no listing is written" in capsys.readouterr().err
+    assert "the listing is not written" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     place = path / "out"  # no folder: found before the experiments run
     assert f"{place}: cannot be written" in refused_line(capsys, "prove", path, "--listing", place)

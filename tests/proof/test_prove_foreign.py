@@ -207,9 +207,12 @@ def test_times_that_are_not_stated_are_those_of_the_results(
 @pytest.mark.parametrize(
     ("files", "said"),
     [
-        ({"u.csv": b"time,on\n0,0.5\n3,1\n"}, "on = 0.5 is no Boolean"),
-        ({"p.ssv": ssv('name="gain"><v:Enumeration value="treble"/>')}, "gain = 'treble' is no Enumeration"),
-        ({"p.ssv": ssv('name="gain"><v:Real value="1.5"/>')}, "gain = 1.5 is no Enumeration"),
+        ({"u.csv": b"time,on\n0,0.5\n3,1\n"}, "on = 0.5 is not of type Boolean"),
+        (
+            {"p.ssv": ssv('name="gain"><v:Enumeration value="treble"/>')},
+            "gain = 'treble' is not of type Enumeration",
+        ),
+        ({"p.ssv": ssv('name="gain"><v:Real value="1.5"/>')}, "gain = 1.5 is not of type Enumeration"),
         ({"p.ssv": ssv('name="loss"><v:Real value="1.5"/>')}, "the FMU has no variable 'loss'"),
     ],
 )

@@ -213,7 +213,7 @@ def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
     assert f"surface.G of {path} is not determined" in refused
     assert not written.exists()
     assert cli.main([str(word) for word in command]) == 0
-    assert "surface.D, surface.G stay as they were" in capsys.readouterr().err
+    assert "surface.D, surface.G keep their values" in capsys.readouterr().err
     file = load_parameter_file(written)
     assert file.values == load_default("bolted_joint").values
     assert file.roughness == {"Rq1": said["roughness"]["h"]}
@@ -363,7 +363,7 @@ def test_both_sides_alike_are_a_pair_of_one_power():
         assert pair.fit.log_power - single.fit.log_power == pytest.approx(np.log(2.0), abs=1e-4)
         # one surface known once: no surer than alone
         assert pair.fit.covariance[0, 0] == pytest.approx(single.fit.covariance[0, 0], rel=1e-3)
-    with pytest.raises(ValueError, match="side = both beside two files"):
+    with pytest.raises(ValueError, match="side = both is given with two files"):
         identify([line, line], side="both")
 
 

@@ -571,7 +571,8 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
     exact = run(in_turn, 0.25 * step)
     scale = np.max(np.abs(exact))
     errors = [
-        np.max(np.abs(run(master, step) - exact)) / scale for master in (*MASTERS, in_turn._replace(lag=1.0))
+        np.max(np.abs(run(master, step) - exact)) / scale
+        for master in (*MASTERS, in_turn._replace(force_lag=1.0))
     ]
     late, now, wrong = errors
     assert wrong > least

@@ -122,7 +122,9 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     joint = made(*FOUR, preload=15e3)
     found = joint.spring.compliances(15e3)
     out, _ = at(joint.spring, *STILL, preload=15e3)
-    np.testing.assert_allclose(1.0 / found.total_compliance, [out[name] for name in AXES], rtol=1e-6)  # the same motions
+    np.testing.assert_allclose(
+        1.0 / found.total_compliance, [out[name] for name in AXES], rtol=1e-6
+    )  # the same motions
     fe = joint.fe
     np.testing.assert_allclose(found.compliance_shares, fe.compliance_shares, atol=0.02)
     np.testing.assert_allclose(found.interface_compliance, fe.interface_compliance, rtol=0.03)
@@ -583,7 +585,10 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
         in capsys.readouterr().out
     )
     found, before = spring.compliances(15e3), drawn.spring.compliances(15e3)
-    assert np.all((found.total_compliance < before.total_compliance) & (found.total_compliance > 0.6 * before.total_compliance))
+    assert np.all(
+        (found.total_compliance < before.total_compliance)
+        & (found.total_compliance > 0.6 * before.total_compliance)
+    )
     assert found.bolt_stiffness == pytest.approx(before.bolt_stiffness, rel=1e-3)
     corners = 0.03 * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
     even = ContactField(np.full(4, 1e-3), corners, np.full(4, 15e6))

@@ -210,7 +210,7 @@ def test_beyond_the_table_each_side_warns_once_and_a_state_remembers(host: Host,
     far = instance.at(angles(of, 1.1 * end, 0.2))
     (warning,) = instance.warnings
     assert warning.startswith(
-        f"s_rel = {1.1 * end:.6g} m is outside [-{end:.6g}, {end:.6g}] m: beyond the tab"
+        f"s_rel = {1.1 * end:.6g} m is outside [-{end:.6g}, {end:.6g}] m: outside the tabulated law"
     )
     assert instance.at(angles(of, -1.1 * end, -0.2))["f"] == -far["f"]
     assert len(instance.warnings) == 1

@@ -11,6 +11,7 @@ from jointfmu_tools.exchange.export.exports import require_content
 from jointfmu_tools.joints.gear_mesh.new import InvoluteGearPair
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.runs import evaluate_runs
 from test_modelica import EXACT, move, simulate, top
 
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch, pairs_in_contact
@@ -304,7 +305,7 @@ def test_bands():
 def test_default_ramp_ends_inside_the_table():
     joint = load_default("gear_mesh").values
     task = state_problem(load_default("gear_mesh"), {"K_tooth": "+-1%"}, None, 2)
-    f = task.curves.exact(joint, task.loads)["f"][-1]
+    f = task.evaluator.run(-1, task.settings)["columns"]["f"][-1]
     assert 0.5 < f / (2.0 * 0.05 * joint.hardness * joint.A_0) < 1.0  # two pairs; the flanks give way too
 
 
@@ -313,5 +314,6 @@ def test_every_parameter_can_be_uncertain():
     values = flatten_parameters(load_default("gear_mesh").values)
     names = [n for n, v in values.items() if isinstance(v, float) and v and n != "teeth1"]
     task = state_problem(load_default("gear_mesh"), dict.fromkeys(names, "+-1%"), None, 3)
-    outcome = propagate.evaluate_samples(task, propagate.sample_designs(task, 16, 0)[0], task.loads, "")
+    runs = task.list_runs(propagate.sample_designs(task, 16, 0)[0])
+    outcome = evaluate_runs(task.evaluator, runs, task.units, task.loads.size)
     assert np.all(outcome.accepted)

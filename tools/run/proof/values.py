@@ -45,7 +45,7 @@ def convert_setting(variable: "ScalarVariable", setting: StartSetting) -> object
     try:
         return convert_value(variable, float(value))
     except ValueError:
-        raise ValueError(f"{variable.name} = {setting.value!r} is not a {variable.type}") from None
+        raise ValueError(f"{variable.name} = {setting.value!r} is not of type {variable.type}") from None
 
 
 def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
@@ -54,7 +54,7 @@ def convert_value(variable: "ScalarVariable", value: float) -> float | int | boo
         return value
     number = int(value)
     if number != value or (kind == "boolean" and number not in (0, 1)):
-        raise ValueError(f"{variable.name} = {value:g} is not a {variable.type}")
+        raise ValueError(f"{variable.name} = {value:g} is not of type {variable.type}")
     return bool(number) if kind == "boolean" else number
 
 

@@ -66,7 +66,7 @@ bool set_spot_distribution(SpotDistribution *spots, const double *c, Text *reaso
     }
     if (!is_representable)
         text_append_format(reason,
-                           "the parameters give a reference area of %g m2 or a load that is not representable; "
+                           "the parameters give a critical spot area of %g m2 or a load that is not representable; "
                            "check D (close to the end of its interval?) and extreme values of G, h and others",
                            spots->reference_area);
     return is_representable;
