@@ -169,7 +169,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
 
 
 def onset_pressure(law: RoughnessLaw) -> Number:
-    """Pressure p_1 [Pa] at which the stiffness begins, u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
+    """Lowest pressure p_1 [Pa] of the law, at log-area u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
     return ONSET_LOAD_RATIO * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
 
 
