@@ -71,7 +71,10 @@ def errors(heights, direction, D, G):
 
 
 def print_errors(title, direction, cases):
-    """Print one line per D and method; `cases(D)` yields (heights, G)."""
+    """Print the errors of D and G identified from synthesized surfaces: a row for each D and method.
+
+    cases : function of the dimension D that yields (heights [m], G [m]) of each surface
+    """
     print(f"\n{title}\n| D | method | bias of D | largest error of D | D inside | bias of ln G | G inside |")
     print("|---|---|---|---|---|---|---|")
     worst, inside = 0.0, []

@@ -145,7 +145,7 @@ def make_fmu_data(
 
 
 def make_placeholder(model: Model, parameter_split: ParameterSplit) -> DataBlock:
-    """Make the placeholder block with which the libraries are compiled."""
+    """Make the data block of zeros with which libraries are compiled; each FMU replaces it by its own."""
     count = 1 + len(model.inputs) + len(model.outputs) + len(parameter_split.variable_names)
     tables = {name: table._replace(rows=table.rows[:0]) for name, table in parameter_split.tables.items()}
     return make_data_block(

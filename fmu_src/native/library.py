@@ -27,13 +27,15 @@ class JointLibrary(NamedTuple):
 def machine_platform() -> str:
     """Platform of this process, by its name in FMI 3.0.
 
-    Raises ValueError if libraries are not compiled for it.
+    Raises RuntimeError if libraries are not compiled for it.
     """
     system = {"win32": "windows", "linux": "linux", "darwin": "darwin"}.get(sys.platform, sys.platform)
     processor = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine())
     name = f"{processor.lower()}-{system}"
     if name not in ZIG_TARGETS:
-        raise ValueError(f"platform {name}: no library is compiled for it; expected {', '.join(ZIG_TARGETS)}")
+        raise RuntimeError(
+            f"platform {name}: no library is compiled for it; expected {', '.join(ZIG_TARGETS)}"
+        )
     return name
 
 
@@ -42,8 +44,8 @@ def make_library(model: Model, parameters: ParameterFile) -> JointLibrary:
 
     It is compiled for this machine alone, unless a build has compiled it already.
 
-    Raises ValueError for a platform without libraries, ImportError if it must be compiled and a package is
-    missing, RuntimeError if the compiler fails.
+    Raises ImportError if it must be compiled and a package is missing, RuntimeError for a platform without
+    libraries and if the compiler fails.
     """
     split = split_parameters(model, parameters)
     target = machine_platform()

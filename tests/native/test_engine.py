@@ -132,6 +132,15 @@ def test_without_a_compiler_the_python_law_answers_and_says_so(monkeypatch, caps
     assert "pip install 'jointfmu[build]'" in line
 
 
+def test_on_a_platform_without_libraries_the_python_law_answers(monkeypatch, capsys):
+    monkeypatch.setattr("platform.machine", lambda: "riscv64")
+    engine._announce_python.cache_clear()
+    file = load_default("gear_contact")
+    joint = open_joint(KINDS["gear_contact"].models[0], file)
+    assert isinstance(joint, PythonJoint)
+    assert "platform riscv64-" in capsys.readouterr().err
+
+
 def test_the_file_of_a_library_goes_with_its_joint(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     contact = jointfmu.load("GearContact")

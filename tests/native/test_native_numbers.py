@@ -20,6 +20,7 @@ from jointfmu_fmu_src.native.code import generate
 
 import jointfmu
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint import equilibrium
 from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.mechanics import curve
 from jointfmu.parameters import load_default
@@ -38,6 +39,7 @@ TABLES = pairs(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES)
 EVERY = {
     DRIVE: (*TABLES, *pairs(drive_native.REAL_CONSTANT_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
     GEAR: (*TABLES, (curve, "CLOSING_AREA_RATIO")),
+    BOLTED: tuple((equilibrium, name) for name in ("MAX_ENERGY_SLOPE_RATIO", "MIN_LENGTH_RATIO")),
 }
 
 
@@ -132,7 +134,9 @@ def test_build_refuses_what_does_not_fit(
 
 
 def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    usual_folder = tmp_path / "usual"
+    jointfmu.load(DRIVE).build(usual_folder)  # compiled before the change, so that only the table is too long
     monkeypatch.setattr(curve, "MAX_TABLE_NODES", 100)  # fewer than its first steps
     with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
-        jointfmu.load(DRIVE).build(tmp_path)
-    assert not list(tmp_path.iterdir())
+        jointfmu.load(DRIVE).build(tmp_path / "small")
+    assert list(tmp_path.iterdir()) == [usual_folder]

@@ -84,7 +84,7 @@ def test_approach_and_loss_factor_of_the_bolted_joint(law):
     assert columns["approach"][0] == columns["loss_factor"][0] == 0.0
 
 
-def test_outputs_between_the_knots_of_a_long_ramp():
+def test_interpolated_outputs_of_a_long_ramp_are_those_of_the_fmu():
     given = {"surface.D": "1.38..1.46", "preload": "normal(12%)"}
     long, short = (state_problem(load_default("bolted_joint"), given, None, n) for n in (201, 5))
     points = propagate.sample_designs(short, 4, 5)[0]

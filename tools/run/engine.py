@@ -114,7 +114,7 @@ class CompiledJoint:
     """A joint that the library of its FMU evaluates. See `JointEngine`.
 
     Raises ImportError if the library must be compiled and a package is missing, RuntimeError if the compiler
-    fails, OSError if the library cannot be loaded.
+    fails or compiles for no such platform, OSError if the library cannot be loaded.
     """
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
@@ -165,8 +165,7 @@ class CompiledJoint:
             function.argtypes = [_POINTER, _POINTER, _SIZE, _POINTER, _SIZE]
         lib.jointfmu_follow_path.restype = _SIZE
         lib.jointfmu_follow_path.argtypes = [
-            _POINTER, ctypes.c_bool, ctypes.c_bool, _SIZE,
-            _SIZE, _POINTER, _POINTER, _SIZE, _POINTER, _POINTER,
+            _POINTER, ctypes.c_bool, _SIZE, _SIZE, _POINTER, _POINTER, _SIZE, _POINTER, _POINTER,
         ]  # fmt: skip
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
@@ -205,7 +204,7 @@ class CompiledJoint:
         with self._lock:
             self._messages.clear()
             done = self._library.jointfmu_follow_path(
-                self._instance, True, each_from_rest, len(values),
+                self._instance, each_from_rest, len(values),
                 len(names), given.ctypes.data, values.ctypes.data,
                 len(outputs), read.ctypes.data, results.ctypes.data,
             )  # fmt: skip
@@ -251,8 +250,8 @@ class PythonJoint:
         columns = self._start_values | {**inputs}
         arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(x, np.float64)) for x in columns.values()))
         points = [dict(zip(columns, map(float, point), strict=True)) for point in zip(*arrays, strict=True)]
-        rest = model.initial_history(joint) if model.initial_history else None
-        history, rows = rest, []
+        history = model.initial_history(joint) if model.initial_history else None
+        rows = []
         for point in points:
             if model.advance is None or each_from_rest:
                 outputs = model.evaluate(joint, point)

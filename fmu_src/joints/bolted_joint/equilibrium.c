@@ -10,10 +10,6 @@ _Static_assert((int)HISTORY_MODAL_COORDINATES == (int)HISTORY_NORMAL + 3 &&
                    (int)N_HISTORY == (int)HISTORY_TANGENT + 6 * MAX_PATCHES,
                "the end of a history, as in the key of a predictor");
 
-/* Line search: largest energy slope at the end of a correction over its size at the start [1], and smallest length of a
- * correction over the length tried before [1]. */
-static const double MAX_ENERGY_SLOPE_RATIO = 0.5, MIN_LENGTH_RATIO = 0.1;
-
 /* Derivatives of the opening of the patches, as the points that transfer pressure to them open. */
 static void set_modal_opening(Equilibrium *e)
 {
@@ -323,7 +319,8 @@ static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const d
         const double slope_1 = dense_dot(r, correction);
         if (length == 0.0 || !(slope_1 > MAX_ENERGY_SLOPE_RATIO * fabs(slope_0)))
             return true;
-        length *= tangent_is_current ? fmax(slope_0 / (slope_0 - slope_1), MIN_LENGTH_RATIO) : 0.0;
+        const double zero = slope_0 < 0.0 ? slope_0 / (slope_0 - slope_1) : 0.0; /* of the energy slope, if any */
+        length *= tangent_is_current ? fmax(zero, MIN_LENGTH_RATIO) : 0.0;
         *is_full = false;
     }
     return true;

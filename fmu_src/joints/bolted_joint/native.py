@@ -158,6 +158,8 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
             "CANCELLATION_RATIO",
             "INTERMEDIATE_TOLERANCE_FACTOR",
             "MIN_LOAD_STEP",
+            "MAX_ENERGY_SLOPE_RATIO",
+            "MIN_LENGTH_RATIO",
             "TANGENT_REUSE_RATIO",
             "DIFFERENCE_STEP",
         )

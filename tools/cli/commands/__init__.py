@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
-    """Declare on the command line an option that a joint defines."""
+    """Add an option that a joint defines to the parser of a command."""
     if option.is_flag:
         parser.add_argument(option_flag(option.name), action="store_true", help=option.help_text)
         return

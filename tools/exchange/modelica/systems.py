@@ -248,6 +248,7 @@ def _diagram_positions(
 
 
 def _format_value_sources(system: System) -> str:
+    """HTML table of the parameters of all components of a system, with value, unit and source."""
     rows = "".join(
         f"<tr><td><code>{part.name}.{name}</code></td><td>{format_number(value)} "
         f"{part.units[name].replace('.', ' ')}</td><td>{escape_html(part.sources[name])}</td></tr>\n"

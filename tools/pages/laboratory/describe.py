@@ -291,7 +291,7 @@ def _entry_documents(model: Model, file: ParameterFile) -> dict[str, dict[str, o
 
 
 def _interval_ends(interval: Interval) -> list[float | bool | None]:
-    """Lower and upper end of an interval, None if infinite, and whether the ends are open."""
+    """JSON of an interval: lower end, upper end (None if infinite), whether each of them is excluded."""
     ends = [end if math.isfinite(end) else None for end in (interval.low, interval.high)]
     return [*ends, interval.low_open, interval.high_open]
 

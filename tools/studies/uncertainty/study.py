@@ -158,14 +158,14 @@ def _check_ascending(low: float, high: float) -> None:
 
 
 def _parse_numbers(texts: list[str], count: int) -> list[float]:
-    """Parse exactly `count` finite numbers; ValueError if the texts are none, or more or less."""
+    """Parse exactly `count` finite numbers. Raises ValueError for another count or another text."""
     if len(texts) != count:
         raise ValueError(f"has {len(texts)} numbers, expected {count}")
     return [_parse_number(text) for text in texts]
 
 
 def _parse_number(text: str) -> float:
-    """Parse a finite number; ValueError if the text is none."""
+    """Parse a finite number. Raises ValueError if the text is not a finite number."""
     try:
         value = float(text)
     except ValueError:

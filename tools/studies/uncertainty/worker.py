@@ -319,7 +319,7 @@ class _OpenJoint:
             file = self.file.with_values(hidden, "user", "sample") if hidden else self.file
             if len(self._engines) >= self.MAX_ENGINES:
                 del self._engines[next(iter(self._engines))]
-            found = open_joint(self._model.with_parameters(file.joint, file.values), file), {}
+            found = open_joint(self._model, file), {}
         self._engines[key] = found
         return found
 

@@ -312,24 +312,23 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
 /* Beyond FMI: many load steps in one call, for programs that load the library without an FMU. */
 
 /* Evaluate a path of `n` points and return how many of them were evaluated; fewer than `n` if one was refused,
- * with a message. The path starts at the accepted inputs, or in the virgin state if `from_rest`; with
- * `each_from_rest` every point is reached on a path of its own from the virgin state.
+ * with a message. The path starts in the virgin state; with `each_from_rest` every point is reached on a path of
+ * its own from the virgin state.
  *
  * inputs       : value references (n_inputs); their values (n, n_inputs), one row a point
  * outputs      : value references (n_outputs); their values (n, n_outputs) are written */
-FMI3_Export size_t jointfmu_follow_path(fmi3Instance c, fmi3Boolean from_rest, fmi3Boolean each_from_rest, size_t n,
-                                        size_t n_inputs, const fmi3ValueReference inputs[],
+FMI3_Export size_t jointfmu_follow_path(fmi3Instance c, fmi3Boolean each_from_rest, size_t n, size_t n_inputs,
+                                        const fmi3ValueReference inputs[],
                                         const fmi3Float64 input_values[], size_t n_outputs,
                                         const fmi3ValueReference outputs[], fmi3Float64 output_values[]);
-size_t jointfmu_follow_path(fmi3Instance c, fmi3Boolean from_rest, fmi3Boolean each_from_rest, size_t n,
-                            size_t n_inputs, const fmi3ValueReference inputs[], const fmi3Float64 input_values[],
-                            size_t n_outputs, const fmi3ValueReference outputs[], fmi3Float64 output_values[])
+size_t jointfmu_follow_path(fmi3Instance c, fmi3Boolean each_from_rest, size_t n, size_t n_inputs,
+                            const fmi3ValueReference inputs[], const fmi3Float64 input_values[], size_t n_outputs,
+                            const fmi3ValueReference outputs[], fmi3Float64 output_values[])
 {
     Instance *m = c;
-    if (from_rest)
-        m->state.reported_warnings = 0;
+    m->state.reported_warnings = 0;
     for (size_t i = 0; i < n; i++) {
-        if (each_from_rest || (from_rest && i == 0)) {
+        if (each_from_rest || i == 0) {
             memset(&m->state.path, 0, sizeof m->state.path);
             m->outputs_outdated = true;
         }
