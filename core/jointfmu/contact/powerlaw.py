@@ -231,7 +231,7 @@ class SpotDistribution:
         )
 
     def sum_derivative(self, quantity: str, largest_log_area: Number) -> Number:
-        """Derivative of `total` with respect to u: m Q + m w q(a_L)."""
+        """Derivative of `sum_over_spots` by the log-area u of the largest spot: m Q + m w q(a_L)."""
         largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
         return (
             self.size_exponent * self.sum_over_spots(quantity, largest_log_area)

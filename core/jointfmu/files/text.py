@@ -46,7 +46,7 @@ def format_toml_string(text: str) -> str:
 
 
 def _walk_items(document_value: object, table_name: str) -> Iterator[tuple[str, str, object]]:
-    """(name of the table, key, value) of every item of a document; items of a list have its key."""
+    """Yield (table name, key, value) of each item of a TOML document; items of a list have the list's key."""
     if isinstance(document_value, Mapping):
         for key, item in document_value.items():
             yield table_name, key, item

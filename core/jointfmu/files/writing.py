@@ -11,7 +11,10 @@ from pathlib import Path
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write a text file (UTF-8) as `write_bytes` does; ValueError also if UTF-8 cannot encode the text."""
+    """Write a text file in UTF-8 atomically, see `write_bytes`.
+
+    Raises ValueError also if UTF-8 cannot encode the text.
+    """
     try:
         data = text.encode()
     except UnicodeEncodeError as error:
@@ -64,7 +67,10 @@ def is_standard_output(path: str | Path) -> bool:
 
 
 def _output_descriptor(file_status: os.stat_result) -> int | None:
-    """Descriptor, 1 or 2, of the output of this process that is the file with a status; None: neither."""
+    """File descriptor of standard output (1) or standard error (2), if that is the file; else None.
+
+    file_status : status of the file
+    """
     for descriptor in (1, 2):
         with suppress(OSError):  # this process has closed it
             if os.path.samestat(file_status, os.fstat(descriptor)):

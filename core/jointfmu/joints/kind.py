@@ -62,7 +62,7 @@ class JointKind:
 
     @property
     def title(self) -> str:
-        """Name in words: "gear mesh"."""
+        """Name of the joint with spaces: "gear mesh"."""
         return self.name.replace("_", " ")
 
     @property

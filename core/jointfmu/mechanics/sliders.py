@@ -400,7 +400,7 @@ class Foundation:
         start_properties: SliderProperties,
         displacement_increment: "_DisplacementIncrement",
     ) -> Vector:
-        """Slider forces in the middle of an increment."""
+        """Slider forces (..., 2, n) [Pa] in the middle of a displacement increment."""
         half = displacement_increment.scale_increment(0.5)
         return self._return_map(
             force, start_properties, self.slider_properties(half.end_approach[..., 0]), half
@@ -563,7 +563,9 @@ def partial_contact(
 def stick_retention(
     stiffness_start: Number, stiffness_end: Number, is_unloading: Number
 ) -> tuple[Number, Number]:
-    """Retention [1] and secant stiffness [Pa/m] of a foundation in full stick, see `retention_and_stiffness`.
+    """Fraction of the traction retained [1] and secant stiffness [Pa/m] of a foundation in full stick.
+
+    See `retention_and_stiffness`.
 
     stiffness_start, stiffness_end : [Pa/m] tangential stiffness
     is_unloading                   : whether the approach decreases
@@ -591,8 +593,8 @@ def retention_and_stiffness(
 
     start_stiffness, end_stiffness : (stiffness [Pa/m], its derivative by the approach [Pa/m2]) at both ends
     approach_change : [m] change of the approach
-    stiffness_integral : [Pa] integral of the stiffness over the approach: ratio/mu times the mean change of
-        the friction limits
+    stiffness_integral : [Pa] integral of the stiffness over the approach: kappa/mu times the mean change of
+        the friction limits, kappa = K_T/K_N
     is_small_change : whether to compute the mean stiffness from both ends (fourth order), because
         stiffness_integral cancels
     """

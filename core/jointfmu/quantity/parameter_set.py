@@ -176,7 +176,7 @@ def _select_section(sections: Iterable[str], prefix: str, parameter_names: Colle
 
 
 def _section_name(group_field: Field[object], group_value: object) -> str:
-    """Section name of a group: that of the alternative whose class the value has."""
+    """Section name of the alternative of a group that a value belongs to, by the class of the value."""
     alternatives = group_field.metadata["alternatives"].items()
     return next(
         (name for name, cls in alternatives if isinstance(group_value, cls)), name_in_file(group_field)
@@ -184,7 +184,7 @@ def _section_name(group_field: Field[object], group_value: object) -> str:
 
 
 def _present_alternative(parameters: Any, foreign_name: str) -> str:
-    """Section that a parameter set has instead of the alternative that a name belongs to."""
+    """Section of a parameter set that excludes a name, because the name belongs to another alternative."""
     head, _, rest = foreign_name.partition(".")
     groups = [item for item in fields(parameters) if "group" in item.metadata]
     sections = {_section_name(item, getattr(parameters, item.name)): item for item in groups}

@@ -37,7 +37,7 @@ class MemberModes:
 
     @classmethod
     def for_rigid_bodies(cls, point_count: int, patch_count: int, bolt_count: int) -> "MemberModes":
-        """No modes: rigid members, for numbers of points, patches and bolts."""
+        """Empty set of modes for rigid members, with the given numbers of points, patches and bolts."""
         return cls(
             np.zeros(0), np.zeros((point_count, 0)), np.zeros((3, patch_count, 0)), np.zeros((bolt_count, 0))
         )
@@ -51,7 +51,7 @@ class MemberModes:
         point_count     : number n of contact points
         patch_positions : (m, 2) [m] of the friction patches
 
-        Raises ValueError if they were computed for another contact.
+        Raises ValueError if the modes were computed for another contact.
         """
         count = len(elastic_bodies.stiffness)
         position = np.stack([elastic_bodies.x, elastic_bodies.y], axis=1)

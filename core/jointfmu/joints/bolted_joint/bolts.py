@@ -4,8 +4,8 @@ The force of a bolt that the motion of the sides elongates by e from the tighten
 
     F = max(0, F_0 + k e) = F_0 + k (e + h),    h = max(0, -(F_0/k + e)),
 
-F_0 its force at tightening, k its stiffness and h the gap under its head or nut. It is the derivative of a
-convex potential in e. A tapped bolt keeps its thread; its head lifts off alike.
+with its force F_0 at tightening, its stiffness k and the gap h under its head or nut. F is the derivative of
+a convex potential in e. The same holds for a bolt in a tapped hole: its head lifts off, the thread holds.
 """
 
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class BoltSprings:
     position           : positions (b, 2) [m] of the bolts, from the centroid of the contact
     bolts_per_position : bolts at each position [1]; not 1 if `n_bolts` differs from the number of positions
     stiffness          : [N/m] of each bolt
-    lift_off_force     : [N] largest force of a bolt that stands at lift-off
+    lift_off_force     : [N] largest magnitude of F_0 + k e at which a bolt counts as at lift-off
     """
 
     position: Array
@@ -44,7 +44,7 @@ class BoltSprings:
 
     @classmethod
     def for_joint(cls, joint: AnyBoltedJoint, closure_pressure: float) -> "BoltSprings":
-        """Bolt springs of a joint; closure_pressure: [Pa] at which its contact closes."""
+        """Bolt springs of a joint whose contact closes at the pressure closure_pressure [Pa]."""
         position = bolt_positions(joint)
         count = float(joint.n_bolts) / len(position)
         return cls(
@@ -53,7 +53,7 @@ class BoltSprings:
 
     @cached_property
     def force_per_moment(self) -> Array:
-        """Force that a moment adds to each bolt, over the moment (b) [1/m], see `bolt_force_per_moment`."""
+        """Force added to each bolt per unit moment about x (b) [1/m], see `bolt_force_per_moment`."""
         return bolt_force_per_moment(self.position) / self.bolts_per_position
 
     def preload_force(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
@@ -61,13 +61,13 @@ class BoltSprings:
         return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.force_per_moment, 0.0))
 
     def head_gap(self, preload_force: Array, elongation: Array) -> Array:
-        """Gap h (b) [m] under the heads, by bolt forces at tightening (b) [N] and elongations (b) [m]."""
+        """Gap h (b) [m] under the heads, from bolt forces at tightening (b) [N] and elongations (b) [m]."""
         if self.stiffness == 0.0:
             return np.zeros_like(elongation)
         return np.maximum(-(preload_force + self.stiffness * elongation), 0.0) / self.stiffness
 
     def bolt_force(self, preload_force: Array, elongation: Array) -> Array:
-        """Force F (b) [N] of each bolt, at least 0."""
+        """Force F (b) [N] of each bolt, at least 0, from force at tightening (b) [N] and elongation [m]."""
         return np.maximum(preload_force + self.stiffness * elongation, 0.0)
 
     def tangent_stiffness(self, preload_force: Array, elongation: Array) -> Array:
@@ -94,10 +94,10 @@ def bolt_positions(joint: AnyBoltedJoint) -> Array:
 
 
 def bolt_force_per_moment(bolt_position: Array) -> Array:
-    """Force that a moment about x adds to each bolt over the moment (b) [1/m].
+    """Force added to each bolt per unit moment about x (b) [1/m].
 
-    It is that of `BoltedPlate.pressure_distribution`. Bolts of one row along x cannot carry a moment by their
-    forces: 0.
+    The forces are those of `BoltedPlate.pressure_distribution`. Bolts of one row along x cannot carry a
+    moment by their forces: 0.
     """
     x, y = bolt_position.T
     if np.ptp(y) <= ONE_ROW_TOLERANCE * max(float(np.ptp(x)), float(np.max(np.abs(y)))):

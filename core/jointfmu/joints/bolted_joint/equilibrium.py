@@ -75,7 +75,7 @@ class TrialState:
 
     @property
     def residual_norm(self) -> float:
-        """Largest entry of r [N]."""
+        """Largest magnitude of an entry of the residual r [N]."""
         return float(np.max(np.abs(self.residual)))
 
 
@@ -140,7 +140,7 @@ class JointAssembly:
     def residual(
         self, modal_coordinates: Array, pressure_change: Array, traction: Array, bolt_force_change: Array
     ) -> Array:
-        """Residual r (k) [N] of modal coordinates a (k) [m].
+        """Residual r (k) [N] of the static equilibrium at modal coordinates a (k) [m].
 
         traction                           : t (m, 3) [Pa] against the displacement of the patches
         pressure_change, bolt_force_change : (n) [Pa], (b) [N] since tightening
@@ -254,7 +254,10 @@ class LoadStep:
         return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
 
     def traction_derivatives(self, trial_state: TrialState) -> Array:
-        """Finite differences (m, 3, 4) [Pa/m] of tractions by tangential displacement (3) and opening."""
+        """Derivatives (m, 3, 4) [Pa/m] of the tractions by tangential displacement (3) and opening (1).
+
+        Finite differences.
+        """
         first = self.assembly.contact.curve.displacement[0]
         size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first))
         traction, columns = trial_state.friction_update.traction, []

@@ -41,7 +41,8 @@ def history_layout(patch_count: int) -> HistoryLayout:
     min_approach      : (m) [m] smallest approach since then, or since the patch closed again
     approach          : (m) [m] of the patches
     force             : (m, 2, n) [Pa] slider forces; in full stick as `full_stick_force` reads them
-    normal            : (3) s_z [m] and theta_x, theta_y [rad]; this and the following: of elastic members
+    normal            : (3) s_z [m] and theta_x, theta_y [rad]; this and the next two entries are used
+                        with elastic members only
     modal_coordinates : (MAX_MODES) [m]
     tangent           : (m, 6) [Pa/m] of the patches, see `SliderUpdate`
     """
@@ -66,7 +67,7 @@ def full_stick_force(packed_forces: Array) -> Array:
     """Traction (m, 3) [Pa] of patches in full stick, from the history variable `packed_forces` (m, 2, n).
 
     The first slider has the sum of all sliders, and y of the second one the force around the centre. So the
-    heights of the sliders may follow the load.
+    slider heights can change with the load while the patch sticks.
     """
     return np.column_stack([packed_forces[..., 0], packed_forces[:, 1, 1]])
 
@@ -126,7 +127,7 @@ class FrictionLaw:
     def foundation(
         self, onset_approach: Array | None = None, min_approach: Array | None = None
     ) -> Foundation:
-        """Sliders of the patches.
+        """Slider foundation of the patches, at a given history of their approach.
 
         onset_approach : (m) [m] at the end of full stick; None: not known
         min_approach   : (m) [m] smallest approach since then; None: onset_approach
@@ -209,7 +210,7 @@ def consistent_tangent(patches: FrictionPatches, friction_update: FrictionUpdate
     """Tangent stiffness per area [Pa/m], [Pa.m] for further displacements s_x, s_y and rotation theta_z.
 
     In the direction of the traction of their patch, sliders at their limits continue to slip; in the opposite
-    direction they stick. The result is for the direction in which more of the stiffness is lost.
+    direction they stick. Each component is the smaller one of the stiffnesses in both directions.
     """
     tangent, traction, stick = (
         friction_update.slider_update.tangent,

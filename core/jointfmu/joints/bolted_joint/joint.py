@@ -87,7 +87,7 @@ class BoltedJointSpring:
     curve   : contact pressure [Pa] over approach [m]
     points  : points that carry the normal force
     patches : patches that carry the friction
-    modes   : of the members between their attachments; none if the members are rigid
+    modes   : modes of the members between their attachments; none if the members are rigid
     """
 
     joint: AnyBoltedJoint
@@ -114,7 +114,10 @@ class BoltedJointSpring:
     def for_interface_nodes(
         cls, joint: AnyBoltedJoint, nodes: PressureDistribution | None = None
     ) -> "BoltedJointSpring":
-        """Interface alone, with a point and a patch at each node; None: the nodes of its pattern."""
+        """Joint with rigid members, and a point and a patch at each node.
+
+        nodes : None: all nodes of its pressure distribution
+        """
         points = pressure_distribution(joint.pattern) if nodes is None else nodes
         joint, patches = with_rigid_members(joint), points.as_patches()
         return cls(
@@ -122,7 +125,7 @@ class BoltedJointSpring:
         )
 
     def with_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
-        """Copy of the interface alone, with a point and a patch at each of other nodes."""
+        """Copy of the joint with rigid members, and a point and a patch at each of the given nodes."""
         joint, patches = with_rigid_members(self.joint), nodes.as_patches()
         modes = _rigid_member_modes(joint, nodes, patches)
         return replace(self, joint=joint, points=nodes, patches=patches, modes=modes)

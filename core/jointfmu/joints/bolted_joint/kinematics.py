@@ -33,7 +33,7 @@ def point_displacement(points: PressureDistribution, relative_displacement: Arra
 
 
 def tangential_displacement(patches: FrictionPatches, relative_displacement: Array) -> Array:
-    """Tangential displacement (m, 3) [m] of patches: along x, along y, and of rims by rotation about z."""
+    """Tangential displacement (m, 3) [m] of patches: along x, along y, and around their centres."""
     return np.column_stack(
         [point_displacement(patches, relative_displacement), relative_displacement[5] * patches.radius]
     )

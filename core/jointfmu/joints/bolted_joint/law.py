@@ -181,7 +181,7 @@ class BoltParameters:
                 )
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals that depend on other parameters."""
+        """Limits of n_bolts and row_bolts, which depend on other parameters."""
         why = (
             "each of the two rows has at most half of n_bolts; set row_bolts = 1 if all bolts are in one row"
         )

@@ -52,7 +52,7 @@ _ELONGATION_SUMS = SUM_NAMES[-3:]
 
 
 def first_moments(points: PressureDistribution, sum_name: str, point_values: Array) -> dict[str, Number]:
-    """Sums of values (n) times share, and times x and y."""
+    """Area-weighted sum of the values (n) of the points, and its first moments in x and y."""
     each = points.area_share * point_values
     return {
         sum_name: np.sum(each),
@@ -62,7 +62,7 @@ def first_moments(points: PressureDistribution, sum_name: str, point_values: Arr
 
 
 def second_moments(points: PressureDistribution, sum_prefix: str, point_values: Array) -> dict[str, Number]:
-    """Sums of values (n) times share, times y^2 and x^2."""
+    """Area-weighted second moments of the values (n) of the points, about x (times y^2) and y (times x^2)."""
     each = points.area_share * point_values
     x, y = points.position.T
     return {f"{sum_prefix}about_x": each @ y**2, f"{sum_prefix}about_y": each @ x**2}
@@ -75,7 +75,10 @@ def normal_sums(
     added_pressure: Number = 0.0,
     added_stiffness: Number = 0.0,
 ) -> dict[str, Number]:
-    """Sums of pressure (n) [Pa] and stiffness (n) [Pa/m], with the terms that shear adds to both."""
+    """Area-weighted sums and moments of pressure (n) [Pa] and normal stiffness (n) [Pa/m] of the points.
+
+    added_pressure, added_stiffness : terms of both that are due to shear
+    """
     p, k = pressure, stiffness
     x, y = points.position.T
     return {
@@ -92,21 +95,27 @@ def normal_sums(
 def friction_sums(
     patches: FrictionPatches, traction: Array, tangent: Sequence[Number], loss: Number
 ) -> dict[str, Number]:
-    """Sums of the traction (m, 3) [Pa]; tangent (3) [Pa/m] and loss [J/m2] are sums already."""
+    """Area-weighted sums of the tractions (m, 3) [Pa] of the patches, with tangent and loss {name: value}.
+
+    tangent, loss : (3) [Pa/m] and [J/m2] sums over the patches
+    """
     sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
     named = [*zip(_TRACTION_SUMS, sums, strict=True), *zip(_TANGENT_SUMS, tangent, strict=True)]
     return {**dict(named), "loss": loss}
 
 
 def tangent_sums(patches: FrictionPatches, tangent: Array) -> list[Number]:
-    """Stiffness per area [Pa/m] by tangents (m, 6) [Pa/m] against s_x, s_y and theta_z [Pa.m]."""
+    """Tangential stiffness per area for s_x, s_y [Pa/m] and theta_z [Pa.m], from tangents (m, 6) [Pa/m]."""
     return [patches.area_share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
 
 
 def cycle_sums(
     foundation: Foundation, area_share: Array, approach: Array, amplitude: Array
 ) -> dict[str, Number]:
-    """Sums of `Foundation.cycle_energies` of patches at approaches (m) [m], with amplitudes (m) [m]."""
+    """Energy loss and elastic energy per area [J/m2] of friction cycles, summed over the patches.
+
+    approach, amplitude : (m) [m] of the patches, see `Foundation.cycle_energies`
+    """
     loss, stored = foundation.cycle_energies(approach, amplitude)
     return {"loop_work": area_share @ loss, "loop_energy": area_share @ stored}
 
@@ -118,7 +127,7 @@ def bolt_gap_sums(
     bolt_force: Array,
     contact_sums: Mapping[str, Number],
 ) -> dict[str, Number]:
-    """Changed sums of a joint with rigid members, if bolt heads have lifted off.
+    """Sums of a joint with rigid members that change where bolt heads lift off: gaps and normal stiffness.
 
     elongation : (b) [m] since tightening
     bolt_force : (b) [N] at tightening
@@ -143,7 +152,7 @@ def assembly_sums(
     bolt_force: Array,
     loop_energy: Number,
 ) -> dict[str, Number]:
-    """Sums of a joint with elastic members: stiffness of the complete joint, modal elongation, energy.
+    """Sums that elastic members change: stiffness of the complete joint, bolt elongation, elastic energy.
 
     bolt_force  : (b) [N] at tightening
     loop_energy : [J/m2] of the friction patches
@@ -175,7 +184,7 @@ def assembly_sums(
 
 
 def bolt_force_name(bolt_index: int) -> str:
-    """Name of the force of a bolt, counted from 0."""
+    """Name of the output for the force of a bolt; `bolt_index` counts from 0."""
     return f"F_bolt[{bolt_index + 1}]"
 
 

@@ -57,7 +57,7 @@ def _max_row_moment(joint: Any, preload: Number) -> Number:
 
 
 def _make_variant(model: Model, joint: AnyBoltedJoint) -> Model:
-    """Model of a parameter set: load cycle with a preload above its loss by embedding, bolt force outputs."""
+    """Model for a parameter set: outputs of bolt forces, load cycle with a preload above the embedding."""
     assert model.load_cycle
     loop = replace(
         model.load_cycle, variable_values={"preload": max(_MIN_LOOP_PRELOAD, 2.0 * joint.embedding)}

@@ -36,7 +36,7 @@ class GearContactSpring:
 
     @classmethod
     def tabulate(cls, joint: ContactParameters) -> "GearContactSpring":
-        """Tabulate a parameter set."""
+        """Tabulate pressure over approach of the flanks for a parameter set."""
         return cls(joint, tabulate_approach(joint))
 
     @property

@@ -77,7 +77,7 @@ def base_pitch(mesh: MeshParameters) -> Number:
 def deflection(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
     """Deflection s_rel [m] along the line of action at (phi1, w1, phi2, w2) [rad, rad/s].
 
-    It is r_b1 phi1 + r_b2 phi2 minus half the backlash, with its sign; 0 within the backlash.
+    It is r_b1 phi1 + r_b2 phi2, reduced in magnitude by half the backlash; 0 within the backlash.
     """
     phi1, _, phi2, _ = motion
     rolling = mesh.r_b1 * phi1 + mesh.r_b2 * phi2
@@ -163,7 +163,7 @@ class GearMeshSpring:
 
     @classmethod
     def tabulate(cls, mesh: MeshParameters) -> "GearMeshSpring":
-        """Tabulate a parameter set."""
+        """Tabulate load over deflection of a tooth pair for a parameter set."""
         return cls(mesh, *tabulate_tooth_pair(mesh))
 
     def evaluate(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:

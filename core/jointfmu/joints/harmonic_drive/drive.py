@@ -168,7 +168,7 @@ class Drive(ABC):
 
     @property
     def effective_load_loss_back(self) -> Number:
-        """load_loss_back [1], or load_loss if load_loss_back is negative."""
+        """Loss [1] if the load drives the motor: load_loss_back, or load_loss if that is negative."""
         return select(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 
     @property
@@ -177,12 +177,12 @@ class Drive(ABC):
         return 1.0
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals of parameters that depend on other parameters."""
+        """Limits of those parameters whose allowed interval depends on other parameters."""
         any_sign = Interval.from_bounds(gt=np.minimum(2.0 * self.ratio, 0.0))
         return [ParameterLimit("ratio", any_sign, "allowed are (-inf, 0) and (0, inf)")]
 
     def find_table_limits(self) -> list[ParameterLimit]:
-        """Intervals of parameters that a table up to its last torque requires, besides `find_limits`."""
+        """Limits of parameters, besides `find_limits`, that a table up to the last torque requires."""
         return []
 
 

@@ -88,7 +88,7 @@ class ContactPairDrive(Drive):
         return peak_pressure(self, torque)[0]
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals of parameters that depend on other parameters."""
+        """Limits of those parameters whose allowed interval depends on other parameters."""
         no_contact = "above it the pair has no contact at zero torque"
         zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
         with np.errstate(over="ignore"):

@@ -114,7 +114,7 @@ class CatalogueDrive(PrescribedDrive):
     )
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals of parameters that depend on other parameters."""
+        """Limits of those parameters whose allowed interval depends on other parameters."""
         first, second = self.corner_angles
         return [
             *super().find_limits(),
@@ -231,7 +231,7 @@ class MeasuredDrive(PrescribedDrive):
     """Harmonic drive with measured torque over wind-up (midline), which already contains the lost motion."""
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals of parameters that depend on other parameters."""
+        """Limits of those parameters whose allowed interval depends on other parameters."""
         no_play = ParameterLimit(
             "lost_motion", Interval.from_bounds(ge=0.0, le=0.0), "a measured midline has it already"
         )
@@ -251,12 +251,12 @@ class TableDrive(MeasuredDrive):
 
     @property
     def max_table_torque(self) -> float:
-        """Torque [N.m] at the last point."""
+        """Torque [N.m] at the last point of the measured table."""
         return self.table.torque[-1]
 
     @property
     def max_torque(self) -> float:
-        """Torque [N.m] at the last point."""
+        """Torque [N.m] at the last point of the measured table."""
         return self.max_table_torque
 
     @cached_property

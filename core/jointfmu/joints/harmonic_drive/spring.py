@@ -79,7 +79,7 @@ class HarmonicDriveSpring:
 
     @classmethod
     def tabulate(cls, drive: Drive) -> "HarmonicDriveSpring":
-        """Tabulate a parameter set.
+        """Tabulate the midline for a parameter set, and find the sliders of hysteresis and friction.
 
         Raises ValueError as `torque_curve` and `HysteresisSliders.for_drive` do.
         """

@@ -17,7 +17,7 @@ _CELL_SUBDIVISIONS = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltedFrame:
-    """Rectangular frame with eight bolts on its centre line: two rows of three, and one between on each side.
+    """Rectangular frame with eight bolts on its centre line: two rows of three, one on each other side.
 
     The rows lie at y = +-row_spacing/2 with bolts at x = -column_spacing/2, 0, +column_spacing/2.
     """
@@ -39,7 +39,7 @@ class BoltedFrame:
 
     @property
     def bolts_from_middle(self) -> Array:
-        """Bolt positions (8, 2) [m]: rows y > 0, y = 0, y < 0."""
+        """Bolt positions (8, 2) [m] from the middle of the frame, in descending order of y."""
         x, y = 0.5 * self.column_spacing, 0.5 * self.row_spacing
         return np.array([[-x, y], [0, y], [x, y], [-x, 0], [x, 0], [-x, -y], [0, -y], [x, -y]])
 
@@ -131,5 +131,5 @@ PressureSource: TypeAlias = BoltedFrame | BoltedPlate | NodalField
 
 @lru_cache(maxsize=8)
 def pressure_distribution(pressure_source: PressureSource) -> PressureDistribution:
-    """Pressure distribution of a source, cached."""
+    """Pressure distribution of a bolted frame, a bolted plate or a nodal field, cached."""
     return pressure_source.pressure_distribution()

@@ -52,7 +52,7 @@ class PressureDistribution:
     def merge_nodes(self, keeps_moment: bool = True) -> "MergedDistribution":
         """Merge nodes that have the same pressure at every preload and moment.
 
-        keeps_moment : False: merge nodes with the same pressure at every preload, without moment
+        keeps_moment : False: without moment; merge all nodes with the same pressure at every preload
         """
         tilt = self.moment_pressure_ratio if keeps_moment else 0.0 * self.moment_pressure_ratio
         keys = np.round(np.column_stack([self.preload_pressure_ratio, tilt]), PRESSURE_DECIMALS)

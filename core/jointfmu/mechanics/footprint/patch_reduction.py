@@ -338,7 +338,7 @@ class _TargetSums:
         return cls(motions, reach, scale, hold, held, sums)
 
     def evaluate_sum_functions(self, points: Array) -> Array:
-        """Functions (m + 12, n) [1] of points (6, n); sums weighted by share should be `target_sums`."""
+        """Functions (m + 12, n) of points (6, n), whose share-weighted sums are fitted to `target_sums`."""
         friction = self.slip_cases.evaluate_friction(points)[0] * self.friction_weights[:, None]
         return np.concatenate(
             [

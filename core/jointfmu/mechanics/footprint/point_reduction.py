@@ -141,7 +141,7 @@ def _scale_shares(
 def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
     """Symmetry group (n) of each node: its mirror images at x = 0, y = 0 or both, if every node has an image.
 
-    At y = 0 moment_shape changes its sign.
+    The pressure by moment of a mirror image at y = 0 has the opposite sign.
     """
     share = distribution.area_share
     x, y = distribution.position.T

@@ -29,7 +29,9 @@ ROUND_OFF_RATIO = 2.0**-46
 def round_distribution(
     distribution: PressureDistribution, binary_digits: int = BINARY_DIGITS
 ) -> PressureDistribution:
-    """Round a pressure distribution to binary digits: each share to its own, other numbers to the largest's.
+    """Round a pressure distribution to a number of significant binary digits.
+
+    Each share is rounded relative to its own size; positions and pressure ratios relative to their largest.
 
     Numbers are rounded up from slightly above half a step, where no short fraction lies. Rounding is
     symmetric about zero, so a symmetric distribution stays symmetric.
@@ -59,7 +61,7 @@ def rank_descending(values: Array) -> NDArray[np.intp]:
 
 
 def _round_to_steps(values: Array, binary_digits: int) -> Array:
-    """Round values of size up to 1 to multiples of 2^-digits."""
+    """Round values between -1 and 1 to multiples of 2^-binary_digits."""
     sizes = np.floor(np.ldexp(np.abs(values), binary_digits) + ROUNDING_OFFSET)
     return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -binary_digits))
 
