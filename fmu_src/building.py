@@ -36,7 +36,7 @@ def build_fmus(
 
     fmu_names   : FMUs to build; if empty: all FMUs of the joint of `parameters`, or of all joints
     parameters  : None: the default parameter file of each joint
-    variability : of all parameters, one of VARIABILITIES
+    variability : FMI variability of all parameters, one of VARIABILITIES
     alias       : name of the FMU instead of its own; only for a single FMU
     pool        : processes that build in parallel; None: build in this process
     force       : also replace files that jointfmu did not write

@@ -19,7 +19,7 @@ class ListedVariable(NamedTuple):
     """Variable of a model description.
 
     start         : start value; None if the variable is calculated, a bool for a Boolean
-    attributes    : of a real number, as text: unit, displayUnit, min, max, nominal
+    attributes    : XML attributes of a real number: unit, displayUnit, min, max, nominal
     derivative_of : value reference of the state whose time derivative this variable is; None: no derivative
     """
 
@@ -98,8 +98,8 @@ def make_model_structure(model: Model, variability: str, fmi_version: str = "2")
 
     In FMI 2.0 the index of a variable equals its value reference.
 
-    variability : of all parameters, one of VARIABILITIES
-    fmi_version : of FMI, "2" or "3"
+    variability : FMI variability of all parameters, one of VARIABILITIES
+    fmi_version : version of FMI, "2" or "3"
     """
     outputs, parameters = [v.name for v in model.outputs], list(model.parameter_fields())
     names = [*(v.name for v in model.inputs), *outputs, *parameters]

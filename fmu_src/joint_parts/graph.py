@@ -159,7 +159,7 @@ def make_symbols(symbol_prefix: str, symbol_count: int) -> list[ca.SX]:
 
 
 def find_limits(joint: object) -> list[ParameterLimit]:
-    """Intervals of parameters that depend on other parameters."""
+    """Limits of those parameters whose allowed interval depends on other parameters."""
     own = joint.find_limits() if hasattr(joint, "find_limits") else []
     return [*own, *(joint.find_table_limits() if hasattr(joint, "find_table_limits") else [])]
 

@@ -86,7 +86,7 @@ INTEGER_CONSTANT_NAMES: ModuleConstants = {curve: ("MAX_REFINEMENT",), interface
 def define_constants(
     real_constant_names: ModuleConstants, integer_constant_names: ModuleConstants
 ) -> CDefinitions:
-    """Definitions of constants of Python modules: real numbers and integers."""
+    """C definitions of constants of Python modules, {module: names}: real numbers and integers."""
     count_values, number_values = (
         {name: getattr(module, name) for module, names in names_by_module.items() for name in names}
         for names_by_module in (integer_constant_names, real_constant_names)

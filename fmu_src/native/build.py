@@ -33,8 +33,8 @@ def build_native_fmu(
 
     Equal content gives equal files.
 
-    fmi_version : of FMI, "2" or "3"
-    variability : of all parameters, one of VARIABILITIES
+    fmi_version : version of FMI, "2" or "3"
+    variability : FMI variability of all parameters, one of VARIABILITIES
     alias       : name of the FMU instead of `fmu_name`; empty: `fmu_name`
 
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError

@@ -41,9 +41,9 @@ PARAMETER_VARIATION_HALF_WIDTH = 0.01
 
 @dataclass(frozen=True, slots=True)
 class ReferenceExperiment:
-    """Experiment with its results.
+    """Reference experiment of an FMU, with its results.
 
-    purpose         : one of `standard.PURPOSES`
+    purpose         : one of `standard.EXPERIMENT_PURPOSES`
     variable_values : {variable: value} that differ from the start values of the FMU
     stimulus        : levels of the driven input
     """

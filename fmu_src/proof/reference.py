@@ -50,7 +50,7 @@ def compute_results(
 ) -> TimeSeries:
     """Compute the outputs of a model at the sampling instants, starting from rest.
 
-    parameter_set : parameter set
+    parameter_set : parameter set of the joint
     start_values  : {input: start value}
     stimulus      : levels of the driven input
 

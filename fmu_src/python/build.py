@@ -69,7 +69,7 @@ def build_python_fmu(
 ) -> Path:
     """Write `out/NAME.fmu`, or `out/ALIAS.fmu` if an alias is given; an existing file is replaced atomically.
 
-    variability : of all parameters, one of VARIABILITIES
+    variability : FMI variability of all parameters, one of VARIABILITIES
 
     Raises ValueError if the parameters are of another joint or the folder cannot be written,
     ImportError if pythonfmu is missing, RuntimeError if its libraries are missing.

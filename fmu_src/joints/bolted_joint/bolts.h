@@ -11,7 +11,7 @@
 typedef struct {
     double stiffness; /* of each bolt [N/m] */
     double count;     /* bolts at each position [1] */
-    double lift_off;  /* largest force [N] of a bolt that stands at lift-off */
+    double lift_off;  /* magnitude of the force [N] up to which a bolt is at lift-off */
     double preload_force[MAX_BOLTS]; /* of each bolt [N] */
     bool is_unloaded[MAX_BOLTS];     /* the moment would make the preload force negative */
     double preload_rate[MAX_BOLTS];  /* rate of the preload force along the last seed */

@@ -39,11 +39,12 @@ static double open_approach(const Contact *contact, const double *modal_opening,
     return fmin(nearest, contact->curve->start.x);
 }
 
-/* Approaches at pressures, which become those that the approaches have; open patches are left out. */
+/* Invert the curve: approaches at n pressures, which are replaced by the exact pressures at these approaches.
+ * `leave_out_open`: the approach of an open patch is not changed. */
 static void invert_curve(const Curve *curve, int n, bool leave_out_open, double *pressure, double *approach)
 {
     int segment[MAX_POINTS > MAX_PATCHES ? MAX_POINTS : MAX_PATCHES] = {0};
-    for (int i = 0; i < n && ELASTIC; i++) /* in a loop of its own: no search waits for another */
+    for (int i = 0; i < n && ELASTIC; i++) /* in a loop of its own: independent searches overlap */
         segment[i] = pressure[i] < curve->end.y ? curve_find_segment_of_load(curve, pressure[i]) : 0;
     for (int i = 0; i < n; i++)
         if (!leave_out_open || pressure[i] > 0.0)
@@ -127,7 +128,7 @@ bool state_outside(const Contact *contact, double approach, int order, double *y
     return true;
 }
 
-/* Points that are evaluated together: first all segments, so that no search waits for another. */
+/* Points that are evaluated together: first all segments, so that independent searches overlap. */
 enum { POINT_BATCH = 32 };
 typedef struct {
     double p[POINT_BATCH], k[POINT_BATCH], works[POINT_BATCH][N_LAW_STATE];

@@ -48,7 +48,7 @@ typedef struct {
 
 /* Shares of the points and pressure transfer, once for a parameter set. */
 void contact_tabulate(Contact *contact);
-/* Preload state; false: it was that of this preload and moment. */
+/* Compute the preload state; false: preload and moment are unchanged, so there was nothing to compute. */
 bool set_preload_state(Contact *contact, double preload, double moment);
 /* Transfer pressures (or stiffnesses, rates) of the points to the patches. */
 void transfer_pressure(const Contact *contact, const double *points, double *patches);

@@ -15,7 +15,7 @@ static inline void subtract_column(double by, const double *restrict column, int
             x[r + l] -= by * column[r + l];
 }
 
-/* Columns are rows of the array, so that what is done to a column goes side by side. */
+/* A column of the matrix is a row of the array, so operations on a column are vectorized. */
 
 ALWAYS_INLINE void factor(double (*a)[MODES], int *pivots)
 {

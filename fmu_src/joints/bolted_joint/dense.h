@@ -33,7 +33,7 @@ typedef struct {
     int pivots[MODES];
 } Factorization;
 void dense_factor(bool use_avx, Factorization *factors);
-/* Solve with them, in place of the right side. */
+/* Solve a system with the factors; the solution replaces the right side. */
 void dense_solve(bool use_avx, const Factorization *factors, double *x);
 /* n rows with their weights, and the sums of those of four sets. */
 void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double (*result)[N_COLUMNS]);
@@ -46,7 +46,7 @@ void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COL
                     double (*restrict h)[N_COLUMNS]);
 /* Add n rows with their weights to a sum over the modes. */
 void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double *sum);
-/* What n rows are along x, each in its place of the result. */
+/* Dot products of n rows with x, written to the result with a stride. */
 void dense_dots(bool use_avx, int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result);
 
 #endif

@@ -43,7 +43,7 @@ typedef struct {
     double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
     TractionDerivatives derivatives[MAX_PATCHES];
     Factorization factors; /* of the modal tangent in Newton's method */
-    /* Since then [m], and their squares [m2]. */
+    /* Corrections since this tangent [m], and their squares [m2]. */
     double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS];
 } Equilibrium;
 

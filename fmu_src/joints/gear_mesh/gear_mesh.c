@@ -1,4 +1,5 @@
-/* Repeats `tabulate_pair` of the package, and the energy of a tooth pair; the functions of the law are generated. */
+/* Repeats `tabulate_tooth_pair` of the package, and the energy of a tooth pair; the functions of the law are
+ * generated. */
 #include "gear_mesh.h"
 
 #include <math.h>

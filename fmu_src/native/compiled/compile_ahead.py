@@ -19,7 +19,7 @@ from .compiled_models import compiled_model_name, get_compiled_model, pack_model
 def compile_ahead(fmu_names: Sequence[str], output_folder: Path) -> list[Path]:
     """Write the compiled models of FMUs into a folder and return the files; other files there are deleted.
 
-    fmu_names : of FMUs; empty: all
+    fmu_names : names of FMUs; empty: all
 
     Raises as `compiled_models.get_compiled_model`, and ValueError for an unknown name.
     """

@@ -56,7 +56,7 @@ def compile_libraries(
     sources        : {file name: text} of all C files and headers; the FMI headers come from fmpy
     source_names   : names of the .c files to compile
     library_stem   : file name of the libraries without extension; empty: `fmu_name`
-    linker_options : compiler options for a further library
+    linker_options : compiler options that link a further library
 
     zig caches compiled units, also for later builds. Equal sources give equal bytes.
 
