@@ -57,7 +57,7 @@ class Columns:
     units: Mapping[str, str] = field(default_factory=dict)
 
     def require_column(self, column_name: str, allowed_units: Mapping[str, UnitSizes]) -> Array:
-        """Return a column. Raises ValueError if the file does not have the column."""
+        """Return the values (n) of a column in SI. Raises ValueError if the file does not have the column."""
         if column_name not in self.columns:
             raise ValueError(
                 f"{self.path}: has no column {column_name!r}; expected "

@@ -35,8 +35,8 @@ class ToolParts:
     """Tool modules of one joint.
 
     package      : name of the package that is the joint's folder
-    module_names : modules with the name of their tool
-    modules      : {tool: module}, if a module has another name than its tool
+    module_names : tools that are served by a module of the same name
+    modules      : {tool: name of its module}, for tools served by a module of another name
 
     Raises ImportError if a name is not in TOOL_NAMES, if a named module is missing, or if the folder has a
     module with the name of a tool that is not in `module_names`.

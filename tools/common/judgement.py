@@ -74,12 +74,12 @@ class Plausibility:
     warnings: tuple[str, ...]
 
     def format_lines(self) -> Iterator[str]:
-        """Readable lines, without the warnings."""
+        """Format the stiffness comparison as lines of text. The warnings are not included."""
         if self.comparison is not None:
             yield str(self.comparison)
 
     def with_warnings(self, extra_warnings: Sequence[str]) -> "Plausibility":
-        """Copy with further warnings before the present ones."""
+        """Return a copy that has the extra warnings, followed by its own warnings."""
         return Plausibility(self.comparison, (*extra_warnings, *self.warnings))
 
     def to_json(self) -> dict[str, Any]:
@@ -104,8 +104,9 @@ def assess_law(
     stiffness_ratio: Sequence[float] | float = 1.0,
     check_limits: bool = True,
 ) -> Plausibility:
-    """Assess the stiffness of an interface law at nominal pressures [Pa]. Zero and infinite ones are ignored.
+    """Assess the stiffness of an interface law at nominal pressures [Pa].
 
+    pressures       : (n) [Pa]; pressures of zero or infinity are ignored
     rms_height      : [m] combined rms height of both surfaces; None: unknown
     peak_pressure   : [Pa] largest pressure, if `pressures` are mean values
     stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one per pressure

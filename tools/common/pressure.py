@@ -93,7 +93,7 @@ def judge_joint_stiffness(
 
 
 def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
-    """Warning that the written file has only the interface of a joint with elastic members; else empty."""
+    """List a warning that an exported file has only the interface, if the joint has elastic members."""
     if not getattr(parameter_file.values, "has_elastic_members", False):
         return []
     return [
@@ -104,7 +104,7 @@ def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
 
 
 def warn_overload(load_name: str, load: float, load_capacity: tuple[float, str] | None) -> list[str]:
-    """Warning if a load [N] is above the load capacity; else empty.
+    """List a warning if a load [N] is above the load capacity; otherwise the list is empty.
 
     load_capacity : (largest load [N], name of this limit), or None if not known
     """

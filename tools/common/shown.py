@@ -51,7 +51,7 @@ def align_columns(rows: Sequence[Sequence[str]], word_columns: int | None = None
 
 
 def format_facts(facts_by_name: Mapping[str, tuple[float, str, str]]) -> list[str]:
-    """Format {name: (value, unit, meaning)} as lines."""
+    """Format facts {name: (value, unit, meaning)} as lines of text, one line for each fact."""
     return [
         f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
         for name, (value, unit, text) in facts_by_name.items()
@@ -59,7 +59,7 @@ def format_facts(facts_by_name: Mapping[str, tuple[float, str, str]]) -> list[st
 
 
 def fact_document(facts_by_name: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
-    """JSON object of {name: (value, unit, meaning)}."""
+    """Convert facts {name: (value, unit, meaning)} to a JSON object."""
     return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts_by_name.items()}
 
 

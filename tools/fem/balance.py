@@ -36,6 +36,8 @@ corners of a body, and its contact, give values of order 1."""
 class RigidBalance:
     """Generalised forces of loads and contact on the rigid-body motions (each of rms displacement 1 m).
 
+    Shapes: q quadrature points, m motions that only the contact can stop, k motions that no support stops.
+
     generalised_load     : (m) [N] of the loads on the motions that only the contact can stop
     rigid_approach       : (q, m) [1] approach at the quadrature points for these motions
     unsupported_approach : (q, k) [1] approach for the motions that no support stops in the computation
@@ -60,7 +62,7 @@ class RigidBalance:
         *,
         supports_carry_load: bool,
     ) -> "RigidBalance":
-        """Balance of bodies under loads (n) [N] on each body.
+        """Evaluate the generalised forces of loads (n) [N] on each body, for n unknowns of the body.
 
         approach_matrices   : matrices (q, n) [1]: approach at the quadrature points per displacement of each
                               body
@@ -118,7 +120,7 @@ class RigidBalance:
             )
 
     def _best_balance(self) -> tuple[float, float]:
-        """Best balance of the loads by forces >= 0 at the corners of the contact (linear programme).
+        """Find forces >= 0 at the corners of the contact that balance the loads best (linear programme).
 
         Returns the sum of these forces and the remaining imbalance, both over the total load [1].
         """

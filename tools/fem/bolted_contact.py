@@ -61,7 +61,10 @@ class BoltedContact:
         moment: float,
         initial_solution: ContactSolution | None = None,
     ) -> "JointSolution":
-        """Solve for a preload [N] per bolt and a moment [N.m] about x; the start may be another solution."""
+        """Solve for the equilibrium under a preload [N] per bolt and a moment [N.m] about x.
+
+        initial_solution : equilibrium from which Newton's method starts; None: start at uniform pressure
+        """
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.bolt_head_loads, strict=True)]
@@ -119,7 +122,7 @@ class JointSolution:
 
     @property
     def pressure_between_bolts(self) -> tuple[Array, Array]:
-        """Pressure (k) [Pa] midway between neighbouring bolts, after its positions (k, 2) [m]."""
+        """Positions (k, 2) [m] midway between neighbouring bolts, and contact pressure (k) [Pa] there."""
         positions = bolt_midpoints(self.bolted_contact.assembly.bolts.positions)
         sides = (self.bolted_contact.assembly.side1, self.bolted_contact.assembly.side2)
         solid = [side.layers()[0].is_solid(*positions.T) for side in sides]
@@ -137,7 +140,7 @@ class JointSolution:
 
 
 def bolt_midpoints(bolt_positions: Array) -> Array:
-    """Midpoints (k, 2) [m] of neighbouring bolts at (n, 2) [m].
+    """Points (k, 2) [m] midway between neighbouring bolts, from the bolt positions (n, 2) [m].
 
     Two bolts are neighbours if no third bolt lies in the circle whose diameter is the line between them.
     """

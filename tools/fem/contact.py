@@ -197,7 +197,7 @@ class ContactModel:
         return displacement
 
     def rigid_balance(self, loads: Sequence[Array]) -> RigidBalance:
-        """Balance of loads (n) [N] and contact on the rigid-body motions of the bodies."""
+        """Generalised forces of loads (n) [N] and contact on the rigid-body motions of the bodies."""
         interface = self.contact_interface
         return RigidBalance.from_loads(
             self.bodies,

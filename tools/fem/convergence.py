@@ -81,7 +81,7 @@ def run_mesh_study(
 
 
 def summarize_solution(solution: JointSolution, refinement: float) -> MeshResult:
-    """Size of the mesh and compared results of a solution."""
+    """Collect numbers of elements and unknowns, pressures and stiffnesses (RESULT_UNITS) of a solution."""
     between = solution.pressure_between_bolts[1]
     values = {"peak": solution.peak_pressure, "between": float(between.mean()) if between.size else math.nan}
     joint = solution.bolted_contact

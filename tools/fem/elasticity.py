@@ -189,7 +189,10 @@ class ElasticBody:
 
 
 def _assemble_global_matrix(basis: Basis, element_matrices: list[Array]) -> sp.csr_matrix:
-    """Assemble element matrices (m, n, n, k, k) to a global sparse matrix with k x k blocks."""
+    """Assemble element matrices to a global sparse matrix with k x k blocks.
+
+    element_matrices : blocks of elements; each (m, n, n, k, k): m elements, n nodes, k unknowns per node
+    """
     dofs = np.asarray(basis.element_dofs.T, dtype=np.int64)
     key = (dofs[:, :, None] * basis.N + dofs[:, None, :]).ravel()
     order = np.argsort(key, kind="stable")

@@ -41,7 +41,11 @@ class EnergyMinimum:
 
 @dataclass(frozen=True)
 class ContactEnergy:
-    """Energy u K u / 2 - f u + sum over points of weight V(offset + T u), with V' = p; convex in u (n) [m].
+    """Energy [J] of bodies in contact, convex in the displacement u (n) [m] of the unknowns:
+
+        u K u / 2 - f u + sum over the quadrature points of area times V(offset + T u).
+
+    V [J/m2] is the energy of the interface per area; its derivative is the pressure p.
 
     stiffness_matrix : K (n, n) [N/m]
     load_vector      : f (n) [N]

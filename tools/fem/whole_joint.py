@@ -266,7 +266,7 @@ class LinearJoint:
     stiffness_factor: Cholesky | MirrorFactorisation
 
     def solve(self, loads: Array) -> Array:
-        """Solve for displacements (n, s) [m] under loads (n, s) [N], with both attachments fixed."""
+        """Displacements (n, s) [m] of the bodies in s load cases (n, s) [N], with both attachments fixed."""
         displacement = np.zeros_like(loads)
         displacement[self.free_unknowns] = self.stiffness_factor.solve(loads[self.free_unknowns])
         return displacement

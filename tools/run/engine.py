@@ -48,7 +48,7 @@ class JointEngine(Protocol):
     model: Model
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
-        """Set parameters by structured name [SI]. Their check comes with the next evaluation."""
+        """Set parameters by structured name [SI]. They are checked at the next evaluation."""
 
     def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
         """Evaluate the joint along a path that starts in the virgin state.
@@ -87,7 +87,7 @@ class TrialJoint:
         self._fixed_values: tuple[Any, ...] = ()
 
     def with_parameters(self, parameters: Any) -> JointEngine:
-        """The joint with a parameter set. An engine that was returned before must not be used any more.
+        """Return an engine of the joint with a parameter set. Engines returned before become invalid.
 
         Raises ValueError as `open_joint` and `JointEngine.follow`.
         """
@@ -216,7 +216,10 @@ class CompiledJoint:
 
 
 def _close(library: Any, instance: Any, logger: Any, folder: str) -> None:
-    """Free the instance, unload the library and remove its file; `logger` lives until here."""
+    """Free the instance, unload the library and remove its folder.
+
+    logger : callback of the instance, an argument only to keep it alive until here
+    """
     import _ctypes
 
     if instance:

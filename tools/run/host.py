@@ -130,8 +130,8 @@ class Instance:
     def update_discrete_states(self) -> tuple[Any, ...]:
         """Do one event iteration.
 
-        Returns the results of FMI: whether another iteration is needed, whether to terminate, ..., the time
-        of the next event [s].
+        Returns the results of FMI in their order: first whether another iteration is needed, second whether
+        to terminate, last the time of the next event [s].
         """
         return tuple(self.fmu.newDiscreteStates() if self.version == 2 else self.fmu.updateDiscreteStates())
 

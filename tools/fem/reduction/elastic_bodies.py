@@ -3,7 +3,7 @@
 The modes come from a proper orthogonal decomposition, in the energy norm, of computed load steps of the joint
 (`states`). The opening or tangential displacement of a mode at a point of the reduced joint is its mean over
 the cell of the point, weighted by the interface stiffness. A mean misses the variation inside of the cell. So
-the means are corrected in common: the preloaded interface gets the same stiffness against all modes as in the
+all means are corrected together: the preloaded interface gets the same stiffness against all modes as in the
 finite-element model. At the friction patches, the displacements are then fitted to the work of friction
 (`patch_work`).
 """
@@ -162,8 +162,8 @@ def _energy_modes(
     The first modes span the response of the linear joint to unit motions; the others come from the proper
     orthogonal decomposition of the remaining deformation.
 
-    state_deformations : (n, s) [m] deformation of the bodies
-    state_forces       : (n, s) [N] their stiffness times this deformation
+    state_deformations : (n, s) [m] deformation of the bodies in s states of the joint
+    state_forces       : (n, s) [N] stiffness matrix of the bodies times this deformation
     motions            : (s, 6) [m, rad] of side 2 in these states
     """
     linear_deformations = linear_joint.unit_motion_displacement - linear_joint.rigid_displacement
@@ -180,13 +180,18 @@ def _energy_modes(
 
 
 def _scale_to_unit_energy(displacements: Array, forces: Array) -> tuple[Array, Array]:
-    """Scale displacements u (n, s) [m] and their forces K u (n, s) [N] to unit energy norm, u K u = 1."""
+    """Scale displacement fields (n, s) [m] to unit energy norm, and their forces (n, s) [N] in proportion.
+
+    The energy norm of a field is the sum of displacement times force; forces = stiffness times displacements.
+    """
     norm = np.sqrt(np.sum(displacements * forces, axis=0))
     return displacements / norm, forces / norm
 
 
 def _decompose_orthogonally(displacements: Array, forces: Array) -> tuple[Array, Array]:
-    """Proper orthogonal decomposition in the energy norm of fields u (n, s) with forces K u (n, s).
+    """Proper orthogonal decomposition of s displacement fields (n, s) in the energy norm.
+
+    forces : (n, s) stiffness matrix times the displacement fields
 
     Returns orthonormal modes (n, k), the largest singular value first, without those below
     MIN_SINGULAR_VALUE_RATIO, and their forces (n, k).
@@ -212,7 +217,7 @@ def _match_stiffness(
     full_displacement: Array,
     full_stiffness: Array,
 ) -> Array:
-    """Correct the modal displacements (n, k) of a reduced set of springs until it is as stiff as all springs.
+    """Correct the displacements (n, k) of n springs by k modes: same stiffness as the full set of q springs.
 
     reduced_displacement : (n, k) mean displacement of each spring of the reduced set by the modes
     reduced_rigid_displacement : (n, 3) displacement of the reduced set by rigid-body motions

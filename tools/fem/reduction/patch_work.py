@@ -40,7 +40,7 @@ MIN_RELATIVE_SCALE = 0.03
 
 
 def shear_combinations(state_motions: Array) -> Array:
-    """Coefficients (w, s) that combine s states to w states in shear.
+    """Coefficients (w, s) [1] of w linear combinations of s states of the joint, all of them in shear.
 
     The combinations are the states along x, along y and about z alone (the same number for each axis), then
     sums and differences of two of these axes.
@@ -57,7 +57,7 @@ def shear_combinations(state_motions: Array) -> Array:
 
 @dataclass(frozen=True)
 class ShearStates:
-    """States of the joint in shear: motion of side 2, and modal coordinates of the bodies.
+    """s states of the joint in shear: motion of side 2, and coordinates of the k modes of the bodies.
 
     motion            : (s, 3) [m, rad] of side 2 along x, along y and about z
     modal_coordinates : (s, k) [m]
@@ -202,7 +202,8 @@ class PatchFit:
 
         patch_displacement : (2 m, k) [1] displacement of the patches along x, then along y, by the modes
 
-        Returns the displacement (2 c m, 3 + k) of the sliders by motions and modes, and their friction.
+        Returns the displacement (2 c m, 3 + k) of all sliders (c on each of m patches) by 3 motions and k
+        modes, and their friction.
         """
         count = len(self.rotation_displacement) // len(patch_displacement)
         by_modes = (
@@ -260,7 +261,7 @@ class PatchFit:
         return patch_displacement
 
     def _stiffness_residual(self, patch_displacement: Array) -> Array:
-        """Weighted relative error (w (w + 1) / 2) [1] of the stick stiffness of the patches."""
+        """Weighted relative errors [1] of the stick stiffness (3, 3) of the patches: upper triangle, flat."""
         _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
         error = (
             stick_stiffness_matrix(friction, self.sliders.point_area) - self.linear_contact.contact_stiffness
@@ -268,7 +269,7 @@ class PatchFit:
         return np.asarray(STIFFNESS_WEIGHT * error[np.triu_indices(len(error))])
 
     def _stiffness_jacobian(self, patch_displacement: Array) -> Array:
-        """Derivative of the stiffness residual with respect to the patch displacements."""
+        """Derivative of `_stiffness_residual` with respect to the patch displacements, one row per error."""
         _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
         force = (
             self.sliders.point_area
@@ -285,7 +286,10 @@ class PatchFit:
         )
 
     def _work_residual(self, patch_displacement: Array, weighted_change: Array) -> Array:
-        """Residuals [1]: relative errors of forces, stick forces, losses; weighted change of displacement."""
+        """Residuals [1] of the fit: relative errors of friction forces, stick forces and cycle losses.
+
+        The last ones are the weighted changes of the patch displacements (regularisation).
+        """
         displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
         actual = assemble_friction_work(friction, self.sliders.point_area, displacement)
         target = self.target_work
@@ -309,7 +313,10 @@ class PatchFit:
         secant, tangent = friction.secant_stiffness, friction.tangent_stiffness
 
         def patch_products(slider_stiffness: Array, slider_displacement: Array) -> Array:
-            """Product of tangent and displacement (s, 3 + k, m), summed over the sliders of each patch."""
+            """Slider stiffness (s states) times displacement (3 + k motions and modes), summed in each patch.
+
+            Returns an array (s, 3 + k, m) for m patches.
+            """
             factors = (
                 slider_stiffness.reshape(n_states, -1, count),
                 slider_displacement.reshape(-1, count, 3 + modes),
@@ -317,7 +324,7 @@ class PatchFit:
             return np.einsum("scm,cmh->shm", *factors)
 
         def patch_sums(slider_values: Array) -> Array:
-            """Sum of slider values (s, m) over the sliders of each patch."""
+            """Values of the sliders in s states, summed over the sliders of each of m patches: (s, m)."""
             return slider_values.reshape(n_states, -1, count).sum(axis=1)
 
         forces, loss = np.zeros((2, n_states, 3 + modes, 2, count)), np.zeros((n_states, 2, count))
@@ -354,7 +361,7 @@ def patch_rotations(
     averaging_matrix: sp.csr_matrix,
     tangential_displacements: list[Array],
 ) -> Array:
-    """Rotation (m, k) [1/m] of the patches about their centres by the modes.
+    """Rotation (m, k) [1/m] of each of m patches about its centre by each of k modes.
 
     The rotation is a mean over the cell of each patch, weighted by the averaging matrix and the squared
     distance from the centre.
@@ -405,7 +412,7 @@ def evaluate_friction(
 
     modal_displacement : (2 n, k) [1] of the points along x, then along y, by the modes
 
-    Returns the displacement (2 n, 3 + k) of the points by motions and modes, and their friction.
+    Returns the displacement (2 n, 3 + k) of the points by 3 motions and k modes, and their friction.
     """
     displacement = np.concatenate([friction_points.rigid_displacement, modal_displacement], axis=1)
     coordinates = np.concatenate([shear_states.motion, shear_states.modal_coordinates], axis=1)

@@ -40,7 +40,8 @@ def compute_states(
 ) -> tuple[Array, Array]:
     """Compute the states of a joint under motions of side 2, which start from the preloaded joint.
 
-    Returns the motions (s, 6) [m, rad] and the negative deformation (n, s) [m] of the bodies.
+    Returns the motions (s, 6) [m, rad] of side 2 in s states, and the deformation (n, s) [m] of the bodies
+    with its sign reversed.
 
     linear_joint     : linear finite-element model of the joint
     reduced_joint    : the reduced joint
@@ -294,11 +295,13 @@ def refine_equilibrium(
     motions: Array,
     negative_deformation: Array,
 ) -> Array:
-    """Refine the negative deformation (n, s) [m] towards equilibrium with the law at all quadrature points.
+    """Iterate s states of the joint towards equilibrium with the law at all quadrature points.
+
+    Returns the refined deformation (n, s) [m] of the bodies with its sign reversed.
 
     normal_stiffness     : (q) [Pa/m] of the preloaded interface at the quadrature points
     motions              : (s, 6) [m, rad] of side 2
-    negative_deformation : negative deformation (n, s) [m] in equilibrium with the law in the cells
+    negative_deformation : (n, s) [m] reversed deformation in equilibrium with the law in the cells
 
     Each iteration uses the stiffness of the preloaded joint. Slip only lowers the stiffness, so the iteration
     converges. A state whose step grows (its contact closes) is not changed.

@@ -143,7 +143,7 @@ def _distribute_to_nodes(
     moment: float,
     total_outputs: dict[str, float] | None,
 ) -> Springs:
-    """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
+    """Distribute stiffness and damping to the nodes, in proportion to area share times stiffness per area.
 
     total_outputs : {name in TOTAL_OUTPUTS: total}; None: the totals of `spring`
 
@@ -210,7 +210,7 @@ def tabulate_normal_force(
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
 
     def compression_correction(separation: Array) -> tuple[Array, Array]:
-        """Correction for bolts, which only pull: force [N] and stiffness [N/m] of bolts that push."""
+        """Force [N] and stiffness [N/m] by which bolts, which only pull, deviate from linear springs."""
         elongation = separation[:, None] + np.zeros(len(held_bolts))
         gap = springs.head_gap(held_bolts, elongation)
         lost = springs.stiffness - springs.tangent_stiffness(held_bolts, elongation)

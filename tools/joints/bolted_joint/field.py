@@ -101,11 +101,12 @@ def insert_elastic_bodies(
     attachment: str,
     pressure_shape: PressureDistribution,
 ) -> ParameterFile:
-    """Parameter file with elastic bodies: the file of an interface with the bodies of an assembly.
+    """Compute the elastic bodies of an assembly; return the parameter file of the joint with them.
 
+    file           : parameters of the joint with rigid sides
     preload        : [N] per bolt
-    attachment     : name of the attachment
-    pressure_shape : pressure shape of all nodes
+    attachment     : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
+    pressure_shape : normalised pressure at all nodes of the finite elements
     """
     from .new.plate_finite_elements import compute_joint_of_assembly
 
@@ -115,7 +116,7 @@ def insert_elastic_bodies(
 
 
 def joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
-    """{name: (value, unit, meaning)} of the complete joint at a preload [N] per bolt."""
+    """Facts about the complete joint at a preload [N] per bolt: {name: (value, unit, meaning)}."""
     from .new import plate_finite_elements
 
     return plate_finite_elements.joint_facts(file, preload)

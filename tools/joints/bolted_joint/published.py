@@ -55,7 +55,10 @@ def surface_rms_height(joint: BoltedJoint, longest_wave: float) -> float:
 
 
 def evaluate_mindlin(joint: BoltedJoint, function: str, x: float) -> float:
-    """Mindlin's H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio x [1]."""
+    """Mindlin's function of the dissipation, the stored energy or their ratio [1], at a traction ratio x [1].
+
+    function : "loop" (H1, dissipation), "storage" (H2, stored energy) or "loss_ratio" (W_d/W)
+    """
     table = {
         "loop": mindlin.dissipation_function,
         "storage": mindlin.storage_function,

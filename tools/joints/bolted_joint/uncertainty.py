@@ -42,7 +42,8 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
     """Loss factor (m) [1] of loops of the interface under SHEAR_RATIO of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
-    finds the displacement of the shear force: the virgin curve is concave, so the iteration is monotone.
+    finds the displacement at which the shear force is reached: the virgin curve is concave, so the iteration
+    is monotone.
     """
     loads, parameters = preload[-1] * LOOP_LOADS, sample.parameters
     shear = parameters.n_bolts * loads * min(SHEAR_RATIO, MAX_SLIP_RATIO * parameters.mu)

@@ -43,7 +43,7 @@ def friction_and_ratio(catalogue_entry: CatalogueEntry) -> dict[str, float]:
 
 
 class SimulatedDrive:
-    """Harmonic drive without an FMU, with the interface of a running one; starts at rest at zero angles."""
+    """Harmonic drive evaluated in Python, with the methods of a running FMU. It starts at rest at angle 0."""
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
         self._joint = open_joint(model, file)
@@ -87,7 +87,8 @@ def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, s
 class DriveTestRig:
     """Simulated test rig: a drive whose input rotates at a steady speed, with a torque at its output.
 
-    drive       : running drive with inputs phi1, w1, phi2, w2 and first outputs tau, tau1
+    drive       : running drive; inputs: angle and speed of wave generator (phi1, w1) and output (phi2, w2);
+                  first outputs: transmitted torque tau, motor torque tau1
     ratio       : speed ratio [1]
     presliding  : rotation [rad] of the wave generator before its friction slips
     stiffness   : [N.m/rad] without torque

@@ -137,7 +137,7 @@ def load_importer(importer: str) -> None:
 
 
 def _check_types(task: Task) -> None:
-    """Raise ValueError for a variable of a type that ecos cannot set and libcosim does not list."""
+    """Raise ValueError if a variable is an Enumeration or Int64: ecos and libcosim do not support them."""
     variables = {v.name: v for v in read_description(task.fmu).modelVariables}
     for name in (*task.settings, *task.inputs, *task.outputs):
         if variables[name].type in ("Enumeration", "Int64"):

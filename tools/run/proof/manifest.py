@@ -176,7 +176,7 @@ class RelatedFiles:
         return Experiment(name, purpose, *numbers, settings, stimuli, references, interfaces, scales, unfit)
 
     def _read_scales(self, path: str, experiment: str, element: Element) -> dict[str, float]:
-        """{output: scale} that the annotation of an experiment states; ValueError unless positive."""
+        """Scales {output: scale} in the annotation of an experiment; ValueError if one is not positive."""
         scales = {}
         for scale in element.iterfind(f"Annotations/Annotation[@type='{SCALES_TYPE}']/Scale"):
             output = scale.get("name", "")

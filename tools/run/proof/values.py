@@ -49,7 +49,7 @@ def convert_setting(variable: "ScalarVariable", setting: StartSetting) -> object
 
 
 def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
-    """Convert a number to the kind of a variable (real, integer, boolean); ValueError if it is none."""
+    """Convert a number to real, integer or boolean, the kind of a variable. ValueError if it does not fit."""
     if (kind := variable_kind(variable)) == "real":
         return value
     number = int(value)

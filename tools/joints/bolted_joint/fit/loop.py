@@ -326,11 +326,11 @@ def _level_exchange(
     fitted_names: Sequence[str],
     compute_rest_stiffness: Callable[[Mapping[str, float]], float],
 ) -> UnknownExchange | None:
-    """Exchange of unknowns: the stiffness at rest [N/m] replaces the parameter that sets the stiffness level.
+    """Replace the unknown parameter that sets the stiffness level by the unknown stiffness at rest [N/m].
 
     compute_rest_stiffness : {name: value} -> stiffness at rest [N/m]
 
-    None if the level is not fitted.
+    Returns the exchange of unknowns; None if the level is not fitted.
     """
     _, level, *_ = FITTED_PARAMETERS[parameter_file.law]
     if level not in fitted_names:

@@ -242,7 +242,7 @@ def _find_start(
     preload_curve: PreloadCurve,
     logarithmic_error: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
-    """Unknowns with the best of several start values."""
+    """Unknowns of the fit; their start values are those of several that have the smallest error."""
     parameters = make_unknowns(
         parameter_file, [name for name in fitted_names if name != SERIES_STIFFNESS], {}
     )

@@ -261,8 +261,8 @@ def _fact_rows(
 ) -> Facts:
     """Facts about the complete joint, at a remaining preload [N] of each bolt.
 
-    fmu_suffix : text that names the load of the same output of the FMU; empty: the FMU contains the interface
-                 only
+    fmu_suffix : text with the load at which an output of the FMU has the same value; empty: the FMU contains
+                 the interface only
     """
     return (
         _stiffness_facts(compliances, attachment, fmu_suffix)

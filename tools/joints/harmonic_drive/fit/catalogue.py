@@ -76,7 +76,12 @@ def source_numbers(
     ratio: float | None = None,
     source: str = "catalogue",
 ) -> dict[str, SourcedNumber]:
-    """Numbers of a catalogue row with their source: {parameter: number}; with the ratio, if it is known."""
+    """Numbers of a catalogue row with their source: {parameter: number}.
+
+    rated_origin : origin of the rated torque: "catalogue" if it is published, else that of the estimate T2
+    ratio        : speed ratio [1], added if it is known
+    source       : where the row is published
+    """
     origin = f"{source} ({catalogue_row})"
     rated = origin if rated_origin == "catalogue" else "no rated torque given; T2 of the catalogue"
     numbers = {
@@ -136,7 +141,7 @@ def fit_contact_pair_law(
 
 
 def comparison_torques(catalogue_row: CatalogueRow, max_torque: float) -> Array:
-    """Torques [N.m] at which the smooth law is compared with the lines, up to about `max_torque`."""
+    """Torques [N.m] up to about `max_torque` at which the smooth law is compared with the lines of a row."""
     ends = np.array([0.0, catalogue_row.T1, catalogue_row.T2, max(max_torque, 1.5 * catalogue_row.T2)])
     samples = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
     return np.unique(np.concatenate([catalogue_row.fitted_torques, *samples]))
@@ -148,7 +153,7 @@ def _solve_weighted(
     unknown_sets: Sequence[Sequence[str]],
     torque: Array,
 ) -> tuple[Solution, float]:
-    """Fit with increasing weight at T1, T2 and the rated torque, until the angles there are met.
+    """Fit the contact pair with increasing weight of the angles at T1, T2 and rated torque, until they match.
 
     unknown_sets : sets of unknowns to try in turn
 

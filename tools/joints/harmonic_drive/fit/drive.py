@@ -128,7 +128,10 @@ def change_law(
 
 
 def parameter_bounds(start_file: ParameterFile) -> Mapping[str, tuple[float, float]]:
-    """Bounds {parameter: (low, high)} with which the contact pair stays closed at zero torque; else empty."""
+    """Bounds {parameter: (low, high)} with which the contact pair stays closed at zero torque.
+
+    Empty for a law without a contact pair.
+    """
     drive: Any = start_file.values
     if not isinstance(drive, ContactPairDrive):
         return {}

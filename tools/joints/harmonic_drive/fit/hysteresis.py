@@ -210,8 +210,8 @@ def fit_log(
     """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
     fitted_names   : of LOG_PARAMETERS
-    torque_changes : (k, n) [N.m] changes of the torque by k independent standard deviations of the load; they
-                     are added to the covariance of the fit
+    torque_changes : (k, n) [N.m] change of the torques by each of k independent errors of the load, of one
+                     standard deviation each; their effect is added to the covariance of the fit
 
     Raises RuntimeError if the fit does not converge.
     """
@@ -236,7 +236,7 @@ def _fit_wind_ups(
     torque_changes: Array,
     extra_unknowns: Sequence[Unknown] = (),
 ) -> tuple[Solution, Array]:
-    """Fit stiffness and hysteresis to wind-ups. Returns the solution, and the wind-up (n) [rad] of the law.
+    """Fit stiffness and hysteresis to wind-ups (n) [rad]; return solution and wind-up (n) [rad] of the law.
 
     torque         : {name: value} -> torque (n) [N.m]
     torque_changes : as in `fit_log`

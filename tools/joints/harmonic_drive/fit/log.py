@@ -209,7 +209,7 @@ def _start_parameters(start_parameters: ParameterFile | None, ratio: float | Non
 
 
 def _check_speeds(file_label: str, samples: Samples) -> None:
-    """Check that the samples have several speeds. Raises ValueError if not."""
+    """Raise ValueError if the largest joint speed is below MIN_SPEED_RATIO times the smallest speed."""
     speed = np.abs(samples.dq)
     speed = speed[speed > 0.0]
     if speed.size == 0:

@@ -156,7 +156,7 @@ class FittedLog:
 
     @property
     def inertia(self) -> float:
-        """Inertia [kg.m2] of arm and rotor at the joint; for logs with a time only."""
+        """Inertia [kg.m2] of arm and rotor at the joint. Only fits to logs with the column time have it."""
         return float(self.linear_unknowns[0])
 
     def evaluate_torque(self, samples: Samples) -> tuple[Array, Array]:
@@ -171,7 +171,11 @@ class FittedLog:
         )
 
     def evaluate_load(self, samples: Samples) -> tuple[Array, Array]:
-        """Load (n) [N.m] of the teeth, and its changes (k, n) by k independent standard deviations."""
+        """Load (n) [N.m] of the teeth at samples, and its standard deviations as changes (m, n) [N.m].
+
+        Each change follows from one of m independent errors of one standard deviation: the principal
+        directions of the covariance of the linear unknowns, then the rotor inertia.
+        """
         ratio = abs(self.drive.ratio)
         terms = LinearTerms.at_samples(samples, ratio)
         load = terms.tooth_load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
@@ -236,7 +240,8 @@ def select_parameters(
 def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Array]:
     """Estimate all terms by one linear fit, with constant dry friction and viscous friction.
 
-    Returns the linear terms, and dry friction [N.m], viscous coefficient [N.m.s/rad] and their unknowns.
+    Returns the linear terms, and an array: dry friction [N.m], viscous coefficient [N.m.s/rad], and the
+    unknowns of the linear terms.
     """
     ratio = abs(drive.ratio)
     terms = LinearTerms.at_samples(samples, ratio)
@@ -326,7 +331,10 @@ def fit_with_rotor(
     rotor_inertia: float,
     rotor_deviation: float,
 ) -> FittedLog:
-    """Fit with a rotor inertia and its standard deviation [kg.m2], which is added to the covariance."""
+    """Fit the friction with a known rotor inertia [kg.m2].
+
+    rotor_deviation : [kg.m2] standard deviation of the inertia; its effect is added to the covariance
+    """
     fit = fit_samples(parameter_file, samples, fitted_names, rotor_inertia)
     shifted = fit_samples(
         parameter_file, samples, fitted_names, rotor_inertia + rotor_deviation
@@ -339,9 +347,11 @@ def fit_with_rotor(
 def _propagate_deviations(
     solution: Solution, propagated_function: Callable[[Mapping[str, float]], Array]
 ) -> Array:
-    """Changes (k, m) of a function by each of the k independent standard deviations of a solution.
+    """Changes (k, m) of m function values by k independent errors of a solution, one standard deviation each.
 
-    propagated_function : {name: value} -> (m)
+    The errors are the principal directions of the covariance of the k logarithms of the unknowns.
+
+    propagated_function : {name: value} -> m function values
     """
     variances, directions = np.linalg.eigh(solution.covariance)
     rows, reference = [], propagated_function(solution.values)
