@@ -166,12 +166,12 @@ class JointRamp:
 
     @property
     def runs_per_job(self) -> int:
-        """See `RampEvaluator`."""
+        """Runs that a worker does at once: 1 if each run opens the joint."""
         return 1 if self.reopens else 32
 
     @property
     def runs_per_process(self) -> int:
-        """Number of runs per process; 0 for a joint that is registered in this process only."""
+        """Runs per process; unlimited (no other process) for a joint registered only in this process."""
         if not KINDS[self.file.joint].package.startswith("jointfmu."):
             return sys.maxsize
         return 4 if self.reopens else 512
@@ -188,11 +188,11 @@ class JointRamp:
         return load_curves(KINDS[self.file.joint])
 
     def pack(self) -> "JointRamp":
-        """See `RampEvaluator.pack`."""
+        """The evaluator itself: it has no files."""
         return self
 
     def install(self, folder: Path) -> "JointRamp":
-        """See `RampEvaluator.install`."""
+        """The evaluator itself: it has no files."""
         return self
 
     def run(self, index: int, settings: Settings) -> Entry:
@@ -258,7 +258,7 @@ class JointRamp:
 
 
 class _Sample:
-    """Joint with the parameters of one sample, see `curves.JointSample`."""
+    """Joint with the parameters of one sample; implements `curves.JointSample`."""
 
     def __init__(self, joint: "_OpenJoint", values: Settings) -> None:
         self._joint, self._values = joint, {**values, **joint.curves.settings}
@@ -272,7 +272,7 @@ class _Sample:
         self._other_inputs = joint.curves.other_inputs(self.parameters)
 
     def follow(self, inputs: Mapping[str, Array], settings: Settings | None = None) -> Mapping[str, Array]:
-        """See `curves.JointSample.follow`."""
+        """Evaluate the joint at inputs (n), each reached from the virgin state: all outputs (n) [SI]."""
         return self._joint.follow({**self._values, **(settings or {})}, {**self._other_inputs, **inputs})
 
 
