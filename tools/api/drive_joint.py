@@ -37,7 +37,7 @@ class DriveJoint(Joint):
 
     @property
     def _midline(self) -> Curve:
-        """Midline: torque over wind-up, for positive values."""
+        """Midline of the hysteresis loop: torque [N.m] over wind-up [rad], both positive."""
         curve = self.spring.curve
         assert isinstance(curve, Curve)
         return curve

@@ -196,11 +196,11 @@ class Joint(TableDisplay):
 
     @cached_property
     def _opened_joints(self) -> dict[str, JointEngine]:
-        """{FMU: opened joint}."""
+        """Joints that are open for evaluation: {name of the FMU: opened joint}."""
         return {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Fields alone: an opened joint belongs to its process."""
+        """State for pickle: the fields without the opened joints, which belong to this process."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     @plots.apply_style()

@@ -132,7 +132,7 @@ def run_job(out_folder: Path) -> JobResult:
 
 
 def _validate_and_prove(path: Path) -> tuple[list[str], Proof]:
-    """Validate an FMU with fmpy and prove it: problems found, result of the proof."""
+    """Validate an FMU with fmpy and run the experiments stored in it; return problems and results."""
     return [f"{report_name(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
 

@@ -62,7 +62,7 @@ def run_default_ramp(fmu_name: str, folder: Path, step_factor: float = 1.0) -> r
 
 
 def check_ramp(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> list[Check]:
-    """Check the ramp of an FMU: repeat it with larger steps, then run the check of RAMP_CHECKS."""
+    """Check the ramp of an FMU: repeat it with larger steps, then run the check that its joint defines."""
     worst = _coarse_ramp_deviation(fmu_name, folder, ramp_result)
     checks = [
         Check(fmu_name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)

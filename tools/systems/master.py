@@ -75,7 +75,7 @@ class Slave:
 def simulate_motion(
     joint: Slave, body: Slave, load: float, step: float, step_count: int, is_force_delayed: bool = False
 ) -> Array:
-    """Simulate position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
+    """Simulate position and speed (step_count + 1, 2) of a body on a joint under a constant load [N or N.m].
 
     joint            : inputs position and speed, output the force on the body
     body             : inputs load and force, outputs position and speed

@@ -117,7 +117,7 @@ class SlipDeflection(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VibrationTest:
-    """Vibration test of a joint with a body: RINGING in the joint's tool module.
+    """Vibration test of a joint with a body. A joint defines its test by the constant VIBRATION_TEST.
 
     model_name              : FMU of the joint, with motion as input
     motion_inputs           : its inputs: position and speed of the body

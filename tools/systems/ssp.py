@@ -158,7 +158,7 @@ def build_systems(
     pool           : processes that build in parallel; None: build in this process
     force          : also replace files that jointfmu did not write
 
-    Raises as `native.build.build` and `write_archives`, and ValueError if no system has this kind of joint.
+    Raises as `build_native_fmu` and `write_archives`, and ValueError if no system has this kind of joint.
     """
     chosen = list(load_systems().values()) if chosen_systems is None else list(chosen_systems)
     if parameters:

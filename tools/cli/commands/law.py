@@ -60,7 +60,7 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
 
 
 def _finite_entry(law_column: Any, row_index: int) -> float | None:
-    """Entry i of a column, which may be one number for all rows; None if it is not finite."""
+    """Entry of a column in one row, or the one number for all rows; None if it is not finite."""
     value = float(
         np.broadcast_to(law_column, (row_index + 1,) if np.ndim(law_column) == 0 else np.shape(law_column))[
             row_index

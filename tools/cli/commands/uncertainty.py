@@ -100,7 +100,7 @@ def _is_fmu(subject: str | None) -> bool:
 
 
 def _check_options(args: argparse.Namespace, is_fmu: bool) -> None:
-    """Raise ValueError if an option is missing, or is one of the other kind of study."""
+    """Raise ValueError if an option is missing, or is for FMUs in a study of a joint (or the reverse)."""
     subject = "an FMU" if is_fmu else "a joint"
     for name in ("params", "points") if is_fmu else ("input", "step"):
         if getattr(args, name) is not None:
@@ -127,7 +127,7 @@ def _execution(args: argparse.Namespace) -> "Execution":
 
 @contextmanager
 def _study_folder(problem: "Problem", count: int, seed: int, out: Path | None) -> Iterator[None]:
-    """Context of a study whose runs are kept in a folder, if there is one."""
+    """Context manager: claim the folder that keeps the runs of a study; without a folder do nothing."""
     from ...studies.uncertainty import journal
 
     if out is None:
@@ -216,7 +216,7 @@ def add_sweep(command_parsers: SubParsers) -> None:
 
 
 def _run_sweep(args: argparse.Namespace) -> CommandResult:
-    """Do the runs of an FMU as `_run_uncertainty` does; prints only the numbers of the runs."""
+    """Do the runs of an FMU as `_run_uncertainty` does; print only how many runs are done and failed."""
     from ...studies.uncertainty import journal, study
     from ...studies.uncertainty.runs import evaluate_runs
     from ...studies.uncertainty.sweep import format_runs_csv

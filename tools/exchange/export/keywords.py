@@ -69,7 +69,7 @@ def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
 def format_contact(
     load_table: LoadTable, unit_set: UnitSet, comment_lines: Sequence[str], max_rows: int | None = None
 ) -> str:
-    """Format a surface interaction JOINT with the pressure over the overclosure.
+    """Format the surface interaction named JOINT: a table of pressure over overclosure.
 
     comment_lines : lines for the head of the file
     max_rows      : largest number of rows that the solver can read; None: no limit

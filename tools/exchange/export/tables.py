@@ -219,7 +219,7 @@ def format_contact_csv(load_table: LoadTable, unit_set: UnitSet, comment_lines: 
 def format_columns_csv(
     values: Sequence[Column], column_heads: ColumnHeads, unit_set: UnitSet, comment_lines: Sequence[str]
 ) -> str:
-    """Format columns (n) of SI values as CSV in other units."""
+    """Format columns (n) of SI values as CSV in the units of a unit set."""
     converted = [
         column if unit == "1" else unit_set.convert(column, unit)
         for column, (_, unit) in zip(values, column_heads, strict=True)

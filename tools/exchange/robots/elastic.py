@@ -178,7 +178,7 @@ def _list_tendons(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[fl
 
 
 def _add_motor_body(robot_spec: Any, name: str) -> Any:
-    """Add a body to the world for motors; its joints move no other body, so rotors act as armatures do."""
+    """Add a body for motor joints to the world. It carries no other body: rotors act as armatures do."""
     body = robot_spec.worldbody.add_body(name=name)
     body.mass, body.inertia, body.explicitinertial = _MOTOR_BODY_MASS, [_MOTOR_BODY_MASS] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]

@@ -35,10 +35,11 @@ LOOP_AREA_TOLERANCE = 0.05
 
 @dataclass(frozen=True, slots=True)
 class FitErrors:
-    """Relative errors of MuJoCo's drive against the FMU.
+    """Relative errors of the drive fitted for MuJoCo against the law of the FMU.
 
     wind_up : error of the wind-up [1] at the largest fit torque, for first loading
-    area    : error of the area of the loop [1] between both signs of this torque; None without hysteresis
+    area    : error of the loop area [1], for the loop between plus and minus this torque; None without
+              hysteresis
     """
 
     wind_up: float

@@ -41,7 +41,10 @@ def list_angles(model: "MjModel", axis: ElasticAxis) -> Array:
 def sweep_frequencies(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
 ) -> tuple[list[Array], Array]:
-    """Angles [rad] of the grid axes, and frequencies (..., n) [Hz] over their grid; others keep `pose`."""
+    """Angles [rad] of the grid axes, and natural frequencies (..., n) [Hz] at each pose of the grid.
+
+    The joints outside the grid keep their position in `pose`.
+    """
     grid = [list_angles(model, axis) for axis in select_grid_axes(axes)]
     poses = grid_poses(model, axes, pose, grid)
     rows = [compute_frequencies(model, axes, grid_pose, payload, tip_body) for grid_pose in poses]
@@ -49,7 +52,7 @@ def sweep_frequencies(
 
 
 def grid_poses(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid_angles: list[Array]) -> Array:
-    """Poses (k, n) of the grid, the last grid axis varying fastest; other joints keep `pose`."""
+    """Poses (k, n) of the grid, the last grid axis varying fastest; other joints are as in `pose`."""
     indices = [int(model.joint(axis.joint).qposadr[0]) for axis in select_grid_axes(axes)]
     mesh = np.stack(np.meshgrid(*grid_angles, indexing="ij"), axis=-1).reshape(-1, len(grid_angles))
     poses = np.tile(pose, (len(mesh), 1))

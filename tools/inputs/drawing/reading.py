@@ -43,7 +43,7 @@ def parse_number(
 def parse_temperature(option: str, temperature_text: str) -> float:
     """Parse the temperature [K] of an option, stated in degC or with the unit K.
 
-    Raises ValueError for text that is not a temperature, or outside the range of lubricants (LUBRICANTS).
+    Raises ValueError for text that is not a temperature, or outside LUBRICANT_TEMPERATURES.
     """
     match = _TEMPERATURE_PATTERN.fullmatch(temperature_text.strip())
     if not match:

@@ -182,7 +182,8 @@ def _search_points(
 ) -> Reduction | None:
     """Search points that keep the sums within LARGE_FIELD_TOLERANCE; None if there are none.
 
-    Each round tests the points in new load cases, and adds those to the selection in which the points miss.
+    Each round tests the points in new load cases. Load cases in which the points miss the tolerance are added
+    to those of the selection.
 
     rounded_distribution   : normalised pressure at all nodes, rounded
     sample_distribution    : sample of these nodes, for finding the independent sums
@@ -227,7 +228,10 @@ def _deviation_above_tested_moments(
     reduced_points: PressureDistribution,
     moment_limit: float,
 ) -> float:
-    """Largest deviation [1] at moment ratios from `moment_limit` to 1 (a row of bolts loses its force)."""
+    """Largest deviation [1] of the sums at moments up to the one at which a row of bolts loses its force.
+
+    moment_limit : smallest of these moments over the largest one [1]
+    """
     if moment_limit >= 1.0:
         return 0.0
     moments = np.linspace(moment_limit, 1.0, 6)[1:].tolist()
@@ -310,7 +314,7 @@ class _SumSystem:
         self.load_sums = self.load_sums.concatenate(load_sums)
 
     def function_values(self, normalised_pressure: PressureDistribution) -> Array:
-        """Values (n, r) of all functions at the nodes of a shape."""
+        """Values (n, r) of all r functions at the n nodes of a pressure distribution."""
         return np.concatenate(
             [
                 balance_functions(normalised_pressure) / self.balance_scale,
@@ -390,7 +394,7 @@ class _SumSystem:
         return nodes, share[nodes]
 
     def _group_sums(self, function_indices: NodeIndices) -> Array:
-        """Sums (g, k) of the selected functions over groups of nodes."""
+        """Sums (g, k) of k selected functions over g groups of nodes."""
         share, count = self.rounded_distribution.area_share[:, None], self.balance_scale.size
         is_balance = function_indices < count
         load, function = np.divmod(function_indices[~is_balance] - count, 9)
@@ -405,7 +409,7 @@ class _SumSystem:
         return out
 
     def _selected_values(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
-        """Values (n, k) of the selected functions at nodes."""
+        """Values (n, k) of k selected functions at n nodes."""
         shape, count = self.rounded_distribution.select_nodes(node_indices), self.balance_scale.size
         is_balance = function_indices < count
         out = np.empty((node_indices.size, function_indices.size))

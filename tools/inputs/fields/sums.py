@@ -252,7 +252,7 @@ class SumFunctions:
         return probability / np.sum(probability)
 
     def function_values(self, normalised_pressure: PressureDistribution, load_sums: LoadSums) -> Array:
-        """Values (c, m 9) of all functions at nodes, over their scale: 9 functions in m load cases."""
+        """Values (c, 9 m) of the 9 functions in m load cases at c nodes, over the scale of their sum."""
         return self.selected_function_values(
             normalised_pressure, load_sums, np.arange(load_sums.sum_scales.size)
         )
@@ -260,7 +260,7 @@ class SumFunctions:
     def selected_function_values(
         self, normalised_pressure: PressureDistribution, load_sums: LoadSums, function_indices: NodeIndices
     ) -> Array:
-        """Values (c, k) of selected functions at nodes: k columns of `function_values`."""
+        """Values (c, k) of k selected functions at c nodes: k columns of `function_values`."""
         load, function = np.divmod(function_indices, 9)
         needed, index = np.unique(load, return_inverse=True)
         loads, opening = [load_sums.load_cases[i] for i in needed], load_sums.opening[needed, None]
@@ -309,7 +309,7 @@ def _node_blocks(
 def _group_sums(
     normalised_pressure: PressureDistribution, pressure: Array, stiffness: Array, group_size: int
 ) -> Array:
-    """Sums (m, 9, g) of the 9 functions over groups of nodes.
+    """Sums (m, 9, g) of the 9 functions over g groups of nodes, in m load cases.
 
     pressure, stiffness : pressure [Pa] and stiffness [Pa/m] (m, n) of the nodes
     group_size          : number of nodes in a group

@@ -108,7 +108,8 @@ def _main_frequency(time: Array, motion: Array) -> float:
 def _fit_windows(time: Array, motion: Array, angular_frequency: float) -> Iterator[tuple[float, ...]]:
     """Fit a decaying oscillation in each window of a record.
 
-    Yields for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
+    Yields for each window: amplitude, angular frequency [rad/s] and decay rate [1/s], the standard deviations
+    of these two, length of the window [s].
 
     angular_frequency : angular frequency [rad/s] with which the first window is chosen
     """
@@ -140,10 +141,13 @@ def _fit_windows(time: Array, motion: Array, angular_frequency: float) -> Iterat
 
 
 def _fit_window(start_values: Array, window_time: Array, signal: Array) -> Array:
-    """Fit w, s and their rates (4) in one window; `start_values` (2) are the start values of w and s.
+    """Fit angular frequency and decay rate in one window, and the rates of change of both (4).
 
-    `window_time` (n) and all results are made dimensionless with the length of the window. w and s are first
-    fitted with zero rates, then all four together.
+    start_values : start values (2) of angular frequency and decay rate
+    window_time  : time (n) from the middle of the window
+
+    Time and results are made dimensionless with the length of the window. Frequency and decay rate are first
+    fitted as constants, then all four parameters together.
     """
     from scipy.optimize import least_squares  # slow to import, and most commands import this module
 
@@ -157,7 +161,7 @@ def _fit_window(start_values: Array, window_time: Array, signal: Array) -> Array
 def _window_residual(window_parameters: Array, window_time: Array, signal: Array) -> Array:
     """Residuals (n) of a decaying oscillation; offset, drift and amplitudes are fitted linearly to a signal.
 
-    window_parameters : w, s and their rates (4)
+    window_parameters : angular frequency, decay rate, and the rates of change of both (4)
     """
     matrix = _design_matrix(window_parameters, window_time)
     return np.asarray(signal - matrix @ np.linalg.lstsq(matrix, signal)[0])
@@ -166,7 +170,7 @@ def _window_residual(window_parameters: Array, window_time: Array, signal: Array
 def _design_matrix(window_parameters: Array, window_time: Array) -> Array:
     """Design matrix (n, 4) of a decaying oscillation: ones, time, decaying cosine, decaying sine.
 
-    window_parameters : w, s and their rates (4)
+    window_parameters : angular frequency, decay rate, and the rates of change of both (4)
     """
     w, s, w_rate, s_rate = window_parameters
     angle = (w + 0.5 * w_rate * window_time) * window_time
@@ -183,7 +187,7 @@ def _standard_deviations(
     window_time: Array,
     residual_deviation: float,
 ) -> tuple[float, float]:
-    """Standard deviations of w and s, dimensionless with the length of the window.
+    """Standard deviations of angular frequency and decay rate, dimensionless with the window length.
 
     cosine_amplitude, sine_amplitude : amplitudes of cosine and sine
     residual_deviation               : standard deviation of the residuals

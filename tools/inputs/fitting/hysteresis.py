@@ -39,7 +39,7 @@ _MAX_SECANT_STEPS, _MAX_DECREMENT = 12, 3.0
 
 @dataclass(frozen=True, slots=True)
 class NonlinearSpring:
-    """Nonlinear elastic spring: force E(u), an odd function, and energy V(u), an even function."""
+    """Nonlinear elastic spring: force E(u), an odd function of the motion u, and energy V(u), even."""
 
     force: ForceFunction
     energy: ForceFunction
@@ -97,7 +97,7 @@ class HysteresisLaw:
     def loop_area(self, amplitude: Array) -> Array:
         """Dissipated energy (n) [J] of closed loops about rest with amplitudes a (n): 8 (w(a) - B(a) a/2).
 
-        w : `friction_work`
+        B : friction force in first loading, w : its work
         """
         return np.asarray(8.0 * (self.friction_work(amplitude) - 0.5 * amplitude * self.friction(amplitude)))
 

@@ -330,7 +330,7 @@ class UnknownExchange:
         )
 
     def _logarithmic_derivatives(self, parameter_values: Mapping[str, float]) -> Array:
-        """Derivatives (k) [1] of the quantity with respect to the values, all in logarithms."""
+        """Derivatives (k) [1] of ln(derived quantity) with respect to the logarithms of the k parameters."""
 
         def perturbed_quantity(parameter_name: str, log_step: float) -> float:
             return float(

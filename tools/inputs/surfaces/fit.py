@@ -208,7 +208,9 @@ def _correlation_matrix(log_scale: Array) -> Array:
 def _excess_deviation(
     residual: Array, statistical_covariance: Array, log_scale: Array, parameter_count: int
 ) -> float:
-    """Standard deviation from the law beyond statistical scatter: chi-squared then has its expected value.
+    """Standard deviation [1] of ln(value) from the law in excess of the statistical scatter.
+
+    With this deviation, chi-squared has its expected value.
 
     statistical_covariance : covariance (n, n) of the residual from statistics
     """

@@ -256,7 +256,7 @@ def scan_roughness(heights_with_gaps: Heights, filled_heights: Heights, longest_
 
 
 def _shortest_wave(heights: Heights) -> float:
-    """Shortest wavelength [m] of the slope."""
+    """Shortest wavelength [m] that counts for the rms slope."""
     return MIN_WAVE_SPACINGS * max(
         (heights.dx, heights.dy) if isinstance(heights, ArealMap) else (heights.dx,)
     )

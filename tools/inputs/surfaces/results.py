@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 TEXTURE_THRESHOLD = 0.3
-"""Mean-square share of the mean line in all lines of a map [1], above which the map is textured."""
+"""Mean square of the average line over that of the single lines of a map [1], above which it is textured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,9 +176,9 @@ class Identification:
 
 
 def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
-    """Mean-square share of the mean line in the lines along x and along y [1].
+    """Mean square of the average line over that of the single lines [1], for lines along x and along y.
 
-    Near 0: isotropic surface. 1: all lines are equal.
+    The squares are those of second differences. Near 0: isotropic surface. 1: all lines are equal.
     """
     shares = []
     for z in (heights.z, heights.z.T):

@@ -184,7 +184,7 @@ def _multiply_transposed(a: Array, b: Array) -> Array:
 
 
 def _average_directions(heights: ArealMap) -> ScaleSeries:
-    """Series of V and S averaged over both directions, at the lags along x that y covers too."""
+    """Structure function averaged over the directions x and y, at the lags that both directions have."""
     lag_x, *along_x = _mean_square_differences(heights.z)
     lag_y, *along_y = _mean_square_differences(heights.z.T)
     lag, lag_y = lag_x * heights.dx, lag_y * heights.dy
@@ -270,7 +270,7 @@ def _hann_window(n: int) -> Array:
 
 
 def _line_modes(z: Array, spacing: float) -> tuple[Array, Array, Array]:
-    """Frequency [1/m], variance [m2] and df/f [1] of the Fourier modes, averaged over lines; no mean."""
+    """Frequency f [1/m], variance [m2] and df/f [1] of the Fourier modes with f > 0, averaged over lines."""
     n = z.shape[1]
     window = _hann_window(n)
     level = (z @ window) / window.sum()

@@ -1,6 +1,7 @@
 """Additions of a joint to the laboratory page: curves, sliders, points, maps.
 
-The module `laboratory` in a joint's folder defines LABORATORY, {FMU: LaboratoryModel}.
+A joint defines them by the constant LABORATORY_MODELS, {FMU: LaboratoryModel}, of its module for the tool
+`laboratory` (tools/joints).
 """
 
 from collections.abc import Callable, Mapping, Sequence

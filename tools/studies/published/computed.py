@@ -1,6 +1,6 @@
 """Functions that compute the published numbers of a joint.
 
-The module `published` in a joint's folder defines them by its constant PUBLISHED.
+The module `published` in a joint's folder defines them by its constant PUBLISHED_NUMBERS.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -33,7 +33,7 @@ class JointSample(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class DerivedOutput:
-    """Quantity that is computed from several evaluations of the joint. Without load it is 0.
+    """Quantity that is computed from several evaluations of the joint. It is 0 at zero load.
 
     variable : its name, unit and meaning
     compute  : function (sample, loads (m) above zero, ascending) -> values (m); the last load is the end of
@@ -89,7 +89,7 @@ def load_curves(kind: JointKind) -> LoadCurves:
 
 
 def spline_weights(knots: Array, points: Array, derivative: int = 0) -> Array:
-    """Weights (points, knots) of the values of a cubic spline at its knots, for its values at points.
+    """Matrix (points, knots) that maps values of a cubic spline at its knots to its values at points.
 
     derivative : order of the derivative; -1: integral from the first knot
 

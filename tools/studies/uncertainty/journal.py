@@ -67,7 +67,7 @@ def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
 
 @contextmanager
 def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
-    """Context of a claimed folder, see `claim_folder`.
+    """Context manager that claims the folder of a study, see `claim_folder`.
 
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """

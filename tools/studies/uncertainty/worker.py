@@ -51,17 +51,17 @@ class RampEvaluator(Protocol):
     def runs_per_process(self) -> int: ...
 
     def pack(self) -> "RampEvaluator":
-        """Evaluator with the content of its files, to be sent to another machine."""
+        """Copy of the evaluator that contains its files, to be sent to another machine."""
 
     def install(self, folder: Path) -> "RampEvaluator":
-        """Evaluator that has its files in a folder of this machine."""
+        """Copy of the evaluator whose files are in a folder of this machine."""
 
     def run(self, index: int, settings: Settings) -> Entry:
-        """Evaluate a run: its journal entry."""
+        """Evaluate a run; return its journal entry."""
 
 
 def run_job(job: tuple[RampEvaluator, Path, Sequence[Run]]) -> list[Entry]:
-    """Do some runs in a worker process of this machine: their journal entries.
+    """Do some runs in a worker process of this machine; return their journal entries.
 
     job : evaluator, folder of temporary files, runs
     """
@@ -97,9 +97,9 @@ class LoadRamp:
 
 @dataclass(frozen=True)
 class FmuRamp:
-    """Load ramp of an FMU. See `RampEvaluator`.
+    """Evaluator that runs an FMU along its load ramp, see `RampEvaluator`.
 
-    content : of the FMU, if it is to be sent to another machine
+    content : bytes of the FMU, if it is to be sent to another machine
     """
 
     runs_per_job: ClassVar[int] = 1
@@ -110,11 +110,11 @@ class FmuRamp:
     content: bytes | None = None
 
     def pack(self) -> "FmuRamp":
-        """See `RampEvaluator.pack`."""
+        """Copy of the evaluator with the bytes of its FMU."""
         return replace(self, content=self.fmu.read_bytes())
 
     def install(self, folder: Path) -> "FmuRamp":
-        """Write a copy of the FMU without what no run needs, so that each run unpacks it faster."""
+        """Write a copy of the FMU with only the files that a run needs; each run then unpacks it faster."""
         full, slim = self.fmu, folder / self.fmu.name
         if self.content is not None:
             full = folder / f"{slim.name}.full"
@@ -125,7 +125,7 @@ class FmuRamp:
         return replace(self, fmu=slim, content=None)
 
     def run(self, index: int, settings: Settings) -> Entry:
-        """See `RampEvaluator.run`; settings are start values of parameters and inputs."""
+        """Run the FMU along the ramp; the settings are start values of parameters and inputs."""
         drive = self.load_ramp
         try:
             result = ramp.run_ramp(self.fmu, drive.input, drive.to, drive.step, settings)
@@ -147,7 +147,7 @@ def write_slim_fmu(fmu: Path, slim_path: Path) -> None:
 
 @dataclass(frozen=True)
 class JointRamp:
-    """Load ramp of the joint of a parameter file. See `RampEvaluator`.
+    """Evaluator that computes the joint of a parameter file along a load ramp, see `RampEvaluator`.
 
     loads            : load ramp (m), ascending
     load_is_relative : whether a sample of the load is a factor on the ramp; else it replaces the last load
@@ -166,12 +166,12 @@ class JointRamp:
 
     @property
     def runs_per_job(self) -> int:
-        """See `RampEvaluator`."""
+        """Runs that a worker does at once: 1 if each run opens the joint."""
         return 1 if self.reopens else 32
 
     @property
     def runs_per_process(self) -> int:
-        """See `RampEvaluator`: no processes for a joint that only this process has registered."""
+        """Runs per process; unlimited (no other process) for a joint registered only in this process."""
         if not KINDS[self.file.joint].package.startswith("jointfmu."):
             return sys.maxsize
         return 4 if self.reopens else 512
@@ -188,15 +188,15 @@ class JointRamp:
         return load_curves(KINDS[self.file.joint])
 
     def pack(self) -> "JointRamp":
-        """See `RampEvaluator.pack`."""
+        """The evaluator itself: it has no files."""
         return self
 
     def install(self, folder: Path) -> "JointRamp":
-        """See `RampEvaluator.install`."""
+        """The evaluator itself: it has no files."""
         return self
 
     def run(self, index: int, settings: Settings) -> Entry:
-        """See `RampEvaluator.run`; settings are values of parameters and of the load."""
+        """Compute the joint along the ramp; the settings are values of parameters and of the load."""
         try:
             with np.errstate(all="ignore"):
                 columns = self.evaluate(settings)
@@ -233,7 +233,7 @@ class JointRamp:
         return columns
 
     def _evaluate_outputs(self, sample: "_Sample", loads: Array, rows: Array) -> dict[str, Array]:
-        """Outputs of the FMU at rows of the loads (m); of a long ramp by splines.
+        """Outputs of the FMU at the selected loads; along a long ramp they are interpolated by splines.
 
         A spline goes over log(load), of log(output), or of output/load if the output has zeros.
         """
@@ -258,7 +258,7 @@ class JointRamp:
 
 
 class _Sample:
-    """Joint with the parameters of one sample, see `curves.JointSample`."""
+    """Joint with the parameters of one sample; implements `curves.JointSample`."""
 
     def __init__(self, joint: "_OpenJoint", values: Settings) -> None:
         self._joint, self._values = joint, {**values, **joint.curves.settings}
@@ -272,12 +272,12 @@ class _Sample:
         self._other_inputs = joint.curves.other_inputs(self.parameters)
 
     def follow(self, inputs: Mapping[str, Array], settings: Settings | None = None) -> Mapping[str, Array]:
-        """See `curves.JointSample.follow`."""
+        """Evaluate the joint at inputs (n), each reached from the virgin state: all outputs (n) [SI]."""
         return self._joint.follow({**self._values, **(settings or {})}, {**self._other_inputs, **inputs})
 
 
 def _make_unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
-    """Frozen instance without its checks: the FMU makes them."""
+    """Make an instance of a frozen dataclass without checking its values; the FMU checks them."""
     instance = object.__new__(cls)
     for name, value in arguments.items():
         object.__setattr__(instance, name, value)
@@ -312,7 +312,7 @@ class _OpenJoint:
         return engine.follow(inputs, each_from_rest=True).columns
 
     def _find_engine(self, hidden: Settings) -> tuple[JointEngine, dict[str, Any]]:
-        """Engine of a joint with other values of hidden parameters, and the values set since it is open."""
+        """Engine of the joint for given parameters that the FMU does not expose, and the values set in it."""
         key = tuple(sorted(hidden.items()))
         found = self._engines.pop(key, None)
         if found is None:

@@ -27,7 +27,7 @@ OUTPUT_TOLERANCE = 5e-3
 SOLVER_TOLERANCE = 1e-9
 """Relative tolerance of the solver for the references [1]."""
 HOST_TOLERANCE = 1e-5
-"""Default relative tolerance of a host [1].
+"""Default relative tolerance of the solver of an importing tool [1].
 
 The references end where results with this and with the solver tolerance differ by more than OUTPUT_TOLERANCE:
 from there the motion is too sensitive to be compared.

@@ -1,4 +1,4 @@
-"""Bodies of an imported contact field: two plates of stated thickness, with bolts."""
+"""Plates and bolts for an imported contact field: two plates of stated thickness."""
 
 import argparse
 from typing import TYPE_CHECKING
