@@ -104,7 +104,7 @@ class ParameterSheet:
             {key: kind for key, (_, kind, _) in entries.items()},
             {key: source for key, (_, _, source) in entries.items()},
             self.inputs,
-            ranges={name: ends for name, ends in self.ranges.items() if name in parameters},
+            ranges={name: ends for name, ends in self.ranges.items() if name in entries},
         )
         rough = file
         for height, (value, kind, source) in self.roughness.items():

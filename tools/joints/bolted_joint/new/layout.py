@@ -6,17 +6,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointfmu.quantity import Array
+from jointfmu.quantity.units import conversion_factor
 
 from ....inputs.drawing.part import DrawingOptions
 from ....inputs.drawing.reading import parse_number, parse_numbers
-from ....inputs.drawing.tables import Thread, read_threads
+from ....inputs.drawing.tables import Thread, find_thread
 
-_BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
+_BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)(?:\s*x\s*(\d+(?:\.\d+)?))?", re.IGNORECASE)
 _GRID_PATTERN = re.compile(r"(\d+)x(\d+)")
 
 
 def parse_bolts(bolts_text: str) -> tuple[int, Thread]:
-    """Parse number and thread of the bolts, as in 4xM12.
+    """Parse number and thread of the bolts, as in 4xM12 or, with a fine pitch, 4xM12x1.25.
 
     Raises ValueError for bad text or an unknown thread.
     """
@@ -25,12 +26,11 @@ def parse_bolts(bolts_text: str) -> tuple[int, Thread]:
         raise ValueError(
             f"--bolts = {bolts_text!r} are no bolts; expected a number and a thread, as in 4xM12"
         )
-    name = match[2].upper()
-    if name not in read_threads():
-        raise ValueError(
-            f"--bolts = {bolts_text!r}: thread {name} is unknown, allowed are {', '.join(read_threads())}"
-        )
-    return int(match[1] or 1), read_threads()[name]
+    pitch = float(match[3]) * conversion_factor("mm", "m") if match[3] else None
+    try:
+        return int(match[1] or 1), find_thread(match[2].upper(), pitch)
+    except ValueError as error:
+        raise ValueError(f"--bolts = {bolts_text!r}: {error}") from None
 
 
 def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:

@@ -10,14 +10,14 @@ from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....common.pressure import warn_overload
 from ....inputs.drawing import faces, vdi2230
 from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
 from ....inputs.drawing.reading import parse_number, parse_numbers
-from ....inputs.drawing.tables import Thread, property_class_strength, thread_source
-from ..report import friction_results
+from ....inputs.drawing.tables import Thread, thread_source
+from ..report import PRELOAD_ENTRY, friction_results, preload_results
 from . import layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
+from .tightening import find_preload
 
 ZERO_MOTION = (0.0, 0.0, 0.0)
 """Zero displacement [m] or rotation [rad] along x, y, z."""
@@ -89,7 +89,9 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         * faces.read_materials(options)[0].numbers["density"].value
     )
     sheet.add("mass", mass, "estimate", "mass of the plate of side 1, assumed to vibrate")
-    preload, warnings = _add_preload(sheet, options, thread)
+    tightening = find_preload(options, thread, bolt.bearing_diameter, hole)
+    tightening.add_to(sheet)
+    preload, warnings = tightening.force, [*tightening.warnings]
     if not loss < preload:
         raise ValueError(
             f"embedding takes {loss:.4g} N of a preload of {preload:.4g} N: expected less than all; state "
@@ -111,14 +113,17 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     facts = _design_facts(file, bolt, heights, preload)
     alone = _interface_only_text(facts["interface_K_zz"][0] / count, bolt)
     if options["tapped"] and options["thickness"] is None:
-        return NewJoint(
-            file, facts, [*warnings, f"{alone}: for the complete joint state --thickness of both plates"]
+        joint = NewJoint(file, {}, [f"{alone}: for the complete joint state --thickness of both plates"])
+    else:
+        attached, sides = options["attached"] or "faces", options["sides"]
+        joint = plate_finite_elements.compute_facts(file, plates, attached, sides, alone, shape)
+    facts |= {**tightening.facts(), **joint.facts, **_preload_range_facts(joint.file)}
+    if tightening.has_range and not tightening.low > loss:
+        warnings.append(
+            f"embedding takes {loss:.4g} N, but the preload may be {tightening.low:.4g} N: the joint may be "
+            "loose"
         )
-    attached, sides = options["attached"] or "faces", options["sides"]
-    complete_joint = plate_finite_elements.compute_facts(file, plates, attached, sides, alone, shape)
-    return NewJoint(
-        complete_joint.file, {**facts, **complete_joint.facts}, [*warnings, *complete_joint.warnings]
-    )
+    return NewJoint(joint.file, facts, [*warnings, *joint.warnings])
 
 
 def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
@@ -258,29 +263,6 @@ def _add_bolts(
     parameter_sheet.add("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
 
 
-def _add_preload(
-    parameter_sheet: ParameterSheet, options: DrawingOptions, thread: Thread
-) -> tuple[float, list[str]]:
-    """Add the preload [N] to the sheet.
-
-    Returns the preload, and a warning if it exceeds the proof load of the bolt.
-    """
-    name = options["property_class"] or "8.8"
-    if options["preload"] is None:
-        preload = vdi2230.assembly_preload(thread, property_class_strength(name, "yield", thread))
-        text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
-        parameter_sheet.add("inputs.preload", preload, "estimate", text)
-    else:
-        preload = parse_number("preload", options["preload"], "N", "N")
-        parameter_sheet.add_drawing_value("inputs.preload", preload)
-    if options["property_class"] is None:
-        return preload, []
-    proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
-    return preload, warn_overload(
-        "preload", preload, (proof_load, f"the proof load of {thread.name}-{name} (ISO 898-1)")
-    )
-
-
 def _add_embedding_loss(
     parameter_sheet: ParameterSheet,
     options: DrawingOptions,
@@ -313,6 +295,29 @@ def _friction_facts(parameter_file: ParameterFile, preload: float) -> dict[str, 
         text = f"; with mu = {row.mu:g}"
         facts[f"slip_force{name}"] = (row.slip_force, "N", slip + text)
         facts[f"loss_factor{name}"] = (row.loss_factor, "1", loss + text)
+    return facts
+
+
+def _preload_range_facts(parameter_file: ParameterFile) -> dict[str, tuple[float, str, str]]:
+    """Facts about the joint at both ends of the range of the preload; empty if the file states no range."""
+    ends = parameter_file.ranges.get(PRELOAD_ENTRY)
+    if ends is None:
+        return {}
+    facts = {}
+    for result in preload_results(parameter_file):
+        if result.preload not in ends:
+            continue
+        end = "low" if result.preload == ends[0] else "high"
+        text = f"at preload = {result.preload:.4g} N"
+        facts[f"K_zz_at_{end}_preload"] = (result.K_zz, "N/m", f"output K_zz of the FMU {text}")
+        facts[f"K_xx_at_{end}_preload"] = (result.K_xx, "N/m", f"output K_xx of the FMU {text}")
+        slip = f"shear force {text} at which the whole interface slips"
+        facts[f"slip_force_at_{end}_preload"] = (result.slip_force, "N", slip)
+        facts[f"opening_load_at_{end}_preload"] = (
+            result.opening_load,
+            "N",
+            f"force along z {text} that opens the interface around the most loaded bolt, by linear theory",
+        )
     return facts
 
 
