@@ -130,7 +130,14 @@ def test_a_bolt_by_hand():
 
 @pytest.mark.parametrize(
     ("Rz", "tapped", "printed"),
-    [(6.3, False, 9.5), (16.0, False, 11.0), (16.0, True, 8.0), (100.0, False, 14.0), (400.0, False, 14.0)],
+    [
+        (6.3, False, 9.5),
+        (10.0, False, 9.5),
+        (16.0, False, 11.0),
+        (16.0, True, 8.0),
+        (100.0, False, 14.0),
+        (400.0, False, 14.0),
+    ],
 )
 def test_embedding_of_table_5(Rz, tapped, printed):
     """VDI 2230, part 1, Table 5, load along the bolt: thread, head and nut and one interface, in um."""
@@ -442,6 +449,39 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
     assert found["slope"] == pytest.approx(2.0 * np.std(np.diff(z) / 1e-6), rel=0.3)  # isotropic, both sides
 
 
+def test_rz_gives_ra_with_its_scatter(capsys, tmp_path):
+    """Rz 10 of a drawing is Ra 1.6: the same height, with the range of Rz/Ra from 4 to 10."""
+    path = tmp_path / "plate.toml"
+    known = facts_of(capsys, *PLATE, *STEEL, "--Ra", "1.6", *LOAD)
+    found = made(capsys, *PLATE, *STEEL, "--Rz", "10", *LOAD, path=path)["facts"]
+    file = load_parameter_file(path)
+    assert file.values.h == pytest.approx(known["h"])
+    assert file.ranges["h"] == pytest.approx((known["h"] * 0.625, known["h"] * 6.25 / 4.0))
+    assert dict(file.roughness) == pytest.approx({"Ra1": 1.6e-6, "Ra2": 1.6e-6})
+    assert "Ra = Rz/6.25, from Rz/10 to Rz/4" in file.sources["roughness.Ra1"]
+    # stiffness with the range, embedding by the Rz that is stated: 9.5 um of both
+    ratio = found["interface_K_zz_high"]["value"] / found["interface_K_zz_low"]["value"]
+    assert ratio == pytest.approx(2.5)
+    assert found["embedding"]["value"] == pytest.approx(known["embedding"])
+    depth = known["embedding"] * (1.0 / known["bolt_stiffness"] + 1.0 / known["member_stiffness"])
+    assert depth == pytest.approx(9.5e-6)
+    assert {each.name for each in state_problem(file, {}, 30e3, 3).uncertain_parameters} == {"mu", "h"}
+
+
+def test_stated_ranges_are_in_the_file(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    words = [*PLATE, *STEEL, "--Ra", "0.6..1.0um", "--mu", "0.1..0.3", "--hardness", "150..170HB"]
+    made(capsys, *words, "--preload", "28..32kN", path=path)
+    file = load_parameter_file(path)
+    assert file.start_value("preload") == pytest.approx(30e3)
+    assert file.ranges["inputs.preload"] == pytest.approx((28e3, 32e3))
+    assert (file.values.mu, *file.ranges["mu"]) == pytest.approx((0.2, 0.1, 0.3))
+    assert file.ranges["H"] == pytest.approx((150 * 9.80665e6, 170 * 9.80665e6))
+    scale = RQ_OVER_RA * math.sqrt(2.0) * 1e-6
+    assert (file.values.h, *file.ranges["h"]) == pytest.approx((0.8 * scale, 0.6 * scale, 1.0 * scale))
+    assert file.origins["mu"] == "user"
+
+
 # Refusals and warnings
 
 
@@ -469,8 +509,15 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
         (["--grip", "0"], "--grip = '0' is outside (0, inf)"),
         (["--grip", "1", "2", "3"], "--grip has 3 values, expected both plates together, or each"),
         (["--tapped", "--grip", "10", "30"], "--grip has 2 values, expected that of side 1"),
-        (["--hole", "11"], "--hole = 11 mm is outside (12, inf) mm"),
-        (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, inf) mm"),
+        (["--hole", "11"], "--hole = 11 mm is outside (12, 36] mm of M12"),
+        (
+            ["--hole", "13500"],
+            "--hole = '13500' is read as 13500 mm, plausible are 2 to 150 mm; if it is in um",
+        ),
+        (["--bearing", "120"], "--bearing = 120 mm is outside (13.5, 96] mm of M12"),
+        (["--plate", "0.2x0.15", "--at", "0.16x0.11"], "if it is in m, write 0.2m (200 mm)"),
+        (["--at", "160,5x60"], "has x and comma; write LxW with decimal points"),
+        (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, 96] mm of M12"),
         (["--preload", "-1"], "--preload = '-1' is outside (0, inf)"),
         (["--torque", "84", "--preload", "43e3"], "--torque beside --preload: state one of them"),
         (["--head-friction", "0.1"], "--head-friction has no effect without --torque"),
@@ -478,7 +525,7 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
         (["--bolts", "4xM12x1"], "allowed pitches of M12 are 1.75, 1.5, 1.25 mm"),
         (["--preload", "nan"], "--preload = 'nan' is not a number"),
         (["--preload", "2kN"], "embedding takes 2643 N of a preload of 2000 N: expected less than all"),
-        (["--embedding", "-1"], "embedding = -1 N is outside [0, inf)"),
+        (["--embedding", "-1"], "--embedding = '-1' is outside [0, inf) N: preload loss of a bolt"),
         (["--material", "unobtainium"], "material 'unobtainium' is unknown, allowed are steel,"),
         (["--material", "steel", "steel", "steel"], "--material has 3 values"),
         (["--Rq", "1"], "--Ra and --Rq are given together; state the roughness once"),
@@ -496,7 +543,7 @@ def test_what_does_not_fit_is_refused(capsys, tmp_path, words, text):
 
 def test_a_roughness_must_be_stated(capsys):
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL)
-    assert "the roughness is missing; expected --finish, --Ra, --Rq or --surface" in line
+    assert "the roughness is missing; expected --finish, --Ra, --Rq, --Rz or --surface" in line
     both = ["--surface", "scan.csv", "--finish", "ground"]
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL, *both)
     assert "--surface and --finish are both given; state one of them" in line
@@ -519,7 +566,7 @@ def test_a_preload_no_bolt_bears_is_warned_of(capsys):
 
 
 def test_a_pressure_beyond_the_hardness_is_warned_of(capsys):
-    (line,) = made(capsys, *PLATE, *FACES, "--hardness", "10", *LOAD)["warnings"]
+    (line,) = made(capsys, *PLATE, *FACES, "--hardness", "10MPa", *LOAD)["warnings"]
     assert "above the hardness of the softer body, 1e+07 Pa" in line
 
 

@@ -67,14 +67,21 @@ BRINELL_AND_VICKERS = dict.fromkeys(("HB", "HBW", "HV"), KGF_PER_MM2)
 
 
 def _length(
-    meaning: str, low: float, high: float, *, allows_zero: bool = False, has_sign: bool = False
+    meaning: str,
+    low: float,
+    high: float,
+    *,
+    limit: float = math.inf,
+    allows_zero: bool = False,
+    has_sign: bool = False,
 ) -> DrawingQuantity:
-    """Length in mm with a plausible range [mm]."""
+    """Length in mm with a plausible range [mm], and a limit [mm]."""
     return DrawingQuantity(
         meaning,
         "mm",
         "m",
         (low, high),
+        limits=(0.0, limit),
         other_units=("m", "um"),
         allows_zero=allows_zero,
         has_sign=has_sign,
@@ -119,10 +126,10 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "plate": _length("length or width of a plate", 4.0, 2e4),
     "at": _length("position of a bolt", 1.0, 2e4, allows_zero=True, has_sign=True),
     "circle": _length("diameter of a pitch circle", 4.0, 2e4),
-    "grip": _length("clamped length", 0.5, 3e3),
+    "grip": _length("clamped length", 0.5, 5e3),
     "thickness": _length("thickness of a plate", 0.5, 3e3),
-    "hole": _length("diameter of a hole", 2.0, 100.0),
-    "bearing": _length("diameter of a bearing surface", 3.0, 300.0),
+    "hole": _length("diameter of a hole", 2.0, 150.0, limit=150.0),
+    "bearing": _length("diameter of a bearing surface", 3.0, 400.0, limit=400.0),
     "preload": DrawingQuantity(
         "preload of a bolt", "N", "N", (100.0, 3e6), other_units=("kN",), allows_range=True
     ),
@@ -298,7 +305,7 @@ def _check_limits(option: str, text: str, magnitude: float) -> None:
     if inside and math.isfinite(magnitude):
         return
     interval = f"{lower}, {high:g}]" if high < math.inf else f"{lower}, inf)"
-    unit = "" if quantity.unit == "1" or high == math.inf else f" {quantity.unit}"
+    unit = "" if quantity.unit == "1" else f" {quantity.unit}"
     raise ValueError(f"{option_flag(option)} = {text!r} is outside {interval}{unit}: {quantity.meaning}")
 
 

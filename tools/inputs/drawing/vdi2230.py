@@ -20,6 +20,8 @@ YIELD_UTILISATION = 0.9
 DEFAULT_FRICTION, FRICTION_INTERVAL = 0.12, (0.08, 0.16)
 """Coefficient of friction [1] in the thread and under the head if none is known, and its interval: Table A5,
 friction class B."""
+ROUNDING_TOLERANCE = 1e-6
+"""Relative excess [1] over the Rz of a row that counts as none: Rz 10 um belongs to the row of 10 um."""
 FRICTION_SOURCE = "VDI 2230, Table A5, friction class B"
 MAX_UTILISATION_ERROR = 0.02
 """Relative excess [1] over YIELD_UTILISATION that counts as none: Table A1 prints torques with two digits."""
@@ -191,7 +193,9 @@ def embedding_depth(Rz: float, interface_count: int, is_tapped: bool) -> float:
     interface_count : number of interfaces between clamped parts
     """
     rows = tables.read_embedding()
-    thread, seat, interface = next((row for limit, row in rows if limit >= Rz), rows[-1][1])
+    thread, seat, interface = next(
+        (row for limit, row in rows if limit * (1.0 + ROUNDING_TOLERANCE) >= Rz), rows[-1][1]
+    )
     return thread + (1 if is_tapped else 2) * seat + interface_count * interface
 
 

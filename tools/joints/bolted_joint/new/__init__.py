@@ -29,7 +29,7 @@ NEW_JOINT_COMMAND = NewJointCommand(
         Option("plate", "length along x and width along y [mm]", "LxW", separator="x", is_required=True),
         Option(
             "bolts",
-            "number and thread, as in 4xM12; with a fine pitch [mm]: 4xM12x1.25",
+            "number and thread, as in 4xM12; with a fine pitch in mm: 4xM12x1.25",
             "NxMd",
             separator="x",
             is_required=True,

@@ -9,7 +9,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import conversion_factor
 
 from ....inputs.drawing.part import DrawingOptions
-from ....inputs.drawing.reading import parse_number, parse_numbers
+from ....inputs.drawing.quantities import parse_value, parse_values
 from ....inputs.drawing.tables import Thread, find_thread
 
 _BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)(?:\s*x\s*(\d+(?:\.\d+)?))?", re.IGNORECASE)
@@ -44,26 +44,27 @@ def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:
     if options["grid"] and not (texts and "," not in texts[0]):
         raise ValueError(f"--grid = {options['grid']!r} needs the distances of the outermost bolts, --at LxW")
     if circle:
-        radius = 0.5 * parse_number("circle", circle, "mm", "m")
+        radius = 0.5 * parse_value("circle", circle)
         angle = 2.0 * np.pi * (np.arange(bolt_count) + 0.5) / bolt_count
         return radius * np.column_stack([np.cos(angle), np.sin(angle)])
     if not texts:
         if bolt_count == 1:
             return np.zeros((1, 2))
         raise ValueError(f"the places of {bolt_count} bolts are missing; expected --at or --circle")
+    if any("," in text and "x" in text for text in texts):
+        raise ValueError(
+            f"--at = {' '.join(texts)!r} has x and comma; write LxW with decimal points, as in 160.5x60"
+        )
     if "," in texts[0]:
         return _parse_positions(texts, bolt_count)
     if len(texts) > 1:
         raise ValueError(f"--at = {texts[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
-    spans = parse_numbers("at", texts[0], "mm", "m", separator="x", count=2, lower_bound=None)
+    spans = parse_values("at", texts[0], separator="x", count=2)
     return _grid_positions(spans, bolt_count, options["grid"])
 
 
 def _parse_positions(position_texts: Sequence[str], bolt_count: int) -> Array:
-    places = [
-        parse_numbers("at", text, "mm", "m", separator=",", count=2, lower_bound=None)
-        for text in position_texts
-    ]
+    places = [parse_values("at", text, separator=",", count=2) for text in position_texts]
     if len(places) != bolt_count:
         raise ValueError(f"--at has {len(places)} places, expected {bolt_count}: one for each of --bolts")
     return np.array(places)

@@ -12,7 +12,7 @@ from jointfmu.quantity import Array
 
 from ....inputs.drawing import faces, vdi2230
 from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
-from ....inputs.drawing.reading import parse_number, parse_numbers
+from ....inputs.drawing.quantities import parse_quantity, parse_value, parse_values
 from ....inputs.drawing.tables import Thread, thread_source
 from ..report import PRELOAD_ENTRY, friction_results, preload_results
 from . import layout, plate_finite_elements
@@ -25,6 +25,8 @@ THICKNESS_TOLERANCE = 1e-6
 """Relative difference [1] allowed between the grip and the sum of the thicknesses."""
 MAX_GRIP_RATIO = 50
 """Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
+MAX_HOLE_RATIO, MAX_BEARING_RATIO = 3.0, 8.0
+"""Largest diameter of hole and of bearing surface over that of the thread [1]; washers of ISO 7094 have 4."""
 THREAD_DEPTH_RATIO = 1.0
 """Depth of a tapped thread over its diameter [1]: a usual value in steel."""
 
@@ -60,7 +62,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    length, width = parse_numbers("plate", options["plate"], "mm", "m", separator="x", count=2)
+    length, width = parse_values("plate", options["plate"], separator="x", count=2)
     count, thread = layout.parse_bolts(options["bolts"])
     positions = layout.bolt_positions(options, count)
     law = options["law"] or "roughness"
@@ -129,7 +131,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
     if options["hole"] is None:
         return thread.hole, ("published", f"{thread_source('hole')} for {thread.name}")
-    return parse_number("hole", options["hole"], "mm", "m"), ("user", "stated on the drawing")
+    return parse_value("hole", options["hole"]), ("user", "stated on the drawing")
 
 
 def clamp_bolt(
@@ -152,13 +154,17 @@ def clamp_bolt(
     head, tapped = options["head"] or "hexagon", bool(options["tapped"])
     bearing = getattr(thread, head)
     if options["bearing"] is not None:
-        bearing = parse_number("bearing", options["bearing"], "mm", "m")
-    for name, value, low in (
-        ("hole", hole_diameter, thread.nominal_diameter),
-        ("bearing", bearing, hole_diameter),
+        bearing = parse_value("bearing", options["bearing"])
+    for name, value, low, ratio in (
+        ("hole", hole_diameter, thread.nominal_diameter, MAX_HOLE_RATIO),
+        ("bearing", bearing, hole_diameter, MAX_BEARING_RATIO),
     ):
-        if not value > low:
-            raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
+        high = ratio * thread.nominal_diameter
+        if not low < value <= high:
+            raise ValueError(
+                f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, {high * 1e3:g}] mm of "
+                f"{thread.name}"
+            )
     thicknesses = _clamped_thicknesses(options)
     if len(thicknesses) > (1 if tapped else 2):
         expected = "that of side 1" if tapped else "both plates together, or each"
@@ -188,7 +194,7 @@ def clamp_bolt(
 
 def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
     """Thickness [m] of each plate, or one value for both plates together."""
-    grip = [parse_number("grip", text, "mm", "m") for text in options["grip"]]
+    grip = [parse_value("grip", text) for text in options["grip"]]
     if options["thickness"] is None:
         return grip
     plates = _plate_thicknesses(options)
@@ -208,7 +214,7 @@ def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
 
 
 def _plate_thicknesses(options: DrawingOptions) -> list[float]:
-    thicknesses = [parse_number("thickness", text, "mm", "m") for text in options["thickness"]]
+    thicknesses = [parse_value("thickness", text) for text in options["thickness"]]
     if len(thicknesses) != 2:
         raise ValueError(f"--thickness has {len(thicknesses)} values, expected that of each plate")
     return thicknesses
@@ -271,9 +277,9 @@ def _add_embedding_loss(
 ) -> float:
     """Add the preload loss [N] by embedding to the sheet, and return it."""
     if options["embedding"] is not None:
-        loss = parse_number("embedding", options["embedding"], "N", "N", None)
-        parameter_sheet.add_drawing_value("embedding", loss)
-        return loss
+        stated = parse_quantity("embedding", options["embedding"])
+        parameter_sheet.add_drawing_number("embedding", stated)
+        return stated.value
     depth = vdi2230.embedding_depth(height_range.Rz, 1, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
     text = (
@@ -381,6 +387,6 @@ def _design_facts(
     facts |= _friction_facts(parameter_file, preload)
     if height_range.h_max > height_range.h_min and parameter_file.law == "roughness":
         h = float(parameter_file.values_by_name["h"])
-        facts["interface_K_zz_low"] = (K * h / height_range.h_max, "N/m", "with the roughest usual finish")
-        facts["interface_K_zz_high"] = (K * h / height_range.h_min, "N/m", "with the finest usual finish")
+        facts["interface_K_zz_low"] = (K * h / height_range.h_max, "N/m", "with the largest of the heights")
+        facts["interface_K_zz_high"] = (K * h / height_range.h_min, "N/m", "with the smallest of the heights")
     return {name: fact for name, fact in facts.items() if np.isfinite(fact[0])}
