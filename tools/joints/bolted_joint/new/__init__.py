@@ -95,8 +95,8 @@ NEW_JOINT_COMMAND = NewJointCommand(
         Option("thickness", "thickness of each plate [mm] (default: half the grip)", "T", is_list=True),
         Option(
             "sides",
-            "elastic: the complete joint, with members and bolts; rigid: the interface only (default: "
-            "elastic if the finite elements are installed)",
+            "elastic: the complete joint, with members and bolts, which needs the extra fem; rigid: the "
+            "interface only (default: elastic)",
             choices=("elastic", "rigid"),
         ),
         Option(

@@ -15,7 +15,7 @@ from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
 from ....inputs.drawing.quantities import parse_quantity, parse_value, parse_values
 from ....inputs.drawing.tables import Thread, thread_source
 from ..report import PRELOAD_ENTRY, friction_results, preload_results
-from . import layout, plate_finite_elements
+from . import ATTACHMENTS, layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
 from .tightening import find_preload
 
@@ -112,13 +112,18 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     shape = None
     if options["field"] == "computed":
         file, shape = compute_pressure_field(file, plates)
+    is_rigid = options["sides"] == "rigid" or (options["tapped"] and options["thickness"] is None)
+    joint = NewJoint(file, {})
+    if not is_rigid:
+        attached = options["attached"] or next(iter(ATTACHMENTS))
+        joint = plate_finite_elements.compute_facts(file, plates, attached, shape)
     facts = _design_facts(file, bolt, heights, preload)
-    alone = _interface_only_text(facts["interface_K_zz"][0] / count, bolt)
-    if options["tapped"] and options["thickness"] is None:
-        joint = NewJoint(file, {}, [f"{alone}: for the complete joint state --thickness of both plates"])
-    else:
-        attached, sides = options["attached"] or "faces", options["sides"]
-        joint = plate_finite_elements.compute_facts(file, plates, attached, sides, alone, shape)
+    if is_rigid:
+        facts |= _interface_share_facts(facts["interface_K_zz"][0] / count, bolt)
+    if is_rigid and options["sides"] is None:
+        warnings.append(
+            "the FMU is the interface alone; for the complete joint state --thickness of both plates"
+        )
     facts |= {**tightening.facts(), **joint.facts, **_preload_range_facts(joint.file)}
     if tightening.has_range and not tightening.low > loss:
         warnings.append(
@@ -327,16 +332,19 @@ def _preload_range_facts(parameter_file: ParameterFile) -> dict[str, tuple[float
     return facts
 
 
-def _interface_only_text(interface_stiffness: float, clamped_bolt: ClampedBolt) -> str:
-    """Warning that the FMU contains the interface only, with its share of the compliance.
+def _interface_share_facts(
+    interface_stiffness: float, clamped_bolt: ClampedBolt
+) -> dict[str, tuple[float, str, str]]:
+    """Fact about a joint of which the FMU has the interface only: its share of the compliance, by VDI 2230.
 
     interface_stiffness : [N/m] normal stiffness of the interface per bolt
     """
     share = clamped_bolt.member_stiffness / (clamped_bolt.member_stiffness + interface_stiffness)
-    return (
-        f"the FMU is the interface alone ({share:.1%} of the compliance along z that it has in series with "
-        "the members of VDI 2230, loaded at the heads)"
+    text = (
+        "share of the interface in the compliance along z that it has in series with the members of VDI "
+        "2230, loaded at the heads; the FMU is the interface alone (sides = rigid)"
     )
+    return {"interface_share": (share, "1", text)}
 
 
 def _design_facts(
