@@ -24,6 +24,7 @@ from jointfmu_tools.joints.bolted_joint.new import TIGHTENING_METHODS, layout, p
 from jointfmu_tools.joints.bolted_joint.report import friction_results, preload_figures, preload_results
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 
+import jointfmu
 from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_parameter_file
@@ -222,6 +223,26 @@ def test_a_torque_gives_a_preload_with_its_range(capsys, tmp_path):
     assert facts["opening_load_at_low_preload"] == pytest.approx(4.0 * (low - left), rel=0.05)
 
 
+def test_python_takes_a_torque_too(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, "--tightening", "angle", path=path)
+    sizes = {
+        "plate": (200, 100),
+        "bolts": "4xM12",
+        "at": (160, 60),
+        "grip": 40,
+        "material": "steel",
+        "Ra": 0.8,
+    }
+    friction = {"thread_friction": 0.12, "head_friction": 0.12}
+    joint = jointfmu.bolted_joint(**sizes, torque=84, tightening="angle", **friction)
+    file = load_parameter_file(path)
+    assert joint.file.inputs == file.inputs
+    assert joint.file.ranges == file.ranges
+    with pytest.raises(ValueError, match=r"^torque beside preload: state one of them"):
+        jointfmu.bolted_joint(**sizes, torque=84, preload="43kN")
+
+
 def test_friction_of_a_torque_widens_the_range(capsys):
     """By its interval if the method depends on friction, as a torque wrench does."""
     known = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN)
@@ -255,9 +276,9 @@ def test_the_yield_strength_limits_the_torque(capsys):
         "uses 97% of the yield strength of M12-8.8 in tightening (VDI 2230, von Mises), allowed are" in line
     )
     line = refused_line(capsys, "new", "bolted-joint", *words, "110")
-    assert "118% of the yield strength of M12-8.8; expected up to 83.6 N.m (VDI 2230: 90%)" in line
+    assert "1.18 times the yield strength of M12-8.8; expected up to 83.6 N.m (VDI 2230: 90%)" in line
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *FACES, "--torque", "840")
-    assert "yield strength of M12-12.9, the strongest class" in line
+    assert "times the yield strength of M12-12.9, the strongest class" in line
 
 
 def test_fine_threads(capsys):

@@ -61,6 +61,8 @@ class StatedNumber(NamedTuple):
         return self.high > self.low
 
 
+MIN_HEIGHT = 1e-4
+"""Least height of a surface [um]: polished silicon wafers have twice as much."""
 KGF_PER_MM2 = 9.80665e6
 """Unit of Brinell and Vickers hardness [Pa]: kgf/mm2."""
 BRINELL_AND_VICKERS = dict.fromkeys(("HB", "HBW", "HV"), KGF_PER_MM2)
@@ -95,7 +97,7 @@ def _height(name: str, high: float) -> DrawingQuantity:
         "um",
         "m",
         (0.005, high),
-        limits=(0.0, high),
+        limits=(MIN_HEIGHT, high),
         other_units=("m", "mm", "nm"),
         allows_range=True,
     )
@@ -325,11 +327,13 @@ def _advise_unit(quantity: DrawingQuantity, number_text: str, magnitude: float) 
     """
     low, high = quantity.plausible
     size = _unit_size(quantity, quantity.unit)
-    advice = []
-    for unit in (*quantity.other_units, *quantity.extra_units):
-        converted = magnitude * _unit_size(quantity, unit) / size
-        if low <= converted <= high:
-            advice.append(f"if it is in {unit}, write {number_text}{unit} ({converted:.4g} {quantity.unit})")
+    candidates = {_unit_size(quantity, unit): unit for unit in reversed((*quantity.extra_units,))}
+    candidates |= {_unit_size(quantity, unit): unit for unit in quantity.other_units}
+    advice = [
+        f"if it is in {unit}, write {number_text}{unit} ({magnitude * unit_size / size:.4g} {quantity.unit})"
+        for unit_size, unit in candidates.items()
+        if low <= magnitude * unit_size / size <= high
+    ]
     if not advice and quantity.limits[0] <= magnitude <= quantity.limits[1] and quantity.unit != "1":
         advice.append(f"if {quantity.unit} is right, write {number_text}{quantity.unit}")
     return "; ".join(advice)

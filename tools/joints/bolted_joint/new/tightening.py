@@ -194,8 +194,8 @@ def _check_strength(
     if options["torque"] is not None and utilisation > 1.0:
         highest = parse_quantity("torque", options["torque"]).value * allowed / preload.force
         raise ValueError(
-            f"--torque = {options['torque']!r} tightens to {preload.force * 1e-3:.4g} kN, {utilisation:.0%} "
-            f"of the yield strength of {bolt}; expected up to {highest:.3g} N.m (VDI 2230: "
+            f"--torque = {options['torque']!r} tightens to {preload.force * 1e-3:.4g} kN, {utilisation:.3g} "
+            f"times the yield strength of {bolt}; expected up to {highest:.3g} N.m (VDI 2230: "
             f"{vdi2230.YIELD_UTILISATION:.0%})"
         )
     if stated is None:
