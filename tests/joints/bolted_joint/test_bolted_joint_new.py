@@ -22,7 +22,7 @@ from jointfmu_tools.inputs.drawing.tables import (
 )
 from jointfmu_tools.joints.bolted_joint.new import TIGHTENING_METHODS, layout, plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.report import friction_results, preload_figures, preload_results
-from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.problem import resolve_interval, state_problem
 
 import jointfmu
 from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA
@@ -313,6 +313,8 @@ def test_a_preload_range_reaches_report_and_study(capsys, tmp_path):
         "preload", pytest.approx((facts["preload_low"] - left, facts["preload_high"] - left)),
     )  # fmt: skip
     assert "opening_load" in study.units
+    low, high = file.ranges["inputs.preload"]  # of an FMU, whose input is what is tightened
+    assert resolve_interval("preload", "interval", file) == f"{low!r}..{high!r}"
     # a stated ramp takes the place of the range
     assert [each.name for each in state_problem(file, {}, 30e3, 3).uncertain_parameters] == ["mu"]
     bare = replace(file, ranges={"inputs.preload": (1e3, 50e3)})

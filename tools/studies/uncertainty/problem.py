@@ -160,8 +160,9 @@ def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
     """
     if value != INTERVAL_SETTING:
         return value
-    if name in file.ranges:
-        return "{!r}..{!r}".format(*file.ranges[name])
+    for entry in (name, _INPUTS_PREFIX + name):
+        if entry in file.ranges:
+            return "{!r}..{!r}".format(*file.ranges[entry])
     source = file.sources.get(name, "")
     if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(
