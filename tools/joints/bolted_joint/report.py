@@ -32,13 +32,20 @@ PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
+PRELOAD_ENTRY = "inputs.preload"
+"""Entry of the preload in a parameter file."""
 REPORTED_SHEAR_RATIO = 0.1
 """Shear force over the gross-slip force [1] at which the loss factor is reported."""
 
 
 def joint_figures(load_history: LoadHistory) -> list[Figure]:
-    """All figures of the joint: pictures, complete joint, friction."""
-    return [picture_figure(load_history), *stiffness_figures(load_history), *friction_figures(load_history)]
+    """All figures of the joint: pictures, complete joint, preload, friction."""
+    return [
+        picture_figure(load_history),
+        *stiffness_figures(load_history),
+        *preload_figures(load_history),
+        *friction_figures(load_history),
+    ]
 
 
 def picture_figure(load_history: LoadHistory) -> Figure:
@@ -84,6 +91,72 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
         "is that of the interface between rigid sides, under the same shear force."
     )
     return [Figure("Effect of the friction coefficient", text, table=table)]
+
+
+def preload_figures(load_history: LoadHistory) -> list[Figure]:
+    """Table of stiffness, gross-slip force and opening load over the range of the preload.
+
+    Empty if the file states no range of the preload.
+    """
+    file = load_history.file
+    if PRELOAD_ENTRY not in file.ranges:
+        return []
+    table: list[tuple[str, ...]] = [
+        ("preload", "stiffness along z", "stiffness along x", "gross slip at", "interface opens at")
+    ]
+    for row in sorted(preload_results(file)):
+        values = zip(row, ("N", "N/m", "N/m", "N", "N"), strict=True)
+        table.append(tuple(_format_value(value, unit) for value, unit in values))
+    text = (
+        "The preload is uncertain: "
+        f"{file.sources[PRELOAD_ENTRY]}. Embedding takes {_format_value(file.values.embedding, 'N')} of each "
+        "preload. The stiffness is that of the FMU; the force along z that opens the interface is a linear "
+        "estimate."
+    )
+    return [Figure("Effect of the preload", text, table=table)]
+
+
+class PreloadResult(NamedTuple):
+    """Results of the tightened joint at one preload.
+
+    preload      : of each bolt at tightening [N]
+    K_zz, K_xx   : stiffness of the joint along z and x [N/m]
+    slip_force   : shear force [N] of gross slip
+    opening_load : force [N] along z that opens the interface around the most loaded bolt, linear estimate
+    """
+
+    preload: float
+    K_zz: float
+    K_xx: float
+    slip_force: float
+    opening_load: float
+
+
+def preload_results(parameter_file: ParameterFile) -> list[PreloadResult]:
+    """Results at the start value of the preload, and at both ends of its range.
+
+    A preload that embedding takes completely is left out.
+    """
+    joint = parameter_file.values
+    spring = BoltedJointSpring.for_joint(joint)
+    rows = []
+    preloads = (parameter_file.start_value("preload"), *parameter_file.ranges.get(PRELOAD_ENTRY, ()))
+    for preload in preloads:
+        remaining_preload = float(working_preload(joint, preload))
+        if remaining_preload <= 0.0:
+            continue
+        compliances = spring.compliances(preload)
+        stiffness = 1.0 / compliances.total_compliance
+        rows.append(
+            PreloadResult(
+                preload,
+                float(stiffness[2]),
+                float(stiffness[0]),
+                float(slip_force(joint, remaining_preload)),
+                compliances.opening_load(remaining_preload),
+            )
+        )
+    return rows
 
 
 class FrictionResult(NamedTuple):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import slip_force
 from jointfmu.joints.model import Variable
 from jointfmu.quantity import Array
@@ -36,6 +37,15 @@ def approach(sample: JointSample, preload: Array) -> Array:
     rate = force / sample.follow({"preload": end * np.exp(x)}, INTERFACE)["K_zz"]
     (exponent,) = spline_weights(x, x[:1], 1) @ np.log(rate)
     return np.asarray(rate[0] / exponent + spline_weights(x, np.log(preload / end), -1) @ rate)
+
+
+def opening_load(sample: JointSample, preload: Array) -> Array:
+    """Force along z (m) [N] that opens the interface around the most loaded bolt, by linear theory.
+
+    The load factor is that of the last preload: it hardly changes along the ramp.
+    """
+    spring = BoltedJointSpring.for_joint(replace(sample.parameters, embedding=0.0))
+    return np.asarray(preload * spring.compliances(float(preload[-1])).opening_load(1.0))
 
 
 def loss_factor(sample: JointSample, preload: Array) -> Array:
@@ -73,6 +83,10 @@ CURVES = LoadCurves(
             lambda sample, preload: np.asarray(slip_force(sample.parameters, preload)),
         ),
         DerivedOutput(
+            Variable("opening_load", "N", "force along z that opens the interface, by linear theory", 1e4),
+            opening_load,
+        ),
+        DerivedOutput(
             Variable(
                 "loss_factor", "1", f"of a loop under a shear of {SHEAR_RATIO:g} times the bolts' force", 0.1
             ),
@@ -81,5 +95,6 @@ CURVES = LoadCurves(
     ),
     default_end=lambda joint: 30e3,
     max_load=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
+    load_loss=lambda joint: joint.embedding,
     settings={"embedding": 0.0},
 )
