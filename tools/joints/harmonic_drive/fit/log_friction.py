@@ -2,11 +2,13 @@
 
     torque = friction(|ratio| dq, load, temperature) + inertia ddq/|ratio| + gravity/|ratio| + offset
 
-All torques are positive in the direction of the joint angle q, so that the ratio has no sign. Three terms are
-linear in their unknowns and are eliminated: the inertia at the joint, an offset of the current, and gravity =
-a cos(q) + b sin(q) if it is not measured. The load of the teeth is gravity plus the inertia torque of the
-arm, that is of the total inertia without the rotor. The other unknowns are fitted over their logarithms. The
-load depends on them: it is fixed during each fit, and updated for the next of LOAD_ITERATIONS fits.
+All torques are positive in the direction of the joint angle q, so that the ratio has no sign. With a torque
+sensor at the joint, the measured torque over the ratio takes the place of gravity and of the inertia torque
+of the arm; the inertia is then that of the rotor. Three terms are linear in their unknowns and are
+eliminated: the inertia, an offset of the current, and gravity = a cos(q) + b sin(q) if it is not measured.
+The load of the teeth is gravity plus the inertia torque of the arm, that is of the total inertia without the
+rotor; or the torque of the sensor. The other unknowns are fitted over their logarithms. The load depends on
+them: it is fixed during each fit, and updated for the next of LOAD_ITERATIONS fits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -29,12 +31,13 @@ class LinearTerms:
     """Terms of the motor torque that are linear in their unknowns: inertia, offset, gravity.
 
     design_matrix    : (n, k) motor torque at the samples per unit of each unknown
-    measured_gravity : (n) [N.m] motor torque for the measured gravity; 0 if it is not measured
+    measured_load    : (n) [N.m] motor torque for the torque sensor, or else for the measured gravity; 0 if
+                       neither is measured
     unknown_names    : names (k) of the unknowns
     """
 
     design_matrix: Array
-    measured_gravity: Array
+    measured_load: Array
     unknown_names: tuple[str, ...]
 
     @classmethod
@@ -42,7 +45,8 @@ class LinearTerms:
         """Evaluate the linear terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.is_dynamic.astype(float)
-        measured = np.isfinite(samples.gravity_torque)
+        measured_load = samples.sensor_torque if samples.has_sensor else samples.gravity_torque
+        measured = np.isfinite(measured_load)
         if dynamic.any():
             columns = {"inertia": samples.ddq / ratio, "offset": dynamic}
             swung = dynamic * np.isfinite(samples.q) * ~measured
@@ -53,7 +57,7 @@ class LinearTerms:
                     "gravity_sin": swung * np.sin(angle) / ratio,
                 }
         matrix = np.stack([*columns.values()], axis=1) if columns else np.zeros((samples.dq.size, 0))
-        known = np.where(measured, samples.gravity_torque, 0.0) / ratio
+        known = np.where(measured, measured_load, 0.0) / ratio
         return cls(matrix, known, tuple(columns))
 
     def solve_unknowns(self, torque: Array) -> Array:
@@ -69,11 +73,13 @@ class LinearTerms:
 
         rotor_inertia : [kg.m2]
         """
+        if samples.has_sensor:
+            return samples.sensor_torque
         values = dict(zip(self.unknown_names, linear_unknowns.tolist(), strict=True))
         arm = max(values.get("inertia", 0.0) - rotor_inertia * ratio**2, 0.0)
         gravity = [n for n, name in enumerate(self.unknown_names) if name.startswith("gravity")]
         fitted_gravity = ratio * self.design_matrix[:, gravity] @ linear_unknowns[gravity]
-        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_gravity)
+        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_load)
 
 
 def motor_friction(drive: Drive, joint_speed: Array, temperature: Array, load: Array) -> Array:
@@ -131,6 +137,11 @@ UNDETERMINED_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
 well."""
+VANISHING_PARAMETERS = (STRIBECK_FRICTION, VISCOUS_FRICTION)
+"""Parameters that a log may show to be 0: the fit ends on their lower bound."""
+MIN_FRICTION_DEVIATIONS, MIN_FRICTION_SHARE = 5.0, 0.02
+"""Friction over its standard deviation [1], and over the root mean square of the torque [1], from which a
+torque at the joint has the friction of the drive."""
 DIFFERENCE_STEP = 1e-4
 """Step of the logarithms of the parameters [1] for finite differences."""
 
@@ -156,7 +167,10 @@ class FittedLog:
 
     @property
     def inertia(self) -> float:
-        """Inertia [kg.m2] of arm and rotor at the joint; for logs with a time only."""
+        """Inertia [kg.m2] of arm and rotor at the joint, or of the rotor if the load is measured by a sensor.
+
+        For logs with a time only.
+        """
         return float(self.linear_unknowns[0])
 
     def evaluate_torque(self, samples: Samples) -> tuple[Array, Array]:
@@ -167,7 +181,7 @@ class FittedLog:
         friction_torque = filtered_motor_friction(self.drive, samples, load)
         return (
             friction_torque,
-            friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_gravity,
+            friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_load,
         )
 
     def evaluate_load(self, samples: Samples) -> tuple[Array, Array]:
@@ -242,7 +256,7 @@ def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Arra
     terms = LinearTerms.at_samples(samples, ratio)
     friction_terms = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
     matrix = np.concatenate([friction_terms, terms.design_matrix], axis=1)
-    return terms, np.linalg.lstsq(matrix, samples.motor_torque - terms.measured_gravity)[0]
+    return terms, np.linalg.lstsq(matrix, samples.motor_torque - terms.measured_load)[0]
 
 
 def fit_samples(
@@ -267,7 +281,7 @@ def fit_samples(
             """Motor torque (n) [N.m] without friction and measured gravity."""
             drive = parameter_file.with_values(parameter_values, "calibration", "fit").values
             return np.asarray(
-                samples.motor_torque - terms.measured_gravity - filtered_motor_friction(drive, samples, load)
+                samples.motor_torque - terms.measured_load - filtered_motor_friction(drive, samples, load)
             )
 
         def residuals(parameter_values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]
@@ -308,14 +322,41 @@ def drop_undetermined(
     return fitted_log, list(fitted_names), []
 
 
+def accept_vanishing(fitted_log: FittedLog) -> tuple[FittedLog, list[str]]:
+    """Accept friction that vanishes: VANISHING_PARAMETERS on their lower bound, which stands for 0.
+
+    Returns the fit, with these parameters no longer on a bound, and notes about them.
+    """
+    solution = fitted_log.solution
+    vanishing = [name for name in solution.names_at_bound if name in VANISHING_PARAMETERS]
+    others = tuple(name for name in solution.names_at_bound if name not in vanishing)
+    notes = [f"the log shows no {name}: its smallest value fits best" for name in vanishing]
+    return replace(fitted_log, solution=replace(solution, names_at_bound=others)), notes
+
+
+def has_friction(samples: Samples, drive: Drive) -> bool:
+    """Whether the torque has a friction part, that is more than chance and MIN_FRICTION_SHARE."""
+    ratio = abs(drive.ratio)
+    terms, linear = _fit_linear_model(samples, drive)
+    sense, speed = np.sign(samples.dq), ratio * samples.dq
+    matrix = np.concatenate([np.stack([sense, speed], axis=1), terms.design_matrix], axis=1)
+    torque = samples.motor_torque - terms.measured_load
+    residual = torque - matrix @ linear
+    noise = np.linalg.norm(residual) / np.sqrt(max(residual.size - linear.size, 1))
+    covariance = noise**2 * np.linalg.pinv(matrix.T @ matrix)[:2, :2]
+    mean = np.array([1.0, float(np.mean(np.abs(speed)))])  # friction at the mean speed
+    size, deviation = float(mean @ linear[:2]), float(np.sqrt(mean @ covariance @ mean))
+    return size > max(
+        MIN_FRICTION_DEVIATIONS * deviation, MIN_FRICTION_SHARE * float(np.sqrt(np.mean(torque**2)))
+    )
+
+
 def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
     """Whether the fitted friction drives the motion: then the torque has the wrong sign in the log."""
     terms, linear = _fit_linear_model(samples, drive)
     w1 = abs(drive.ratio) * samples.dq
     friction_torque = linear[0] * np.sign(w1) + linear[1] * w1
-    residual = (
-        samples.motor_torque - terms.measured_gravity - friction_torque - terms.design_matrix @ linear[2:]
-    )
+    residual = samples.motor_torque - terms.measured_load - friction_torque - terms.design_matrix @ linear[2:]
     return bool(friction_torque @ w1 < 0.0 and np.sum(friction_torque**2) > np.sum(residual**2))
 
 
