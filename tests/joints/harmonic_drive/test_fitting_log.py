@@ -4,6 +4,7 @@ import json
 import math
 from importlib.resources import files
 from pathlib import Path
+from time import process_time
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.common import columns
 from jointfmu_tools.inputs.fitting import outcome
-from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
+from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log, log_friction
 from jointfmu_tools.joints.harmonic_drive.fit.log_friction import motor_friction
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from matplotlib.figure import Figure
@@ -434,3 +435,27 @@ def test_german_headings(tmp_path, capsys):
     assert "friction_viscous" in capsys.readouterr().out
     path.write_text(text.replace("i [A]", "Strom"))
     assert "the file has time, q, dq, strom; a heading needs a unit" in refused_line(capsys, *words)
+
+
+def test_a_long_log_starts_from_a_part_of_its_samples(monkeypatch, tmp_path):
+    """The first fit uses every fourth sample here; the second one starts there and gives the same."""
+    path = save_log(tmp_path / "log.csv", sensor_log(), "time", "q", "dq", "i", "link_torque")
+    whole = log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    monkeypatch.setattr(log_friction, "FIRST_FIT_SAMPLES", 80)
+    found = log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    for name in SENSOR:
+        assert found.solution.values[name] == pytest.approx(whole.solution.values[name], rel=1e-3)
+        deviation = whole.solution.relative_deviations[name]
+        assert found.solution.relative_deviations[name] == pytest.approx(deviation, rel=1e-2)
+
+
+@pytest.mark.slow
+def test_a_log_of_300_000_rows_takes_seconds(tmp_path):
+    """It took 11 s: most of them went into reading, and into repeated fits to all samples."""
+    time, rng = np.arange(300_000) * 1e-3, np.random.default_rng(0)
+    dq = 2.0 * np.pi * (0.22 * np.cos(2.0 * np.pi * 0.31 * time) + 0.33 * np.cos(2.0 * np.pi * 0.83 * time))
+    current = np.sign(dq) + 0.6 * dq + 0.02 * rng.standard_normal(time.size)
+    path = save_log(tmp_path / "log.csv", {"time": time, "dq": dq, "i": current}, "time", "dq", "i")
+    begin = process_time()
+    log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    assert process_time() - begin < 8.0

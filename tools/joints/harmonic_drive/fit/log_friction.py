@@ -21,7 +21,7 @@ from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, frict
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....inputs.fitting.least_squares import Solution, solve
+from ....inputs.fitting.least_squares import Solution, covariance, solve
 from ....inputs.fitting.outcome import make_unknowns
 from .log_reading import Samples
 
@@ -118,8 +118,14 @@ FITTED_PARAMETERS = (
     *TEMPERATURE_COEFFICIENTS,
 )
 """Parameters of the friction that can be fitted."""
-LOAD_ITERATIONS = 4
-"""Number of fits, each with the load that follows from the fit before."""
+LOAD_ITERATIONS, LOAD_TOLERANCE = 4, 1e-4
+"""Largest number of fits, each with the load that follows from the fit before; and change of the load over
+its size [1] at which the fits end."""
+FIT_TOLERANCE = 1e-6
+"""Relative change of cost or parameters at which a fit ends [1]; far below the deviations of a log."""
+FIRST_FIT_SAMPLES = 1000
+"""Approximate number of samples of a long log for a first fit, whose result is the start of the fit to all
+samples."""
 MIN_TEMPERATURE_RANGE = 5.0
 """Range of temperatures [K] that a log needs for a fit of the temperature coefficients."""
 MIN_LOAD_RATIO = 0.02
@@ -267,15 +273,43 @@ def fit_samples(
     fitted_names  : of the friction parameters to fit
     rotor_inertia : [kg.m2]
     """
-    ratio = abs(parameter_file.values.ratio)
-    terms, linear = _fit_linear_model(samples, parameter_file.values)
+    linear = _fit_linear_model(samples, parameter_file.values)[1]
     start_values, linear = _start_values(parameter_file, samples, linear), linear[2:]
     changed = parameter_file.with_values(
         {n: v for n, v in start_values.items() if n in fitted_names}, "calibration", "start"
     )
     bounds = {name: (LOWER_BOUND_RATIO * value, np.inf) for name, value in start_values.items()}
+    noise = None
+    step = samples.dq.size // FIRST_FIT_SAMPLES
+    if step > 1:
+        few = samples.select(np.arange(0, samples.dq.size, step))
+        first = _iterate_load(parameter_file, changed, few, fitted_names, bounds, linear, rotor_inertia)
+        linear, noise = first.linear_unknowns, first.solution.noise
+        changed = parameter_file.with_values(first.solution.values, "calibration", "start")
+    return _iterate_load(parameter_file, changed, samples, fitted_names, bounds, linear, rotor_inertia, noise)
+
+
+def _iterate_load(
+    parameter_file: ParameterFile,
+    start_file: ParameterFile,
+    samples: Samples,
+    fitted_names: Sequence[str],
+    bounds: Mapping[str, tuple[float, float]],
+    linear_unknowns: Array,
+    rotor_inertia: float,
+    noise: float | None = None,
+) -> FittedLog:
+    """Fit friction parameters and linear terms to samples, with the load of each fit from the fit before.
+
+    start_file      : parameter file with the start values
+    bounds          : {name: lower and upper bound}
+    linear_unknowns : start values (k) of the linear terms
+    noise           : start value of the standard deviation of a residual [N.m]; None: unknown
+    """
+    ratio, linear, changed = abs(parameter_file.values.ratio), linear_unknowns, start_file
+    terms = LinearTerms.at_samples(samples, ratio)
+    load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
     for _ in range(LOAD_ITERATIONS):
-        load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
 
         def net_torque(parameter_values: Mapping[str, float], load: Array = load) -> Array:
             """Motor torque (n) [N.m] without friction and measured gravity."""
@@ -289,10 +323,21 @@ def fit_samples(
             return np.asarray(remaining - terms.design_matrix @ terms.solve_unknowns(remaining))
 
         solution = solve(
-            make_unknowns(changed, fitted_names, bounds), residuals, nuisance_count=len(terms.unknown_names)
+            make_unknowns(changed, fitted_names, bounds),
+            residuals,
+            noise=noise,
+            nuisance_count=len(terms.unknown_names),
+            tolerance=FIT_TOLERANCE,
         )
+        degrees_of_freedom = max(samples.dq.size - len(fitted_names) - len(terms.unknown_names), 1)
+        noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
         linear = terms.solve_unknowns(net_torque(solution.values))
         changed = parameter_file.with_values(solution.values, "calibration", "fit")
+        previous, load = load, terms.tooth_load(samples, linear, ratio, rotor_inertia)
+        if np.max(np.abs(load - previous)) <= LOAD_TOLERANCE * np.max(np.abs(load)):
+            break
+    assert noise is not None
+    solution = replace(solution, noise=noise, covariance=covariance(solution.jacobian, noise))
     direct = solution.noise**2 * np.linalg.pinv(terms.design_matrix.T @ terms.design_matrix)
     indirect = _propagate_deviations(solution, lambda values: terms.solve_unknowns(net_torque(values)))
     return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0)
