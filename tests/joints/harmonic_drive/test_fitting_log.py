@@ -459,3 +459,82 @@ def test_a_log_of_300_000_rows_takes_seconds(tmp_path):
     begin = process_time()
     log.fit([path], size_32_file(), torque_constant=CONSTANT)
     assert process_time() - begin < 8.0
+
+
+# friction over the turn of the motor
+
+RIPPLE = json.loads((JOINT_LOG.parent / "friction_over_motor_angle_50_1.json").read_text())
+"""Friction [N.m] at the output over one turn of the motor, both senses, of a 50:1 strain-wave gear."""
+
+
+def ripple_columns(senses):
+    """Table of the measured friction at the motor, at three speeds with a viscous part of 1e-4 N.m.s/rad."""
+    angles = 2.0 * np.pi * np.arange(RIPPLE["nbins"]) / RIPPLE["nbins"]
+    rows = []
+    for sense, name in senses.items():
+        for speed in (0.5, 1.0, 2.0):
+            torque = np.array(RIPPLE[name]) / 50.0 + 1e-4 * 50.0 * speed
+            rows.append(
+                np.stack([sense * torque, np.full(angles.size, sense * speed), angles + 2.0 * np.pi], axis=1)
+            )
+    return np.concatenate(rows).T
+
+
+@pytest.mark.parametrize(
+    ("senses", "mean", "amplitudes"),
+    [
+        ({1.0: "map_pos"}, 8.0, {1: 1.6, 2: 1.0}),
+        ({1.0: "map_pos", -1.0: "map_neg"}, 7.6, {1: 1.3, 2: 0.97}),
+    ],
+)
+def test_a_measured_ripple_is_found(tmp_path, senses, mean, amplitudes):
+    """Mean, and amplitudes once and twice a turn [N.m], at the output; the senses differ by a tenth."""
+    path = tmp_path / "ripple.csv"
+    heads = [("tau", "N.m"), ("dq", "rad/s"), ("q_motor", "rad")]
+    path.write_text(columns.format_table(heads, [*ripple_columns(senses)]))
+    found = log.fit([path], robot_log.start().with_values({"ratio": -50.0}, "user", "measured"))
+    values = found.parameters.values_by_name
+    waves = np.mean([np.fft.rfft(RIPPLE[name]) for name in senses.values()], axis=0) / RIPPLE["nbins"]
+    assert 50.0 * values["friction_coulomb"] == pytest.approx(mean, rel=0.05)
+    for n, rough in amplitudes.items():
+        assert 50.0 * values[f"friction_{n}"] == pytest.approx(2.0 * abs(waves[n]), rel=1e-3)
+        assert 50.0 * values[f"friction_{n}"] == pytest.approx(rough, rel=0.03)
+        phase = np.angle(waves[n]) + 0.5 * np.pi
+        assert math.remainder(values[f"friction_{n}_phase"] - phase, 2.0 * np.pi) == pytest.approx(
+            0.0, abs=1e-3
+        )
+        assert found.facts[f"friction_{n}"][1] == "N.m"
+    assert found.rejection_reason() is None
+
+
+def rippled_log(ratio, **ripple):
+    """A swing whose friction has a ripple, by the law of the FMU."""
+    log_columns, rng = joint_columns(), np.random.default_rng(0)
+    log_columns = {name: log_columns[name] for name in ("time", "q", "dq")}
+    drive = size_32_file().with_values(SENSOR | ripple | {"ratio": abs(ratio)}, "user", "made").values
+    q, dq = 0.3 * log_columns["q"], 0.3 * log_columns["dq"]
+    load = 2.5 * np.gradient(dq, 0.01) + 110.0 * np.cos(q)
+    positive, negative = friction_limits(drive, abs(ratio) * dq, -load, phi1=ratio * q)
+    torque = np.where(dq > 0.0, positive, -negative) + viscous_torque(drive, abs(ratio) * dq)
+    current = (torque + load / abs(ratio) + ROTOR * abs(ratio) * np.gradient(dq, 0.01)) / CONSTANT
+    return {"time": log_columns["time"], "q": q, "dq": dq, "i": current + 0.02 * rng.standard_normal(q.size)}
+
+
+@pytest.mark.parametrize("ratio", [-100.0, 100.0])
+def test_a_ripple_in_a_log_is_found_by_the_angle_of_the_joint(tmp_path, ratio):
+    ripple = {"friction_1": 0.03, "friction_1_phase": 0.7, "friction_2": 0.02, "friction_2_phase": -1.2}
+    path = save_log(tmp_path / "log.csv", rippled_log(ratio, **ripple), "time", "q", "dq", "i")
+    file = size_32_file().with_values({"ratio": ratio}, "user", "made")
+    found = log.fit([path], file, torque_constant=CONSTANT)
+    values = found.parameters.values_by_name
+    for n in (1, 2):
+        assert values[f"friction_{n}"] == pytest.approx(ripple[f"friction_{n}"], rel=0.1)
+        assert values[f"friction_{n}_phase"] == pytest.approx(ripple[f"friction_{n}_phase"], abs=0.1)
+    assert values["friction_coulomb"] == pytest.approx(0.116, rel=0.1)
+
+
+def test_no_ripple_is_found_where_there_is_none(tmp_path):
+    path = save_log(tmp_path / "log.csv", rippled_log(-100.0), "time", "q", "dq", "i")
+    found = log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    assert "friction_1" not in found.facts
+    assert found.parameters.values_by_name["friction_1"] == 0.0

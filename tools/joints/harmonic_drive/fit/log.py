@@ -36,7 +36,8 @@ from .log_friction import (
     is_driven_by_friction,
     select_parameters,
 )
-from .log_reading import MIN_SPEED_RATIO, Samples, join_samples, parse_columns, read_log
+from .log_reading import MIN_SPEED_RATIO, Samples, join_samples, make_log, parse_columns, read_table
+from .log_ripple import add_ripples, find_ripple_terms, fitted_ripples
 
 CONFIDENCE_LEVEL = 0.95
 """Confidence level of the intervals [1]."""
@@ -77,9 +78,10 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
-    file = _start_parameters(start_parameters, drive, rated_torque, ratio)
     names = parse_columns(columns or ())
-    logs = [read_log(path, names, torque_constant, file.values, torque_at) for path in paths]
+    tables = [read_table(path, names) for path in paths]
+    file = _start_parameters(start_parameters, drive, rated_torque, ratio)
+    logs = [make_log(table, torque_constant, file.values, torque_at) for table in tables]
     check_repeated_logs(logs)
     label = ", ".join(path.name for path in paths)
     if len({log.has_motor_torque for log in logs}) > 1:
@@ -174,6 +176,10 @@ def _fit_with_friction(
                 "without --motor-inertia the rotor counts as part of the arm: load_loss and the stiffness "
                 "have an error equal to the share of the rotor in the inertia"
             )
+    samples, harmonics = find_ripple_terms(samples, fitted_log)
+    if harmonics:
+        rotor, deviation = fitted_log.rotor_inertia, fitted_log.rotor_deviation
+        fitted_log = replace(fit_samples(file, samples, names_to_fit, rotor), rotor_deviation=deviation)
     fitted_log, vanishing_notes = accept_vanishing(fitted_log)
     notes += vanishing_notes
     if samples.has_sensor and LOAD_LOSS_BACK in fitted_log.solution.names_at_bound:
@@ -194,12 +200,18 @@ def _fit_with_friction(
         doubt_about_gravity(samples),
         doubt_about_friction(samples, fitted_log, file.values, torque_constant),
     )
-    return FitResult(
+    result, ripple_facts, ripple_notes = add_ripples(
         _fitted_file(file, label, samples, solution, intervals),
+        fitted_ripples(fitted_log, harmonics),
+        f"fitted to {label}, {_describe_ranges(samples)}",
+        CONFIDENCE_LEVEL,
+    )
+    return FitResult(
+        result,
         solution,
-        fit_facts(file, samples, fitted_log, names_to_fit),
+        ripple_facts | fit_facts(file, samples, fitted_log, names_to_fit),
         drawn_pictures,
-        notes=notes,
+        notes=[*notes, *ripple_notes],
         confidence_intervals=intervals,
         doubt=next((doubt for doubt in doubts if doubt), None),
     )
@@ -441,6 +453,7 @@ def fit_facts(
     facts = {
         name: (float(value), _LOAD_UNITS[name], _LOAD_TEXTS[name])
         for name, value in zip(terms.unknown_names, fitted_log.linear_unknowns, strict=True)
+        if name in _LOAD_UNITS
     }
     if samples.has_sensor and "inertia" in facts:
         rotor = facts.pop("inertia")[0] / ratio**2

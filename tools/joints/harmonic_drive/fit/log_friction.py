@@ -56,6 +56,7 @@ class LinearTerms:
                     "gravity_cos": swung * np.cos(angle) / ratio,
                     "gravity_sin": swung * np.sin(angle) / ratio,
                 }
+        columns |= {f"ripple_{number}": column for number, column in enumerate(samples.ripple_terms.T.copy())}
         matrix = np.stack([*columns.values()], axis=1) if columns else np.zeros((samples.dq.size, 0))
         known = np.where(measured, measured_load, 0.0) / ratio
         return cls(matrix, known, tuple(columns))

@@ -42,6 +42,9 @@ class Samples:
     q, dq, ddq     : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
     window_speeds  : (n, FILTER_NODES) [rad/s] of the joint, within the window of the filter
     window_weights : (n, FILTER_NODES) [1] of the filter at these speeds
+    window_angles  : (n, FILTER_NODES) [rad] of the motor at these speeds; NaN if unknown
+    ripple_terms   : (n, 2 k) [1] filtered sense of rotation times sine and cosine of k harmonics of the motor
+                     angle; k = 0 until friction ripple is found
     motor_torque   : [N.m] of the motor
     gravity_torque : [N.m] torque at the joint that balances gravity
     temperature    : [K]
@@ -58,6 +61,8 @@ class Samples:
     ddq: Array
     window_speeds: Array
     window_weights: Array
+    window_angles: Array
+    ripple_terms: Array
     motor_torque: Array
     gravity_torque: Array
     temperature: Array
@@ -92,6 +97,8 @@ def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Sampl
         ddq=np.zeros(torque.size),
         window_speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODES, axis=1),
         window_weights=np.repeat(np.eye(1, FILTER_NODES), torque.size, axis=0),
+        window_angles=np.repeat(columns_by_name.get("q_motor", none)[:, None], FILTER_NODES, axis=1),
+        ripple_terms=np.zeros((torque.size, 0)),
         motor_torque=torque,
         gravity_torque=columns_by_name.get("gravity", none),
         temperature=columns_by_name.get("temperature", none),
@@ -129,19 +136,24 @@ def dynamic_samples(
     without_dq = "dq" not in columns_by_name
     dq = filter_values(columns_by_name["q"], time_step, 1) if without_dq else filter_column("dq")
     nodes, weights = _filter_nodes(window_size(time_step))
+    window = np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)
+    joint_angle, motor_angle = filter_column("q"), filter_column("q_motor")
+    rotation = motor_angle if "q_motor" in columns_by_name else drive.ratio * joint_angle
     return Samples(
         time=time,
-        q=filter_column("q"),
+        q=joint_angle,
         dq=dq,
         ddq=filter_values(columns_by_name["q"], time_step, 2)
         if without_dq
         else filter_values(columns_by_name["dq"], time_step, 1),
-        window_speeds=dq[np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)],
+        window_speeds=dq[window],
         window_weights=np.repeat(weights[None, :], time.size, axis=0),
+        window_angles=rotation[window],
+        ripple_terms=np.zeros((time.size, 0)),
         motor_torque=filter_column("tau"),
         gravity_torque=filter_column("gravity"),
         temperature=columns_by_name.get("temperature", none),
-        motor_angle=filter_column("q_motor"),
+        motor_angle=motor_angle,
         sensor_torque=filter_column("link_torque"),
         is_held_out=time > time[0] + 0.7 * (time[-1] - time[0]),
         is_dynamic=np.ones(time.size, dtype=bool),
@@ -261,24 +273,28 @@ class MeasuredLog:
     has_motor_torque: bool
 
 
-def read_log(
-    path: Path,
-    renamed_columns: Mapping[str, tuple[str, str | None]],
-    torque_constant: float | None,
-    drive: Drive,
-    torque_at: str = "motor",
-) -> MeasuredLog:
-    """Read a log.
+def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]) -> columns.Columns:
+    """Read the columns of a log.
 
     renamed_columns : {column: (heading, unit or None)} for other headings
+
+    Raises ValueError with a one-line message that begins with the path.
+    """
+    return columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, renamed_columns)
+
+
+def make_log(
+    table: columns.Columns, torque_constant: float | None, drive: Drive, torque_at: str = "motor"
+) -> MeasuredLog:
+    """Make the samples of a log from its columns.
+
     torque_constant : motor torque over motor current [N.m/A]
     drive           : for plausibility checks of speed and torque
     torque_at       : place of the torque in the column tau, "motor" or "joint"
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    table = columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, renamed_columns)
-    have = dict(table.columns)
+    path, have = table.path, dict(table.columns)
     if torque_at == "joint" and "tau" in have:
         if "link_torque" in have:
             raise ValueError(
