@@ -120,6 +120,15 @@ def test_noise_is_no_bearing():
     assert noisy.slip_force == pytest.approx(SLIP_FORCE, rel=0.02)
 
 
+@pytest.mark.parametrize("samples", [60, 400, 4000])
+def test_noise_on_a_loop_that_sticks_is_no_bearing(samples):
+    rng = np.random.default_rng(1)
+    for noise in (0.003, 0.02, 0.05):
+        motion, force = jenkins_loop(1e-7, samples, cycles=3, slip_force=1e9)
+        force = force + noise * np.ptp(force) * rng.standard_normal(force.size)
+        assert cut(motion, force).find_bearing() is None
+
+
 def test_a_plausible_slip_force_leaves_the_displacement_alone(tmp_path, capsys):
     """Displacements in mm under a heading in m: the plateau shows that the force is right."""
     motion, force = jenkins_loop(2e-6)

@@ -46,6 +46,8 @@ BEARING_INTERVALS = 12
 MIN_BEARING_RISE, MIN_BEARING_SLOPE_RATIO = 0.2, 3.0
 """Rise of the force after the softest part over that of the branch [1], and stiffness there over that of the
 softest part [1], from which a joint bears after slip."""
+MIN_BEARING_NOISE = 8.0
+"""Rise of the stiffness over its standard deviation by noise [1], from which a joint bears after slip."""
 MIN_RISING_SAMPLES = 2
 """Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
 _GRID_POINTS = 200
@@ -184,19 +186,24 @@ class Loops:
         has slipped through a clearance.
         """
         for k in range(self.start_motion.size):
-            distance, change = (np.append(0.0, x) for x in self.branch_curve(k))
-            if distance.size <= BEARING_INTERVALS:
+            distance, change = self.branch_curve(k)
+            part = distance / np.max(distance) * BEARING_INTERVALS
+            part = np.clip(part.astype(np.int64), 0, BEARING_INTERVALS - 1)
+            counts = np.bincount(part, minlength=BEARING_INTERVALS)
+            if not np.all(counts):
                 continue
-            grid = np.linspace(0.0, np.max(distance), BEARING_INTERVALS + 1)
-            slopes = np.diff(np.interp(grid, *sort_points(distance, change))) / grid[1]
+            x, y = (np.bincount(part, values) / counts for values in (distance, change))
+            slopes = np.diff(y) / np.diff(x)
             softest = int(np.argmin(slopes))
-            later_rise, later_slope = (f(slopes[softest:]) for f in (np.sum, np.max))
+            later = softest + int(np.argmax(slopes[softest:]))
+            noise = noise_deviation(change) * np.sqrt(2.0 / np.min(counts)) / np.min(np.diff(x))
             if (
-                later_rise > MIN_BEARING_RISE * np.sum(slopes)
-                and later_slope > MIN_BEARING_SLOPE_RATIO * slopes[softest]
+                y[-1] - y[softest + 1] > MIN_BEARING_RISE * y[-1]
+                and slopes[later] > MIN_BEARING_SLOPE_RATIO * slopes[softest]
+                and slopes[later] - slopes[softest] > MIN_BEARING_NOISE * noise
             ):
-                soft = slopes < slopes[softest] + (later_slope - slopes[softest]) / MIN_BEARING_SLOPE_RATIO
-                return float(np.sum(soft) * grid[1]), float(np.sum(slopes[: softest + 1]) * grid[1])
+                limit = slopes[softest] + (slopes[later] - slopes[softest]) / MIN_BEARING_SLOPE_RATIO
+                return float(np.sum(np.diff(x)[slopes < limit])), float(y[softest + 1])
         return None
 
     def branch_curve(self, branch_number: int) -> tuple[Array, Array]:
@@ -462,9 +469,10 @@ def _check_work(
     area, size = float(np.mean([loop.area for loop in loops])), max(loop.motion_range for loop in loops)
     rise = float(np.mean([loop.mean_rise for loop in loops]))
     slope = float(np.ptp(force) / np.ptp(motion))
-    deviation = (
-        np.hypot(noise_deviation(force), slope * noise_deviation(motion)) * size / np.sqrt(0.5 * motion.size)
-    )
+    # the area between two branches is integrated over at most _GRID_POINTS of their samples
+    samples = min(motion.size / len(branches), _GRID_POINTS) * len(loops)
+    noise = np.hypot(noise_deviation(force), slope * noise_deviation(motion))
+    deviation = noise * size * np.sqrt(2.0 / samples)
     if rise < -abs(area) / size:
         raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
     if area < -max(MAX_CREATED_ENERGY * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
