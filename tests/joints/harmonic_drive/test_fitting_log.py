@@ -423,6 +423,15 @@ def test_a_doubtful_fit_is_written_by_force_only(tmp_path, capsys, names, option
     assert out.exists()
 
 
+@pytest.mark.parametrize(("ratio", "K1"), [(100.0, 67e3), (101.0, 67e3), (50.0, 54e3)])
+def test_a_stated_ratio_selects_the_row_of_the_catalogue(tmp_path, ratio, K1):
+    path = save_log(tmp_path / "log.csv", joint_columns(), "time", "q", "dq", "link_torque")
+    found = log.fit([path], torque_at="joint", drive="CSG-32-100", ratio=ratio)
+    assert (found.parameters.values.ratio, found.parameters.values.K1) == (ratio, K1)
+    with pytest.raises(ValueError, match="ratio = 70 is not in the catalogue for CSG-32"):
+        log.fit([path], torque_at="joint", drive="CSG-32-100", ratio=70.0)
+
+
 def test_german_headings(tmp_path, capsys):
     log_columns = sensor_log()
     path = save_log(tmp_path / "log.csv", log_columns, "time", "q", "dq", "i")

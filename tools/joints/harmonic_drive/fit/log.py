@@ -19,6 +19,7 @@ from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
 from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution
 from ....inputs.fitting.outcome import Facts, FitResult, Picture, fitted_parameters, undetermined_names
+from ..catalogue import find_drive
 from ..new import NEW_JOINT_COMMAND
 from . import hysteresis
 from .drive import resize_drive
@@ -389,10 +390,7 @@ def _start_parameters(
     if start_parameters is not None:
         file = start_parameters
     elif drive_name is not None:
-        options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {
-            "catalogue": drive_name
-        }
-        file = NEW_JOINT_COMMAND.make_joint(options).file
+        file = _catalogue_drive(drive_name, ratio)
     else:
         assert rated_torque is not None
         if ratio is None:
@@ -403,6 +401,18 @@ def _start_parameters(
         max_torque_ratio = default.values.max_table_torque / default.values.rated_torque
         file = resize_drive(default, rated_torque, max_torque_ratio, "user", "stated with the log")
     return file if ratio is None else file.with_values({"ratio": ratio}, "user", "stated")
+
+
+def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
+    """Parameters of a drive of the catalogue; a stated ratio selects the row of this ratio.
+
+    A ratio that is larger by 1 than that of the row means that the flexspline is fixed.
+    """
+    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": drive_name}
+    if ratio is not None:
+        is_flexspline_fixed = abs(ratio) == find_drive(drive_name).numbers["ratio"].value + 1.0
+        options |= {"fixed": "flexspline"} if is_flexspline_fixed else {"ratio": f"{abs(ratio):g}"}
+    return NEW_JOINT_COMMAND.make_joint(options).file
 
 
 def _check_speeds(file_label: str, samples: Samples) -> None:
