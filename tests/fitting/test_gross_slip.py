@@ -42,6 +42,7 @@ def test_friction_of_loops_in_gross_slip(name):
     found = loop.fit(DATA / name, load_parameter_file(JOINT), preload=PRELOAD)
     assert found.facts["friction_limit"][0] == pytest.approx(SLIP_FORCE, rel=0.02)
     assert found.parameters.values.mu == pytest.approx(0.153, rel=0.02)
+    assert found.facts["shear_stiffness"][0] == pytest.approx(STIFFNESS, rel=0.01)
     assert found.rejection_reason() is None
 
 
@@ -58,7 +59,7 @@ def test_loops_without_samples_in_the_reversal_do_not_determine_the_stiffness(tm
 
 
 def test_stiffness_after_reversals_is_no_secant_of_a_slipped_loop():
-    for amplitude, samples in ((2e-7, 400), (2e-6, 400), (2e-6, 4000)):
+    for amplitude, samples in ((2e-7, 400), (2e-6, 800), (2e-6, 4000)):
         found = cut(*jenkins_loop(amplitude, samples))
         assert found.is_stiffness_resolved
         assert found.rest_stiffness == pytest.approx(STIFFNESS, rel=0.1)

@@ -48,7 +48,7 @@ MIN_BEARING_RISE, MIN_BEARING_SLOPE_RATIO = 0.2, 3.0
 softest part [1], from which a joint bears after slip."""
 MIN_BEARING_NOISE = 8.0
 """Rise of the stiffness over its standard deviation by noise [1], from which a joint bears after slip."""
-MIN_RISING_SAMPLES = 2
+MIN_RISING_SAMPLES = 5
 """Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
 _GRID_POINTS = 200
 """Points of the integration grid for the area between two branches."""
@@ -122,10 +122,8 @@ class Loops:
             rising = int(np.argmax(change >= RISE_FRACTION * np.max(change)))
             if (rising >= MIN_RISING_SAMPLES) is not is_resolved:
                 continue
-            if rising >= MIN_BRANCH_SAMPLES:
+            if is_resolved:
                 slopes.append(float(np.polyfit(distance[:rising], change[:rising], 2)[1]))
-            elif rising >= MIN_RISING_SAMPLES:
-                slopes.append(float(np.polyfit(distance[:rising], change[:rising], 1)[0]))
             else:
                 slopes.append(float(change[rising] / (distance[rising] + self.start_motion_deviation[k])))
         return slopes

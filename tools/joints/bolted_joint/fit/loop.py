@@ -270,8 +270,8 @@ def fit(
             _, *level_names = names
             names = names[:1]
             notes.append(
-                f"the loops do not determine {', '.join(level_names)}, which keep the values of {file.name}: "
-                "all of the interface slips within two samples after each reversal; the stiffness after a "
+                f"the loops do not determine {', '.join(level_names)}, values of {file.name} are kept: "
+                "all of the interface slips within few samples after each reversal; the stiffness after a "
                 f"reversal is at least {measured_rest:.3g} N/m"
             )
     if series_stiffness is not None and SERIES_STIFFNESS not in names and series_stiffness <= measured_rest:
