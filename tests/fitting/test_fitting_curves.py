@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from time import process_time
 
 import numpy as np
 import pytest
@@ -409,3 +410,15 @@ def test_another_joints_file(loops, tmp_path, capsys):
     assert "expected a parameter file of a 'harmonic_drive'" in refused_line(
         capsys, "fit", "torque-angle", loops, "--params", path
     )
+
+
+def test_the_mid_line_of_200_000_rows_takes_seconds():
+    """The friction torque had one knot for every 20 samples, in a dense matrix of 3 GB."""
+    rng, phase = np.random.default_rng(0), np.linspace(0.0, 10.0 * np.pi, 200_000)
+    torque, friction_torque = 25.0 * np.sin(phase), 0.3
+    angle = (torque - friction_torque * np.sign(np.cos(phase))) / 8e3 + 1e-6 * rng.standard_normal(phase.size)
+    begin = process_time()
+    line = find_backbone(torque, angle)
+    assert process_time() - begin < 5.0
+    inner = np.abs(line.torque) < 20.0
+    np.testing.assert_allclose(line.angle[inner], line.torque[inner] / 8e3, rtol=0.0, atol=1e-6)

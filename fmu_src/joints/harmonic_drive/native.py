@@ -60,7 +60,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         *motion, temperature = inputs
         argument, brake = spring.wind_up(drive, motion, error), friction.sticking_stiffness(drive)
         tau = spring.transmitted_torque(drive, motion, state)
-        turn = [*motion[:2], *friction.friction_limits(drive, motion[1], tau, temperature)]
+        turn = [*motion[:2], *friction.friction_limits(drive, motion[1], tau, temperature, motion[0])]
         out = spring.motion_outputs(drive, motion, temperature, state, dry)
     doc = "inputs, kinematic error -> argument of the curve"
     function_graph.add_with_derivative("curve_argument", doc, [*inputs, error], [argument])

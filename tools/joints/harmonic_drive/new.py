@@ -12,7 +12,7 @@ from ...inputs.catalogue import SourcedNumber
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 from ...inputs.drawing.quantities import parse_value
 from ...inputs.drawing.reading import parse_temperature
-from .catalogue import STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive
+from .catalogue import STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive, find_ratio
 from .friction import (
     CATALOGUE_SPEED,
     FRICTION_COLUMNS,
@@ -41,8 +41,10 @@ PEAK_TORQUE_RATIO = 4.0
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
-    source = options["source"] or options["catalogue"] or "catalogue"
-    printed = dict(find_drive(options["catalogue"]).numbers) if options["catalogue"] else {}
+    source, printed = options["source"] or options["catalogue"] or "catalogue", {}
+    if options["catalogue"]:
+        drive = find_drive(options["catalogue"])
+        printed = dict(drive.numbers)
     for name in _OPTION_COLUMNS:
         if options[name] is not None:
             value = parse_value(
@@ -50,6 +52,9 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
             )
             if value == 0.0:
                 raise ValueError("--ratio = 0 is outside (-inf, 0) and (0, inf)")
+            if name == "ratio" and options["catalogue"] and abs(value) != drive.numbers["ratio"].value:
+                drive = find_ratio(drive, abs(value))
+                source, printed = options["source"] or drive.name, dict(drive.numbers)
             printed[name] = _stated_number(options, value)
     if options["hysteresis"] is not None:
         printed["hysteresis_loss"] = _stated_number(options, parse_value("hysteresis", options["hysteresis"]))
@@ -289,7 +294,12 @@ NEW_JOINT_COMMAND = NewJointCommand(
     example="--catalogue CSG-17-100",
     options=(
         Option("catalogue", "name of the drive, see jointfmu catalogue", "NAME"),
-        Option("ratio", "speed ratio as in catalogues [1], above 0; negative: used with its sign", "R"),
+        Option(
+            "ratio",
+            "speed ratio as in catalogues [1], above 0; negative: used with its sign; with --catalogue it "
+            "selects the row of this ratio",
+            "R",
+        ),
         Option(
             "fixed",
             "part that is fixed; it decides the sign of the ratio (circular-spline: negative)",

@@ -3,7 +3,7 @@
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity.units import LUBRICANT_TEMPERATURES
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
-from .drive import KINEMATIC_ERROR_HARMONICS
+from .drive import FRICTION_HARMONICS, KINEMATIC_ERROR_HARMONICS
 from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
@@ -38,6 +38,7 @@ _FRICTION_PARAMETERS = (
     "friction_viscous",
     "load_loss",
     "load_loss_back",
+    *(f"friction_{n}{what}" for n in FRICTION_HARMONICS for what in ("", "_phase")),
 )
 _TEMPERATURE_PARAMETERS = (
     "temperature_factor",
