@@ -266,7 +266,7 @@ def test_the_default_coefficient_is_that_of_a_light_machine_oil():
 def stored(law, memory, out):
     """Energy (n) [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
     parts = STATES.split(memory)
-    pairs = ((parts["force"], law.hysteresis.stiffness), (parts["brake"], law.friction.stiffness))
+    pairs = ((parts["force"], law.hysteresis.stiffness), (parts["friction_torque"], law.friction.stiffness))
     sliders = sum(np.sum(force**2 / (2.0 * K), axis=-1) for force, K in pairs)
     return law.curve.energy(np.abs(out["phi_rel"])) + sliders
 

@@ -207,7 +207,7 @@ class CellwiseJoint:
         softening = (tangent - secant) / size**2
         preload = np.full(displacements.size - 3 * n, float(working_preload(joint, self.preload)))
         bolts, elongation = spring.bolts, displacements[3 * n :]
-        bolt = bolts.tangent_stiffness(preload, elongation)
+        bolt = bolts.active_stiffness(preload, elongation)
         pull = bolts.stiffness * (elongation + bolts.head_gap(preload, elongation))
         force = np.concatenate(
             [-area * (p - self._preload_pressure), area * secant * u, area * secant * v, pull]

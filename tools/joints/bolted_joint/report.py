@@ -287,9 +287,9 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
         "joint is that of the FMU. The last three columns are shares of its compliance, by stored energy. "
         "Members are a spring in series with interface and bolts; interface alone and bolts alone are "
         f"between rigid sides. The interface has {share[2]:.1%} of the compliance along z and at most "
-        f"{largest:.1%} in any direction: {effect}. The bolts carry {compliances.load_factor:.3f} of a force "
-        "along z (load factor n Phi_K of VDI 2230), with the other motions free; where the interface is "
-        "open they carry the full force, as the plot shows."
+        f"{largest:.1%} in any direction: {effect}. The bolts carry {compliances.joint_load_factor:.3f} of a "
+        "force along z (load factor n Phi_K of VDI 2230), with the other motions free; where the interface "
+        "is open they carry the full force, as the plot shows."
     )
 
 

@@ -36,7 +36,9 @@ from .hysteresis import slider_shares
 
 FRICTION_SLIDERS = 8
 """Number of sliders: friction from the virgin state is then within 1 % of M of Dahl's curve."""
-HISTORY_LAYOUT = HistoryLayout({"brake": (FRICTION_SLIDERS,), "angle": (), "limit": (2,), "begun": ()})
+HISTORY_LAYOUT = HistoryLayout(
+    {"friction_torque": (FRICTION_SLIDERS,), "angle": (), "limit": (2,), "begun": ()}
+)
 """History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
 _REMAINING_FRICTION_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
 _SLIDER_STIFFNESS_AND_LIMIT_SHARES = slider_shares(1.0, _REMAINING_FRICTION_SHARES)
@@ -143,7 +145,7 @@ class FrictionSliders(Sliders):
         if not self.is_active:
             none = np.zeros(now.shape[:-1])
             return SliderUpdate(np.zeros((*none.shape, self.stiffness.size)), none, none)
-        begun, force = start["begun"] > 0.0, start["brake"]
+        begun, force = start["begun"] > 0.0, start["friction_torque"]
         way = np.where(begun, np.asarray(phi1) - start["angle"], PRIOR_ROTATION_TIME * np.asarray(w1))
         negative = force + self.stiffness * way[..., None] < 0.0
         before, after = (
@@ -162,5 +164,5 @@ class FrictionSliders(Sliders):
             return np.zeros((*shape, HISTORY_LAYOUT.size))
         limit = np.stack(np.broadcast_arrays(*end_friction_limits), axis=-1)
         return HISTORY_LAYOUT.join(
-            {"brake": slider_update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
+            {"friction_torque": slider_update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
         )

@@ -8,7 +8,7 @@ from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 
-_STIFFNESS_OUTPUTS = (
+_COMMON_OUTPUTS = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi of the midline at the present wind-up", 5e3),
     Variable("K_TS", "N.m/rad", "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
     Variable("K_FTS", "N.m/rad", "stiffness of circular spline and flexspline", 2e4),
@@ -93,7 +93,7 @@ MODELS = (
                 "output torque: midline T(phi_rel) + hysteresis friction T_h + d der(phi_rel)",
                 5.0,
             ),
-            *_STIFFNESS_OUTPUTS,
+            *_COMMON_OUTPUTS,
             Variable(
                 "tau_friction",
                 "N.m",
@@ -149,7 +149,7 @@ MODELS = (
         inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
         outputs=(
             Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3),
-            *_STIFFNESS_OUTPUTS,
+            *_COMMON_OUTPUTS,
         ),
         evaluate=lambda s, v: s.evaluate_torque(v["tau"]),
         initial_history=lambda s: s.initial_history(),

@@ -288,7 +288,7 @@ def _load_facts(compliances: Compliances, remaining_preload: float, attachment: 
     free = f"{where}, other motions free"
     return {
         "joint_load_factor": (
-            compliances.load_factor,
+            compliances.joint_load_factor,
             "1",
             f"n Phi_K: share that all bolts carry of a {free}",
         ),
