@@ -14,8 +14,8 @@ from jointfmu_tools.common.shown import list_entries
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.inputs.drawing import vdi2230
 from jointfmu_tools.inputs.drawing.tables import read_property_classes, read_threads
+from jointfmu_tools.joints.bolted_joint.gross_slip import friction_results
 from jointfmu_tools.joints.bolted_joint.new import layout, plate_finite_elements
-from jointfmu_tools.joints.bolted_joint.report import friction_results
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 
 from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA

@@ -1,8 +1,6 @@
 """Figures in the report of a bolted joint: pictures, stiffness shares, bolt forces, effect of friction."""
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
@@ -12,8 +10,6 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
     ElasticBodies,
     slip_force,
-    superposed_pressure,
-    with_rigid_members,
     working_preload,
 )
 from jointfmu.joints.bolted_joint.outputs import bolt_force_name
@@ -25,6 +21,7 @@ from ...common.shown import format_quantity
 from ...pages.report.figure import ComparisonRow, Figure
 from ...pages.report.load_history import LoadHistory
 from .field import PlaneLayout
+from .gross_slip import friction_results
 from .picture import draw_plan, draw_section
 from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces
 
@@ -32,8 +29,6 @@ PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-REPORTED_SHEAR_RATIO = 0.1
-"""Shear force over the gross-slip force [1] at which the loss factor is reported."""
 
 
 def joint_figures(load_history: LoadHistory) -> list[Figure]:
@@ -84,63 +79,6 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
         "is that of the interface between rigid sides, under the same shear force."
     )
     return [Figure("Effect of the friction coefficient", text, table=table)]
-
-
-class FrictionResult(NamedTuple):
-    """Gross-slip force and loss factor for one friction coefficient.
-
-    mu          : friction coefficient [1]
-    slip_force  : shear force [N] of gross slip
-    loss_factor : [1] of a loop with a given amplitude of the shear force
-    """
-
-    mu: float
-    slip_force: float
-    loss_factor: float
-
-
-def friction_results(parameter_file: ParameterFile, preload: float) -> tuple[float, list[FrictionResult]]:
-    """Gross-slip force and loss factor for mu of the file and both ends of its range, at a preload [N].
-
-    Returns the amplitude [N] of the shear force, then one FrictionResult per mu. The loss factors are those
-    of the interface between rigid sides, all at this amplitude.
-    """
-    joint = with_rigid_members(parameter_file.values)
-    remaining_preload = float(working_preload(joint, preload))
-    shear = REPORTED_SHEAR_RATIO * float(slip_force(joint, remaining_preload))
-    rows = []
-    for mu in (joint.mu, *parameter_file.ranges.get("mu", ())):
-        other = replace(joint, mu=mu)
-        loss = loss_factor(BoltedJointSpring.for_joint(other), remaining_preload, shear)
-        rows.append(FrictionResult(mu, float(slip_force(other, remaining_preload)), loss))
-    return shear, rows
-
-
-def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear_amplitude: float) -> float:
-    """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
-
-    remaining_preload : [N] of each bolt after embedding; without a moment
-    shear_amplitude   : amplitude [N] of the shear force
-    """
-    joint, shape = spring.joint, spring.patches
-    law, mean = spring.friction_law.foundation(), remaining_preload * joint.n_bolts / joint.A_0
-    approach = spring.curve.inverse(
-        superposed_pressure(shape.preload_pressure_ratio, shape.moment_pressure_ratio, mean, 0.0)
-    )
-    low = 0.0
-    size = (
-        law.friction_coefficient
-        / law.stiffness_ratio
-        * float(np.max(approach - spring.curve.displacement[0]))
-    )
-    for _ in range(60):
-        middle = 0.5 * (low + size)
-        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.area_share)
-        low, size = (middle, size) if carried < shear_amplitude else (low, middle)
-    lost, stored = (
-        float(shape.area_share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
-    )
-    return lost / (2.0 * np.pi * stored)
 
 
 def _working_point(load_history: LoadHistory) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from ....inputs.drawing import faces, vdi2230
 from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
 from ....inputs.drawing.reading import parse_number, parse_numbers
 from ....inputs.drawing.tables import Thread, property_class_strength, thread_source
-from ..report import friction_results
+from ..gross_slip import friction_results
 from . import layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
 
