@@ -10,7 +10,7 @@ import pytest
 from conftest import refused_line
 from joint_cases import JOINTS
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.report import loss_factor
+from jointfmu_tools.joints.bolted_joint.gross_slip import loss_factor
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 from scipy.integrate import quad

@@ -64,8 +64,8 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         curve_argument = spring.wind_up(drive, motion, state.phi_error)
         stick_stiffness = friction.sticking_stiffness(drive)
         tau = spring.transmitted_torque(drive, motion, state)
-        limits = friction.friction_limits(drive, motion[1], tau, temperature, motion[0])
-        friction_arguments = [*motion[:2], *limits]
+        torque_limits = friction.friction_limits(drive, motion[1], tau, temperature, motion[0])
+        friction_arguments = [*motion[:2], *torque_limits]
         out = spring.motion_outputs(drive, motion, temperature, state, dry_friction_torque)
     doc = "inputs, kinematic error -> argument of the curve"
     function_graph.add_with_derivative("curve_argument", doc, [*inputs, state.phi_error], [curve_argument])

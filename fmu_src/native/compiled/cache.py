@@ -32,6 +32,11 @@ def compiled_model_folder() -> Path:
     return cache_folder() / "parts"
 
 
+def kernel_result_folder() -> Path:
+    """Folder of the results that the kernel computed."""
+    return cache_folder() / "results"
+
+
 def compiler_cache_folder() -> Path:
     """Cache folder of the compiler: ZIG_GLOBAL_CACHE_DIR, or `zig` in the cache folder."""
     path = os.environ.get(COMPILER_CACHE_ENVIRONMENT_VARIABLE)
@@ -95,6 +100,6 @@ def clear_cache() -> None:
             raise ValueError(f"{folder}: cannot be removed ({error.strerror})") from None
 
 
-def _cache_subfolders() -> tuple[Path, Path]:
-    """Folders that jointfmu fills: compiled models, and the compiler's default cache."""
-    return compiled_model_folder(), cache_folder() / "zig"
+def _cache_subfolders() -> tuple[Path, ...]:
+    """Folders that jointfmu fills: compiled models, results of the kernel, the compiler's default cache."""
+    return compiled_model_folder(), kernel_result_folder(), cache_folder() / "zig"

@@ -20,8 +20,9 @@ from jointfmu_tools.inputs.drawing.tables import (
     read_threads,
     read_tightening_methods,
 )
+from jointfmu_tools.joints.bolted_joint.gross_slip import friction_results, preload_results
 from jointfmu_tools.joints.bolted_joint.new import TIGHTENING_METHODS, layout, plate_finite_elements
-from jointfmu_tools.joints.bolted_joint.report import friction_results, preload_figures, preload_results
+from jointfmu_tools.joints.bolted_joint.report import preload_figures
 from jointfmu_tools.studies.uncertainty.problem import resolve_interval, state_problem
 
 import jointfmu

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...contact.interface import solve_largest_spot
+from ...files.results import compute_once
 from ...mechanics.curve import Curve, tabulate_approach
 from ...mechanics.footprint.bolts import PressureSource, pressure_distribution
 from ...mechanics.footprint.distribution import MAX_PATCHES, FrictionPatches, NodalField, PressureDistribution
@@ -50,14 +51,24 @@ ZERO_MOTION = (0.0, 0.0, 0.0)
 @lru_cache(maxsize=8)
 def contact_points(pressure_source: PressureSource) -> PressureDistribution:
     """Points that carry the normal force of a joint."""
-    return reduce_points(pressure_distribution(pressure_source), MAX_POINTS)
+    nodes = pressure_distribution(pressure_source)
+    rows = compute_once(
+        f"points {MAX_POINTS}", nodes.rows, lambda: np.stack(reduce_points(nodes, MAX_POINTS).rows)
+    )
+    return PressureDistribution.from_rows(rows)
 
 
 @lru_cache(maxsize=8)
 def find_friction_patches(pressure_source: PressureSource) -> FrictionPatches:
     """Patches that carry the friction of a joint."""
     stated = pressure_source.friction_patches() if isinstance(pressure_source, NodalField) else None
-    return stated or reduce_patches(pressure_distribution(pressure_source), MAX_PATCHES)
+    if stated:
+        return stated
+    nodes = pressure_distribution(pressure_source)
+    rows = compute_once(
+        f"patches {MAX_PATCHES}", nodes.rows, lambda: np.stack(reduce_patches(nodes, MAX_PATCHES).rows)
+    )
+    return FrictionPatches.from_rows(rows)
 
 
 class JointInputs(NamedTuple):

@@ -41,7 +41,7 @@ from ....inputs.fitting.outcome import (
     fitted_parameters,
     make_unknowns,
 )
-from ....run.engine import TrialJoint
+from ....run.engine import VariableJoint
 
 SERIES_STIFFNESS = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
@@ -67,7 +67,7 @@ START_VALUES: Mapping[str, tuple[float, ...]] = {
 """{parameter: further start values of the search}, in addition to the values of the start file."""
 
 
-COMPLETE_JOINT = TrialJoint(MODELS[0])
+COMPLETE_JOINT = VariableJoint(MODELS[0])
 """The joint with elastic sides at the parameters of a trial."""
 
 

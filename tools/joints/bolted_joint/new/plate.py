@@ -14,7 +14,7 @@ from ....inputs.drawing import faces, vdi2230
 from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
 from ....inputs.drawing.quantities import parse_quantity, parse_value, parse_values
 from ....inputs.drawing.tables import Thread, thread_source
-from ..report import PRELOAD_ENTRY, friction_results, preload_results
+from ..gross_slip import PRELOAD_ENTRY, friction_results, preload_results
 from . import ATTACHMENTS, layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
 from .tightening import find_preload
