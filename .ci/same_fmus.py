@@ -23,17 +23,21 @@ def runs(fmu, experiments):
     """Run the experiments: {(experiment, interface): {output: values over time}, or an error message}."""
     with unpack_fmu(fmu, model_exchange=True) as (folder, description):
         plans = [
-            ExperimentPlan.create(fmu, folder, one, interface, description)
+            ExperimentPlan.plan_experiment(fmu, folder, one, interface, description)
             for one in experiments
             for interface in _usable_interfaces(one, _offered_interfaces(description))
             if interface
         ]
-        answers = _run_worker("fmpy", [plan.task for plan in plans if plan.task])
+        answers = _run_worker(
+            "fmpy", [plan.experiment_task_fields for plan in plans if plan.experiment_task_fields]
+        )
         found = {}
         for plan in plans:
-            answer = next(answers) if plan.task else {"error": plan.refusal_reason}
+            answer = next(answers) if plan.experiment_task_fields else {"error": plan.refusal_reason}
             rows = [line for line in answer.get("rows", []) if line is not None]
-            outputs = dict(zip(plan.task.get("outputs", []), np.array(rows).T, strict=False))
+            outputs = dict(
+                zip(plan.experiment_task_fields.get("outputs", []), np.array(rows).T, strict=False)
+            )
             found[plan.experiment.name, plan.interface] = answer.get("error") or outputs
     return found
 

@@ -20,7 +20,7 @@ QUICK = 100, 3, 1
 
 def solve_by_brentq(law, pressures):
     """Logarithm of the largest spot, one scalar root for each pressure."""
-    spots = law.spots()
+    spots = law.spot_distribution()
 
     def residual(u, target):
         return float(spots.log_sum_over_spots("load", u)[0]) - target

@@ -175,7 +175,7 @@ def as_compiled(name: str) -> Linked:
     files = pass_through(name)
     units = {flavour: compiler.select_source_files(list(files), flavour[-1]) for flavour in NATIVE}
     made = {f: compiler.compile_libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
-    return Linked(made, generate.read_token(files))
+    return Linked(made, generate.read_instantiation_token(files))
 
 
 def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
@@ -344,7 +344,7 @@ def print_elastic_sides(folder: Path, quick: bool) -> None:
         library = folder / f"{name}.so"
         library.write_bytes(compiler.compile_libraries("BoltedJoint", files, units, [PLATFORM])[PLATFORM])
         model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
-        made[name] = library, generate.read_token(files), len(model.outputs)
+        made[name] = library, generate.read_instantiation_token(files), len(model.outputs)
     host, (round_count, repeats, _) = build_host(folder), QUICK if quick else (ROUNDS, REPEATS, 0)
     rounds: dict[str, list[Times]] = {name: [] for name in made}
     for _ in range(round_count):

@@ -23,7 +23,7 @@ from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
 from jointfmu_tools.pages.report.figure import draw_panels
-from jointfmu_tools.pages.report.systems import RESONANCE_SIZE, resonance_panels
+from jointfmu_tools.pages.report.systems import RESONANCE_FIGURE_SIZE, resonance_panels
 from jointfmu_tools.studies.checks import run_default_ramp
 from jointfmu_tools.studies.published import validation
 from jointfmu_tools.systems import ringing, ssp
@@ -61,7 +61,8 @@ def main() -> None:
     result = run_default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
     panels = job.stiffness_panels(result, validation.validate())
     write_text(
-        IMAGES / "harmonic_drive_ramp.svg", svg(lambda canvas: draw_panels(canvas, panels), RESONANCE_SIZE)
+        IMAGES / "harmonic_drive_ramp.svg",
+        svg(lambda canvas: draw_panels(canvas, panels), RESONANCE_FIGURE_SIZE),
     )
     resonance(IMAGES / "tutorial_resonance.png")
 
@@ -88,14 +89,14 @@ def example(script: Path) -> None:
 def resonance(path: Path) -> None:
     """Draw the plot in which the tutorial ends."""
     row = CatalogueRow(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
-    drive = catalogue.make_line_drive_from_row(
-        row, sourced_numbers=catalogue.source_numbers(row, ratio=100.0)
+    drive = catalogue.make_drive_with_catalogue_law_from_row(
+        row, sourced_numbers=catalogue.make_sourced_numbers(row, ratio=100.0)
     ).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)
         one = ringing.find_vibrating_joint(load_system("robot_joint"))
         points = ringing.simulate_vibrations(one, Path(folder) / "fmi2")
-        with plots.open_figure(path, RESONANCE_SIZE) as canvas:
+        with plots.open_figure(path, RESONANCE_FIGURE_SIZE) as canvas:
             draw_panels(canvas, resonance_panels(points, one, Path(folder) / "fmi2"))
 
 

@@ -30,7 +30,7 @@ def build_fmus(
     variability: str = VARIABILITIES[0],
     alias: str | None = None,
     pool: Executor | None = None,
-    force: bool = False,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu` and return their paths.
 
@@ -63,7 +63,7 @@ def build_fmus(
             MODELS[name].with_parameters(parameters.joint, parameters.values)
     titles = [alias or name for name in fmu_names]
     check_outputs(
-        (output_folder / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE_FILE, force
+        (output_folder / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE_FILE, overwrite
     )
     options = {"variability": variability, "alias": alias or ""}
     build_one = partial(_build_flavours, flavours, parameters, output_folder, options)

@@ -9,7 +9,7 @@ import jinja2
 from markupsafe import Markup
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.contact.laws.roughness import FEW_SPOTS_FACTOR
+from jointfmu.contact.laws.roughness import FEW_SPOTS_STIFFNESS_FACTOR
 from jointfmu.parameters import ParameterFile
 
 PAGE_FOLDER = Path(__file__).with_name("native")
@@ -66,4 +66,8 @@ def _format_number(value: float | str) -> str:
 
 def law_variables(parameters: ParameterFile) -> dict[str, object]:
     """Template variables of the contact law: its name, whether it is `roughness`, and FEW_SPOTS_FACTOR."""
-    return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS_FACTOR}
+    return {
+        "law": parameters.law,
+        "rough": parameters.law == ROUGHNESS_LAW,
+        "few_spots": FEW_SPOTS_STIFFNESS_FACTOR,
+    }

@@ -44,7 +44,7 @@ def list_variables(model: Model, parameters: ParameterFile) -> list[ListedVariab
         for i, v in enumerate(group):
             attributes = _unit_attributes(v.unit, v.nominal) | _bound_attributes(v.interval)
             state = causality == "output" and i < model.state_count
-            rate = causality == "output" and model.is_rate(i)
+            rate = causality == "output" and model.is_state_derivative(i)
             rate_of = len(variables) + 1 - model.state_count // 2 if rate else None
             attributes["nominal"] = repr(v.nominal)
             start = parameters.start_value(v.name) if causality == "input" else 0.0 if state else None
@@ -104,7 +104,7 @@ def make_model_structure(model: Model, variability: str, fmi_version: str = "2")
     outputs, parameters = [v.name for v in model.outputs], list(model.parameter_fields())
     names = [*(v.name for v in model.inputs), *outputs, *parameters]
     index = {name: reference for reference, name in enumerate(names, start=1)}
-    rates = [name for i, name in enumerate(outputs) if model.is_rate(i)]
+    rates = [name for i, name in enumerate(outputs) if model.is_state_derivative(i)]
     dependency_kinds = {"constant": "constant", "parameters": variability}
     initial_kinds = {"constant": "constant"}  # parameters can still change: only a number is a known factor
     root = Element("ModelStructure")

@@ -20,7 +20,7 @@ from scipy.optimize import least_squares
 from skfem import MeshHex, MeshQuad
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.law import BoltedJoint
+from jointfmu.joints.bolted_joint.law import BoltedJointParameters
 from jointfmu.parameters import load_default
 from jointfmu.progress import track_progress
 
@@ -78,23 +78,23 @@ class Box:
             bolts,
         )
 
-    def pressure(self, joint: BoltedJoint, force: float) -> Array:
+    def pressure(self, joint: BoltedJointParameters, force: float) -> Array:
         """Pressure (q) [Pa] around bolts with a force [N] each, with the decay of the joint."""
         apart = self.interface.quadrature_position[:, None, :] - self.bolts
         each = joint.pattern.pressure_decay(np.hypot(*np.moveaxis(apart, -1, 0)))
         return np.asarray(np.sum(force * each / (self.interface.quadrature_area @ each), axis=1))
 
-    def springs(self, joint: BoltedJoint, force: float) -> tuple[Array, Array]:
+    def springs(self, joint: BoltedJointParameters, force: float) -> tuple[Array, Array]:
         """Normal and tangential stiffness per area (q) [N/m3]."""
         pressure = np.maximum(self.pressure(joint, force), 1e4)
         normal = np.maximum(stiffness_curve(joint, pressure)[0], 1e3)
         return normal, float(replace(joint, critical_area="continuity").shear_stiffness_ratio()) * normal
 
-    def modes(self, joint: BoltedJoint, force: float) -> NaturalModes:
+    def modes(self, joint: BoltedJointParameters, force: float) -> NaturalModes:
         """Six modes of two such halves."""
         return compute_modes((self.body,), self.interface, *self.springs(joint, force))
 
-    def squares(self, joint: BoltedJoint, force: float, found: NaturalModes) -> Array:
+    def squares(self, joint: BoltedJointParameters, force: float, found: NaturalModes) -> Array:
         """Rayleigh quotients (6) [1/s2] of mode shapes."""
         normal, tangential = self.springs(joint, force)
         rows = [displacement_matrix(self.body, self.interface, axis) for axis in range(3)]
@@ -123,7 +123,9 @@ def _opening(x: Array, y: Array, half: Array) -> NDArray[np.bool_]:
     return np.asarray((np.abs(x) < half[0]) & (np.abs(y) < half[1]))
 
 
-def fit_lengths(joint: BoltedJoint, force: float, start: Array, target: Array) -> tuple[Array, Array]:
+def fit_lengths(
+    joint: BoltedJointParameters, force: float, start: Array, target: Array
+) -> tuple[Array, Array]:
     """Fit lengths [m] from a start; returns lengths and relative errors of the frequencies.
 
     The derivatives come from Rayleigh's quotient.
@@ -153,7 +155,7 @@ def fit_lengths(joint: BoltedJoint, force: float, start: Array, target: Array) -
 
 
 def random_starts(
-    joint: BoltedJoint, force: float, count: int, closed: bool, seed: int, target: Array
+    joint: BoltedJointParameters, force: float, count: int, closed: bool, seed: int, target: Array
 ) -> Iterator[Array]:
     """Random lengths, each the best of SAMPLES draws."""
     rng, size = np.random.default_rng(seed), 7 if closed else 6

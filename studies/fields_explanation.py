@@ -386,7 +386,7 @@ def print_foundation() -> None:
 def set_slider_counts(patches: int, below: int, above: int) -> None:
     """Set the number of patches and slider heights of the joints that are made from now on."""
     joint_module.MAX_PATCHES = patches
-    slider_module.HEIGHTS_BELOW_REFERENCE, slider_module.HEIGHTS_ABOVE_REFERENCE = below, above
+    slider_module.HEIGHTS_BELOW_REFERENCE, slider_module.SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE = below, above
     joint_module.find_friction_patches.cache_clear()
 
 

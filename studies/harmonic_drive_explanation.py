@@ -33,7 +33,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
     make_test_rig,
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
-from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_SPEED
+from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_MOTOR_SPEED
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from oracles.drive_friction import (
     JOINTS,
@@ -127,15 +127,17 @@ def single_drives():
         cells = [
             item.name,
             f"{1e3 * drive.starting_torque():.0f}",
-            f"{1e3 * drive.motor_torque(CATALOGUE_SPEED, 0.0):.0f}",
+            f"{1e3 * drive.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0):.0f}",
         ]
         cells += [f"{back:.3g}", f"{found:.3g}", f"{guess:.3g}"]
         if n["efficiency"].kind == "catalogue":
             other = CatalogueEntry(item.name, {k: v for k, v in n.items() if k != "efficiency"})
             freed = file.with_values(friction_and_ratio(other), "user", "without efficiency")
             free = file.with_values({"load_loss": 0.0}, "user", "guess")
-            values = [n["efficiency"].value, drive.efficiency(CATALOGUE_SPEED, rated)]
-            values += [make_test_rig(MODEL, f).efficiency(CATALOGUE_SPEED, rated) for f in (freed, free)]
+            values = [n["efficiency"].value, drive.efficiency(CATALOGUE_MOTOR_SPEED, rated)]
+            values += [
+                make_test_rig(MODEL, f).efficiency(CATALOGUE_MOTOR_SPEED, rated) for f in (freed, free)
+            ]
             cells += [f"{100.0 * value:.1f}" for value in values]
         else:
             cells += ["-"] * 4
@@ -180,7 +182,7 @@ def over_load():
         drive = test_rig(friction_coulomb=no_load * carried, load_loss=1.0 / full - 1.0 - no_load)
         for share, factor in sorted(factors.items()):
             role = "set by it" if share in (0.5, 1.0) else "predicted"
-            computed = drive.efficiency(CATALOGUE_SPEED, share * 172.0) / full
+            computed = drive.efficiency(CATALOGUE_MOTOR_SPEED, share * 172.0) / full
             rows.append((name, share, f"{factor:.3f}", f"{computed:.3f}", role))
     print_table(("curve", "torque over rated", "efficiency over that at rated torque", "model", ""), rows)
 
@@ -210,7 +212,7 @@ def over_both():
     )
     no_load = (1.0 / factors[0.5] - 1.0) / known[2000.0]
     slope = (1.0 / known[3500.0] - 1.0 / known[500.0]) * carried / (3000.0 * RPM)
-    dry = no_load * carried - slope * CATALOGUE_SPEED
+    dry = no_load * carried - slope * CATALOGUE_MOTOR_SPEED
     loss = 1.0 / known[2000.0] - 1.0 - no_load
     drive = test_rig(friction_coulomb=dry, friction_viscous=slope, load_loss=loss)
     rows = []
@@ -231,7 +233,7 @@ def worked_examples():
         drive = test_rig(
             load_loss=USUAL_LOAD_LOSS, friction_coulomb=(1.0 / full - 1.0 - USUAL_LOAD_LOSS) * 172.0 / 50.0
         )
-        computed = drive.efficiency(CATALOGUE_SPEED, share * 172.0) / full
+        computed = drive.efficiency(CATALOGUE_MOTOR_SPEED, share * 172.0) / full
         rows.append((name, f"{100.0 * full:.1f}", f"{share:.2f}", f"{factor:.2f}", f"{computed:.2f}"))
     head = ("example", "efficiency at rated torque [%]", "torque over rated", "factor", "model, predicted")
     print_table(head, rows)

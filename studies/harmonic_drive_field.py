@@ -229,7 +229,7 @@ def draw_field(options):
     """Draw the pressure at the opening of the cup into --plot FILE."""
     if not options.plot:
         raise SystemExit("picture: name a file with --plot FILE")
-    plots.check_picture(options.plot)
+    plots.check_picture_path(options.plot)
     draw(options.plot)
 
 

@@ -132,7 +132,11 @@ class Bolted:
         rows, self.kept, self.tight = found.force_table.rows, kept, found.preload_contact_force
         self.load = BPoly.from_derivatives(rows[:, 0], rows[:, 1:4])
         self.curve = [self.load, self.load.derivative(), self.load.derivative(2)]
-        self.shear, self.mu, self.heights = found.shear_ratio, spring.joint.mu, found.pair_boundaries
+        self.shear, self.mu, self.heights = (
+            found.shear_stiffness_ratio,
+            spring.joint.mu,
+            found.slider_pair_boundaries,
+        )
         self.K, self.Q = found.slider_properties.T
         stiff = float(self.curve[1](0.0))
         self.reach = np.array([self.mu / self.shear, self.mu / self.shear, 1.0]) * self.tight / stiff

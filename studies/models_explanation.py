@@ -114,7 +114,11 @@ def follow_in_fmu(fmu: Instance, motions: Array, preload: float) -> list[list[fl
     fmu.enter_initialization()
     fmu.set_values({"preload": preload})
     fmu.fmu.exitInitializationMode()
-    inputs, outputs, rows = fmu.group_reals(MOTIONS), fmu.group_reals((*FORCES, "E_loss")), []
+    inputs, outputs, rows = (
+        fmu.group_real_variables(MOTIONS),
+        fmu.group_real_variables((*FORCES, "E_loss")),
+        [],
+    )
     for time, six in enumerate(motions):
         inputs.set_values(*six.tolist())
         fmu.do_step(float(time), 1.0)

@@ -30,7 +30,7 @@ SHAPES = {"isotropic": 1000, "textured": 2048, "profile": 4096}
 
 def weierstrass_mandelbrot(shape, points, D, G, seed):
     """Weierstrass-Mandelbrot surface whose profile (textured: along x) has the dimension D."""
-    waves = synthesis.Waves(size=1e-3, points=points, gamma=1.5)
+    waves = synthesis.Waves(sample_length=1e-3, point_count=points, gamma=1.5)
     if shape == "isotropic":
         return synthesis.synthesize_isotropic(waves, D + 1.0, G, 20, seed)
     if shape == "textured":

@@ -63,7 +63,7 @@ def print_sizes():
             level = p / (GAMMA * stiffness_curve(case.law, np.array([p]))[0][0]) * 1e6
             row(name, f"{p / 1e6:.3g}", f"{level:.2g}", *(f"{h:.2g}" for h in heights))
     zhao = compare.cases()["zhao2018"].law
-    s, u = zhao.spots(), solve_largest_spot(zhao, 1e6)
+    s, u = zhao.spot_distribution(), solve_largest_spot(zhao, 1e6)
     term = replace(s.regime_terms["normal"][0], upper_log_area=np.log(10.0))
     share = float(
         replace(s, regime_terms={"normal": (term,)}).total("normal", u) / s.sum_over_spots("normal", u)

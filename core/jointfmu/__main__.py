@@ -3,5 +3,5 @@
 import sys
 from importlib.metadata import entry_points
 
-(command_line,) = entry_points(group="console_scripts", name="jointfmu")
-sys.exit(command_line.load()())
+(COMMAND_ENTRY_POINT,) = entry_points(group="console_scripts", name="jointfmu")
+sys.exit(COMMAND_ENTRY_POINT.load()())

@@ -27,7 +27,7 @@ from .quantity import (
     build_parameter_set,
     find_problem,
     find_problems,
-    flat_fields,
+    flatten_fields,
     flatten_parameters,
     quantity_field,
     replace_values,
@@ -109,10 +109,10 @@ class ParameterFile:
         return replace(
             self,
             values=replace_values(self.values, new_values),
-            origins=_drop_names(removed_names, self.origins) | dict.fromkeys(new_values, origin),
-            sources=_drop_names(removed_names, self.sources) | dict.fromkeys(new_values, source),
-            roughness=_drop_names(removed, self.roughness),
-            ranges=_drop_names(new_values, self.ranges),
+            origins=_drop_entries(removed_names, self.origins) | dict.fromkeys(new_values, origin),
+            sources=_drop_entries(removed_names, self.sources) | dict.fromkeys(new_values, source),
+            roughness=_drop_entries(removed, self.roughness),
+            ranges=_drop_entries(new_values, self.ranges),
         )
 
     def with_roughness(self, heights: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
@@ -125,9 +125,9 @@ class ParameterFile:
         replaced = {other for name in new_heights for other in roughness.conflicting_heights(name)}
         replaced_names = {self.heights_prefix + name for name in replaced}
         new_names = [self.heights_prefix + name for name in new_heights]
-        all_heights = _drop_names(replaced, self.roughness) | new_heights
-        origins = _drop_names(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
-        sources = _drop_names(replaced_names, self.sources) | dict.fromkeys(new_names, source)
+        all_heights = _drop_entries(replaced, self.roughness) | new_heights
+        origins = _drop_entries(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
+        sources = _drop_entries(replaced_names, self.sources) | dict.fromkeys(new_names, source)
         law_height = {
             name: roughness.combined_height(all_heights)
             for name in self.values_by_name
@@ -139,8 +139,8 @@ class ParameterFile:
             roughness=all_heights,
             origins=origins | dict.fromkeys(law_height, "derived"),
             sources=sources
-            | dict.fromkeys(law_height, _height_source(self.heights_prefix, all_heights, sources)),
-            ranges=_drop_names(law_height, self.ranges),
+            | dict.fromkeys(law_height, _format_height_source(self.heights_prefix, all_heights, sources)),
+            ranges=_drop_entries(law_height, self.ranges),
         )
 
 
@@ -187,7 +187,7 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
         raise ValueError(f"{path}: {text}")
     name = str(document.get("name", path.stem))
     origins |= dict.fromkeys(of_law, "derived")
-    sources |= dict.fromkeys(of_law, _height_source(prefix, heights, sources))
+    sources |= dict.fromkeys(of_law, _format_height_source(prefix, heights, sources))
     return ParameterFile(
         stated, name, parameters, origins, sources, inputs, heights, _read_ranges(path, declared, body)
     )
@@ -195,16 +195,16 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
 
 def declared_entries(joint_name: str, cls: type) -> dict[str, Field[Any]]:
     """{structured name: field} of all entries that a parameter file with the parameter set `cls` may have."""
-    return dict(flat_fields(cls)) | _input_fields(joint_name) | _roughness_fields(_heights_prefix(cls))
+    return dict(flatten_fields(cls)) | _input_fields(joint_name) | _roughness_fields(_heights_prefix(cls))
 
 
-def _drop_names(
+def _drop_entries(
     removed_names: Collection[str], values_by_name: Mapping[str, EntryValue]
 ) -> dict[str, EntryValue]:
     return {name: value for name, value in values_by_name.items() if name not in removed_names}
 
 
-def _height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) -> str:
+def _format_height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) -> str:
     """Source text of a height h that was computed from the heights of the surfaces."""
     names = [prefix + height for height in heights]
     return f"from {', '.join(names)}: {'; '.join(dict.fromkeys(sources[name] for name in names))}"
@@ -343,7 +343,7 @@ def _heights_prefix(cls: type) -> str:
     """Prefix of the names of the surface heights for a parameter set class, see `_ROUGHNESS_PREFIX`."""
     return (
         _ROUGHNESS_PREFIX
-        if any(is_combined_height(name) for name, _ in flat_fields(cls))
+        if any(is_combined_height(name) for name, _ in flatten_fields(cls))
         else _COMPARISON_PREFIX
     )
 
@@ -382,7 +382,7 @@ def _check_start_values(joint_name: str, start_values: Mapping[str, Any]) -> dic
 
 def format_parameter_file(parameters: ParameterFile) -> str:
     """Text of a parameter file (TOML), with the heights of the surfaces and the start values of inputs."""
-    declared = dict(flat_fields(type(parameters.values))) | _roughness_fields(parameters.heights_prefix)
+    declared = dict(flatten_fields(type(parameters.values))) | _roughness_fields(parameters.heights_prefix)
     values = sorted(parameters.values_by_name.items(), key=lambda item: "." in item[0])
     values += [(parameters.heights_prefix + name, value) for name, value in parameters.roughness.items()]
     if parameters.inputs:

@@ -196,10 +196,10 @@ def _set_up_worker() -> None:
     """Set up a worker process: no standard error, ignore Ctrl-C, end when the parent process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stderr = open(os.devnull, "w")  # noqa: SIM115
-    Thread(target=_end_with_parent, daemon=True).start()
+    Thread(target=_end_with_parent_process, daemon=True).start()
 
 
-def _end_with_parent() -> None:
+def _end_with_parent_process() -> None:
     if parent := multiprocessing.parent_process():
         parent.join()
         os._exit(1)

@@ -42,13 +42,13 @@ class FmuParts:
 
     folder: Path
     native: "Callable[[], NativeDefinition] | None" = None
-    data: DataConversion = DataConversion()
+    data_conversion: DataConversion = DataConversion()
     terminals: Mapping[str, tuple[Terminal, ...]] = field(default_factory=dict)
-    panels: Mapping[str, tuple[RampPanel, ...]] = field(default_factory=dict)
-    drawings: Mapping[str, Mapping[str, ChartDrawing]] = field(default_factory=dict)
+    ramp_panels: Mapping[str, tuple[RampPanel, ...]] = field(default_factory=dict)
+    chart_drawings: Mapping[str, Mapping[str, ChartDrawing]] = field(default_factory=dict)
 
 
-def native_loader(package_name: str) -> "Callable[[], NativeDefinition]":
+def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefinition]":
     """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
 
     def load_definition() -> "NativeDefinition":
@@ -58,7 +58,7 @@ def native_loader(package_name: str) -> "Callable[[], NativeDefinition]":
     return load_definition
 
 
-def load_equations() -> "NativeDefinition":
+def load_equations_definition() -> "NativeDefinition":
     """C definition of a joint whose outputs are explicit functions: it needs no C sources of its own."""
     from .native import EQUATIONS_DEFINITION
 

@@ -37,7 +37,7 @@ class DataConversion:
     """
 
     convert_parameters: Callable[..., Mapping[str, Any]] = flatten_parameters
-    find_class: Callable[..., type[object]] = type
+    find_parameter_class: Callable[..., type[object]] = type
     make_tables: Callable[..., Tables] = lambda values: EMPTY_TABLES
 
 
@@ -58,7 +58,7 @@ class ParameterSplit(NamedTuple):
     tables: Tables
 
     @property
-    def structure_key(self) -> str:
+    def code_structure_key(self) -> str:
         """Text that is equal for all parameter files with the same C code."""
         shapes = {name: (table.max_rows, table.rows.shape[1]) for name, table in self.tables.items()}
         return repr((sorted(self.code_values.items()), list(self.data_values), sorted(shapes.items())))

@@ -68,7 +68,7 @@ class FunctionGraph:
             )
         )
 
-    def add_with_derivative(
+    def add_function_with_derivative(
         self,
         name: str,
         doc: str,
@@ -143,7 +143,7 @@ def build_graph(
             name: ca.SX.sym(name) for name in (*parameter_split.variable_names, *parameter_split.data_values)
         }
         joint = build_parameter_set(parameter_split.parameter_class, {**parameter_split.code_values, **theta})
-        g = FunctionGraph(theta, joint, find_limits(joint))
+        g = FunctionGraph(theta, joint, collect_parameter_limits(joint))
         add_functions(g, model)
         if is_tabulated:
             _add_limit_functions(g, model)
@@ -158,10 +158,11 @@ def make_symbols(symbol_prefix: str, symbol_count: int) -> list[ca.SX]:
     return [ca.SX.sym(f"{symbol_prefix}{i}") for i in range(symbol_count)]
 
 
-def find_limits(joint: object) -> list[ParameterLimit]:
+def collect_parameter_limits(joint: object) -> list[ParameterLimit]:
     """Limits of those parameters whose allowed interval depends on other parameters."""
-    own = joint.find_limits() if hasattr(joint, "find_limits") else []
-    return [*own, *(joint.find_table_limits() if hasattr(joint, "find_table_limits") else [])]
+    own = joint.find_parameter_limits() if hasattr(joint, "find_parameter_limits") else []
+    table = joint.find_table_parameter_limits() if hasattr(joint, "find_table_parameter_limits") else []
+    return [*own, *table]
 
 
 def _add_limit_functions(function_graph: FunctionGraph, model: Model) -> None:
@@ -198,11 +199,11 @@ class _CompletedTerm:
     def upper_log_area(self) -> Number:
         return self.term.upper_log_area
 
-    def spot_value(self, log_area: Number) -> float:
+    def evaluate_spot(self, log_area: Number) -> float:
         return 0.0
 
-    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
-        return self.term.integral(size_exponent, self.term.upper_log_area)
+    def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
+        return self.term.integrate_over_spots(size_exponent, self.term.upper_log_area)
 
 
 def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], list[SpotDistribution]]:
@@ -241,14 +242,14 @@ def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], l
 
 
 def add_law_functions(
-    function_graph: FunctionGraph, law: Any, table_names: Sequence[str], state_functions: Any
+    function_graph: FunctionGraph, law: Any, tabulated_sum_names: Sequence[str], evaluate_law_state: Any
 ) -> None:
     """Add the functions of an interface law that its inversion, its tables and the outputs need.
 
     table_names     : names of the sums over contact spots, besides the load, that are tabulated
     state_functions : (law in one range of log-areas, log-area) -> quantities, first and second derivatives
     """
-    spots, u = law.spots(), ca.SX.sym("u")
+    spots, u = law.spot_distribution(), ca.SX.sym("u")
     switches, regimes = _split_regimes(spots)
     function_graph.add_function(
         "law_range_bounds", "-> log-areas that separate the ranges of law_..._0, law_..._1, ...", [], switches
@@ -272,12 +273,15 @@ def add_law_functions(
         )
         rows = [
             f(name, u)
-            for name in ("load", *table_names)
-            for f in (regime.sum_over_spots, regime.sum_derivative)
+            for name in ("load", *tabulated_sum_names)
+            for f in (regime.sum_over_spots, regime.sum_over_spots_derivative)
         ]
-        doc = f"log-area u -> sums over spots, each with its derivative by u: load, {', '.join(table_names)}"
+        doc = (
+            "log-area u -> sums over spots, each with its derivative by u: load, "
+            f"{', '.join(tabulated_sum_names)}"
+        )
         function_graph.add_function(f"law_totals_{k}", doc, [u], rows)
-        y = ca.vertcat(*map(ca.SX, state_functions(regime, u)))
+        y = ca.vertcat(*map(ca.SX, evaluate_law_state(regime, u)))
         slope = ca.jacobian(y, u)
         doc = "log-area u -> law state, its first and second derivatives by u, F'' - m F' of the load F"
         rows = [y, slope, ca.jacobian(slope, u), _load_curvature(regime, u)]
@@ -289,7 +293,7 @@ def _load_curvature(spot_distribution: SpotDistribution, largest_log_area: Numbe
 
     It follows from the largest spot alone, without a sum over spots.
     """
-    largest = sum(term.spot_value(largest_log_area) for term in spot_distribution.regime_terms["load"])
+    largest = sum(term.evaluate_spot(largest_log_area) for term in spot_distribution.regime_terms["load"])
     return (
         spot_distribution.size_exponent
         * spot_distribution.size_prefactor

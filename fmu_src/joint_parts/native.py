@@ -128,7 +128,7 @@ def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
             [],
             model.find_event_times(function_graph.joint),
         )
-    function_graph.add_with_derivative(
+    function_graph.add_function_with_derivative(
         "outputs", doc, list(v.values()), [outputs[o.name] for o in model.outputs]
     )
 

@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from jointfmu.mechanics.jenkins import ReturnMapping, elastic_predictor, limit_function, return_map
+from jointfmu.mechanics.jenkins import ReturnMapping, elastic_predictor, return_map, slip_limit_function
 from jointfmu.quantity import select
 
 from .graph import FunctionGraph, make_symbols
@@ -20,7 +20,7 @@ def add_slider_functions(function_graph: FunctionGraph) -> None:
         "elastic_predictor_1d",
         doc,
         [force, displacement, limit_end, stiffness],
-        [*predictor, limit_function(predictor, limit_end)],
+        [*predictor, slip_limit_function(predictor, limit_end)],
     )
     mapping = return_map([force], 1.0, stiffness, [displacement], limit_end, limit_end, stiffness, compliance)
     results = "force, tangent along and across, loss"
@@ -36,7 +36,7 @@ def add_slider_functions(function_graph: FunctionGraph) -> None:
     doc = f"force, limit at start, stiffness, compliance, displacement, limit at end -> {results}"
     x = [force, limit_start, stiffness, compliance, displacement, limit_end]
     y = [*mapping.force, *mapping.tangent, mapping.dissipated_energy]
-    function_graph.add_with_derivative("return_map_1d", doc, x, y, constant_count=4)
+    function_graph.add_function_with_derivative("return_map_1d", doc, x, y, constant_count=4)
     _add_plane_slider_functions(function_graph)
 
 
@@ -45,7 +45,7 @@ def _add_plane_slider_functions(function_graph: FunctionGraph) -> None:
     x, (force, limit_end, displacement), mapping = _symbolic_return_mapping()
     predictor = elastic_predictor(force, x[2], x[3], displacement)
     doc = "force, retention, secant stiffness, displacement"
-    y = [*predictor, limit_function(predictor, limit_end)]
+    y = [*predictor, slip_limit_function(predictor, limit_end)]
     function_graph.add_function(
         "elastic_predictor_2d",
         f"{doc}, limit -> elastic predictor, its limit function",

@@ -45,11 +45,11 @@ def build_native_fmu(
     )
     target = output_folder / f"{model.title}.fmu"
     with staging_folder(target) as work:
-        write_archive(_make_members(model, parameters, fmi_version, variability), work / target.name)
+        write_archive(_make_all_members(model, parameters, fmi_version, variability), work / target.name)
     return target
 
 
-def _make_members(
+def _make_all_members(
     model: Model, parameters: ParameterFile, fmi_version: str, variability: str
 ) -> dict[str, bytes]:
     """{path: content} of all files of a native FMU."""
@@ -64,7 +64,7 @@ def _make_members(
     }
     icons = terminal_files(model)
     return (
-        fmu_members(model, parameters, fmi_version, files, data.token, filled_libraries, variability)
+        make_common_members(model, parameters, fmi_version, files, data.token, filled_libraries, variability)
         | ({"model.png": icons["icon.png"]} if fmi_version == "2" else {})
         | _add_folder("documentation", make_documentation(model, parameters))
         | _add_folder("terminalsAndIcons", icons)
@@ -72,7 +72,7 @@ def _make_members(
     )
 
 
-def fmu_members(
+def make_common_members(
     model: Model,
     parameters: ParameterFile,
     fmi_version: str,

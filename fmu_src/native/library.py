@@ -39,7 +39,7 @@ def machine_platform() -> str:
     return name
 
 
-def make_library(model: Model, parameters: ParameterFile) -> JointLibrary:
+def make_joint_library(model: Model, parameters: ParameterFile) -> JointLibrary:
     """Make the shared library that the native FMU of a model contains for this machine.
 
     It is compiled for this machine alone, unless a build has compiled it already.

@@ -10,7 +10,7 @@ import numpy as np
 from jointfmu.joints.model import Model, TabulatedJoint
 from jointfmu.mechanics.stable_steps import largest_stable_steps
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import describe_range, find_problem, flat_fields
+from jointfmu.quantity import describe_range, find_problem, flatten_fields
 from jointfmu.quantity.units import UNITS, display_unit
 from jointfmu.version import __version__
 
@@ -99,7 +99,7 @@ def _render_joint_page(model: Model, parameters: ParameterFile, template_path: P
         exposed=[row for row in rows if row.name in exposed],
         hidden=[row for row in rows if row.name not in exposed],
         terminals=find_terminals(model),
-        messages=_list_messages(model, spring, rest),
+        messages=_list_log_messages(model, spring, rest),
         figure=_draw_ramp(model, spring, rest),
         drawings=draw_further_charts(model, spring),
         steps=_find_stable_steps(model, spring, rest, parameters),
@@ -111,7 +111,7 @@ def _render_joint_page(model: Model, parameters: ParameterFile, template_path: P
 
 def _parameter_rows(parameters: ParameterFile) -> list[_ParameterRow]:
     """Rows of the table of all parameters."""
-    fields, rows = dict(flat_fields(type(parameters.values))), []
+    fields, rows = dict(flatten_fields(type(parameters.values))), []
     for name, value in parameters.values_by_name.items():
         meta = fields[name].metadata
         if "allowed" in meta:
@@ -167,7 +167,7 @@ def _round_to_three_digits(number: float) -> float:
     return float(f"{number:.3g}")
 
 
-def _list_messages(
+def _list_log_messages(
     model: Model, tabulated_joint: TabulatedJoint, start_values: Mapping[str, float]
 ) -> list[tuple[str, str, str]]:
     """(level, example, meaning) of the messages that an instance may log."""
@@ -223,7 +223,7 @@ def evaluate_outputs(
 
 def find_ramp_panels(model: Model) -> tuple[RampPanel, ...]:
     """Charts of the load ramp; default: the first output against the ramped input."""
-    charts = find_fmu_parts(model).panels.get(model.name)
+    charts = find_fmu_parts(model).ramp_panels.get(model.name)
     return charts or (RampPanel(model.ramp.input_name, (model.outputs[0].name,)),)
 
 
@@ -250,7 +250,7 @@ def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapp
 
 def draw_further_charts(model: Model, tabulated_joint: TabulatedJoint) -> dict[str, str]:
     """{name: HTML element} of the further charts of a page."""
-    drawings = find_fmu_parts(model).drawings.get(model.name, {})
+    drawings = find_fmu_parts(model).chart_drawings.get(model.name, {})
     return {
         name: chart.make_figure(panels(tabulated_joint, model.ramp.end_value))
         for name, panels in drawings.items()

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..joint_parts import FmuParts, load_equations
+from ..joint_parts import FmuParts, load_equations_definition
 from ..joint_parts.terminals import ROTATIONAL_FLANGE_CLASS, TRANSLATIONAL_FLANGE_CLASS, Terminal
 from .models import PARTNERS, load_partner_parameters
 
@@ -27,7 +27,7 @@ def _make_body_flanges(
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=load_equations,
+    native=load_equations_definition,
     terminals={  # a load over time has no motion and so no flange
         "RotationalInertia": _make_body_flanges("phi", "w", "tau", ROTATIONAL_FLANGE_CLASS, "the inertia"),
         "TranslationalMass": _make_body_flanges("s", "v", "f", TRANSLATIONAL_FLANGE_CLASS, "the mass"),

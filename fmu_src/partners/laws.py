@@ -14,7 +14,7 @@ GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2]."""
 
 
-def _lag_parameter(flange: str) -> Any:
+def _declare_lag_parameter(flange: str) -> Any:
     """Parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
     doc = (
         f"delay of the load on {flange} in communication steps: 1 if a joint feeds it "
@@ -31,8 +31,8 @@ class RotationalInertia(CheckedParameters):
     J: float = quantity_field("kg.m2", "moment of inertia about the axis", gt=0.0)
     m: float = quantity_field("kg", "mass on which the weight acts", ge=0.0)
     l: float = quantity_field("m", "distance from the axis to the centre of mass", ge=0.0)  # noqa: E741
-    lag_a: float = _lag_parameter("a")
-    lag_b: float = _lag_parameter("b")
+    lag_a: float = _declare_lag_parameter("a")
+    lag_b: float = _declare_lag_parameter("b")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Angle [rad] from the hanging position, angular speed [rad/s], angular acceleration [rad/s2]."""
@@ -50,8 +50,8 @@ class TranslationalMass(CheckedParameters):
 
     inertia_name: ClassVar[str] = "m"
     m: float = quantity_field("kg", "mass", gt=0.0)
-    lag_a: float = _lag_parameter("a")
-    lag_b: float = _lag_parameter("b")
+    lag_a: float = _declare_lag_parameter("a")
+    lag_b: float = _declare_lag_parameter("b")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Position [m], speed [m/s], acceleration [m/s2]."""

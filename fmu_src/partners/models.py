@@ -7,13 +7,13 @@ from typing import Any
 
 from jointfmu.joints.model import LoadRamp, Model, Variable
 from jointfmu.parameters import ParameterFile, read_document, read_entries
-from jointfmu.quantity import build_parameter_set, flat_fields
+from jointfmu.quantity import build_parameter_set, flatten_fields
 
 from .laws import AngleProfile, ForceProfile, RotationalInertia, TorqueCurve, TorqueProfile, TranslationalMass
 
 
 def _make_model(
-    parameters: type[Any],
+    parameter_class: type[Any],
     doc: str,
     inputs: Sequence[Variable],
     outputs: Sequence[Variable],
@@ -22,10 +22,10 @@ def _make_model(
 ) -> Model:
     """Model of a partner, from its parameter class and variables."""
     return Model(
-        name=parameters.__name__,
+        name=parameter_class.__name__,
         joint="partner",
         doc=doc,
-        parameters=parameters,
+        parameter_class=parameter_class,
         tabulate=lambda partner: partner,
         inputs=inputs,
         outputs=outputs,
@@ -39,7 +39,7 @@ def _make_model(
         },
         state_count=state_count,
         is_time_dependent=True,
-        find_event_times=getattr(parameters, "find_corner_times", None),
+        find_event_times=getattr(parameter_class, "find_corner_times", None),
     )
 
 
@@ -123,9 +123,9 @@ def load_partner_parameters(partner_name: str) -> ParameterFile:
     document = read_document(path, "a partner's parameter file")
     if document.get("partner") != partner_name:
         raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {partner_name!r}")
-    cls = PARTNERS[partner_name].parameters
+    cls = PARTNERS[partner_name].parameter_class
     body = {key: entry for key, entry in document.items() if key not in ("schema", "partner")}
-    values, origins, sources = read_entries(path, dict(flat_fields(cls)), body)
+    values, origins, sources = read_entries(path, dict(flatten_fields(cls)), body)
     try:
         return ParameterFile("partner", partner_name, build_parameter_set(cls, values), origins, sources)
     except ValueError as error:

@@ -67,7 +67,7 @@ def compute_experiments(model: Model, parameters: ParameterFile) -> list[Referen
         _compute_ramp(
             model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP_LEVEL_COUNT
         ),
-        *_compute_loop(model, parameters),
+        *_compute_hysteresis_loops(model, parameters),
         *(
             _compute_ramp(
                 model,
@@ -81,7 +81,7 @@ def compute_experiments(model: Model, parameters: ParameterFile) -> list[Referen
             for file, settings in list_shipped_variants(model, parameters)[1:]
         ),
         *_compute_boundary_experiments(model, parameters),
-        *_compute_samples(model, parameters),
+        *_compute_sampled_experiments(model, parameters),
     ]
 
 
@@ -183,7 +183,7 @@ def _compute_outputs(
     )
 
 
-def _compute_loop(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
+def _compute_hysteresis_loops(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """Yield the loop experiment of the model, if it has one: triangular cycles about the start value."""
     if (loop := model.load_cycle) is None:
         return
@@ -218,7 +218,7 @@ def _compute_boundary_experiments(model: Model, parameters: ParameterFile) -> It
         yield replace(computed[name, value], doc=doc)
 
 
-def _compute_samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
+def _compute_sampled_experiments(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """Yield experiments with all real parameters varied, except points that the joint refuses.
 
     The points are an additive recurrence with the square roots of primes (low discrepancy).

@@ -49,7 +49,7 @@ class RelatedFile(NamedTuple):
     mime_type: str
     role: str
     doc: str
-    labels: Mapping[str, str] = {}
+    interface_labels: Mapping[str, str] = {}
 
 
 def make_reference_files(
@@ -207,7 +207,7 @@ def _format_manifest(related_files: Sequence[RelatedFile]) -> bytes:
             "description": file.doc,
         }
         node = SubElement(root, "Related", attributes)
-        for interface, doc in file.labels.items():
+        for interface, doc in file.interface_labels.items():
             SubElement(node, "Label", name=standard.INTERFACE_LABELS[interface], description=doc)
     return serialize_xml(root)
 

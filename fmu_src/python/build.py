@@ -22,7 +22,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 
 _PACKAGE_PLACEHOLDER = "PRIVATE_PACKAGE"
 """Placeholder for the name of the private package, which contains a digest of all sources."""
-_ENTRY_TEMPLATE = Path(__file__).with_name("entry.txt")
+_ENTRY_SCRIPT_TEMPLATE_PATH = Path(__file__).with_name("entry.txt")
 """Template of the Python module that pythonfmu loads."""
 
 
@@ -89,7 +89,8 @@ def build_python_fmu(
         entry = {"package": package, "kind": _private_module_name(kind.package), "digest": digest}
         entry["variability"] = variability
         _write_text(
-            script, _ENTRY_TEMPLATE.read_text(encoding="utf-8").format(name=title, fmu=fmu_name, **entry)
+            script,
+            _ENTRY_SCRIPT_TEMPLATE_PATH.read_text(encoding="utf-8").format(name=title, fmu=fmu_name, **entry),
         )
         for path, text in sources.items():
             root = work / "src" if path == "parameters.toml" else work / "src" / package

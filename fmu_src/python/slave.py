@@ -201,7 +201,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         """Tabulated joint for the current parameters."""
         if self._spring is None:
             parameters = {name: self.values[name] for name in self.start}
-            self._spring = self.model.tabulate(build_parameter_set(self.model.parameters, parameters))
+            self._spring = self.model.tabulate(build_parameter_set(self.model.parameter_class, parameters))
         return self._spring
 
     def log_and_raise(self, message: str) -> NoReturn:

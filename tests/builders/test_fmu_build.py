@@ -390,14 +390,14 @@ class Job(NamedTuple):
 
     folder: Path
     said: str
-    outcome: pipeline.JobResult
+    outcome: pipeline.PipelineResult
 
 
 @pytest.fixture(scope="module")
 def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, system_files: Path) -> Job:
     """The one main job of these tests. It builds all FMUs and systems, as the fixtures of all tests have: it
     gets copies of theirs."""
-    folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run_job
+    folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run_pipeline
 
     def copied(sources: Iterable[Path], out: Path) -> list[Path]:
         files = [(path, out / path.parent.name / path.name) for path in sources]
@@ -416,14 +416,14 @@ def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, syst
         assert not build_joints
         return [made for suffix in ("fmu", "ssp") for made in copied(system_files.glob(f"*/*.{suffix}"), out)]
 
-    def watched(out: Path) -> pipeline.JobResult:
+    def watched(out: Path) -> pipeline.PipelineResult:
         found.append(run(out))
         return found[0]
 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as out:
         patch.setattr(pipeline, "build_fmus", built)
         patch.setattr(pipeline, "build_systems", built_systems)
-        patch.setattr(pipeline, "run_job", watched)
+        patch.setattr(pipeline, "run_pipeline", watched)
         assert pipeline.main(folder) == 0, out.getvalue()
     return Job(folder, out.getvalue(), found[0])
 
@@ -504,7 +504,9 @@ def test_the_main_job_proves_every_fmu(job: Job) -> None:
     partners = {f"{version}/{name}" for version in VERSIONS for name in PARTNERS}
     assert flavours | partners < proofs.keys()
     for name, proof in proofs.items():
-        assert (proof.importer, proof.failures, proof.compared_start_count > 0) == ("fmpy", [], True), name
+        assert (proof.importer, proof.failures, proof.compared_start_value_count > 0) == ("fmpy", [], True), (
+            name
+        )
         assert [*proof.interfaces] == (BOTH[:1] if name.startswith("python/") else BOTH), name
         runs = [(one.experiment.name, one.interface) for one in proof.outcomes if one.interface]
         names = dict.fromkeys(one for one, _ in runs)
@@ -551,7 +553,7 @@ def test_the_main_job_fails_when_a_check_or_a_proof_misses(
         c for n, r in job.outcome.ramps.items() for c in checks.check_ramp(n, job.outcome.fmi2_folder, r)
     ]
     outcome = replace(job.outcome, problems=problems, proofs=[proof], checks=found)
-    monkeypatch.setattr(pipeline, "run_job", lambda _: outcome)
+    monkeypatch.setattr(pipeline, "run_pipeline", lambda _: outcome)
     assert pipeline.main(tmp_path) == 1
     # both interfaces of the FMU, and an integral of each ramp
     missed = capsys.readouterr().out.partition(f"missed: {2 + len(NAMES)}\n")[2].splitlines()

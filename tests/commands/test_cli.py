@@ -325,7 +325,7 @@ def test_validate_as_json(run):
 
 
 def test_a_missed_point_gives_status_1(run, monkeypatch):
-    monkeypatch.setitem(PUBLISHED_NUMBERS.observables, "spot_stiffness_ratio", lambda values: 1.0)
+    monkeypatch.setitem(PUBLISHED_NUMBERS.observable_functions, "spot_stiffness_ratio", lambda values: 1.0)
     status, out, err = run("validate", "--json")
     assert (status, err) == (1, "")
     found = json.loads(out)
@@ -338,7 +338,7 @@ def test_a_missed_point_gives_status_1(run, monkeypatch):
 
 def test_a_missed_calibration_point_is_shown(run, monkeypatch):
     """It is a miss in the table; the status follows the points that are not calibrated."""
-    monkeypatch.setitem(PUBLISHED_NUMBERS.observables, "p_max", lambda values, preload: 8e6)
+    monkeypatch.setitem(PUBLISHED_NUMBERS.observable_functions, "p_max", lambda values, preload: 8e6)
     status, out, err = run("validate")
     assert (status, err) == (0, "")
     assert "MISS" in out

@@ -99,7 +99,7 @@ cases = st.tuples(hu_laws, log_areas).filter(lambda case: apart(*case))
 @given(case=cases)
 def test_totals_are_sums_over_spots(case):
     law, u = case
-    paper, s = Paper(law), law.spots()
+    paper, s = Paper(law), law.spot_distribution()
     s_l = paper.s_min * exp(u)
     stick = (1 - law.traction_ratio) ** (1 / 3)
     expected = {
@@ -119,7 +119,7 @@ def test_totals_are_sums_over_spots(case):
 
 def sheared(law, traction):
     """The spots of a law whose real area carries a shear traction [Pa]."""
-    return changed(law, {"traction": "real_area", "shear_traction": traction}).spots()
+    return changed(law, {"traction": "real_area", "shear_traction": traction}).spot_distribution()
 
 
 @given(case=cases, tau=st.floats(1e-3, 1.5))
@@ -154,7 +154,7 @@ def test_shear_traction(case, tau):
 
         expected += quad(cubed, 0, log(high / start) ** (1 / 3), epsabs=0, epsrel=1e-10, limit=200)[0]
     total = sheared(law, strength).sum_over_spots("tangential", u)
-    full = law.spots().sum_over_spots("tangential", u) / (1 - law.traction_ratio) ** (1 / 3)
+    full = law.spot_distribution().sum_over_spots("tangential", u) / (1 - law.traction_ratio) ** (1 / 3)
     # 1 - x cancels at the onset, and a regime may end within round-off of it: 1e-7 of full stick
     assert total == pytest.approx(expected, rel=1e-8, abs=1e-7 * full)
     assert 0 <= total <= full
@@ -167,29 +167,29 @@ def test_full_slip():
     assert slipping.sum_over_spots("tangential", 40.0) == 0.0
     # without traction every spot sticks: (1 - x)^(1/3) with x <= 3.59e-9 at s_ec, larger below
     sticking = sheared(HU, 1e-12 * HU.sigma_y)
-    at_rest = changed(HU, {"traction_ratio": 0.0}).spots()
+    at_rest = changed(HU, {"traction_ratio": 0.0}).spot_distribution()
     assert sticking.sum_over_spots("tangential", 30.0) == pytest.approx(
         at_rest.sum_over_spots("tangential", 30.0), rel=1e-7
     )
     # the other quantities do not see the traction
     for name in ("load", "normal", "area"):
-        assert sticking.sum_over_spots(name, 30.0) == HU.spots().sum_over_spots(name, 30.0)
+        assert sticking.sum_over_spots(name, 30.0) == HU.spot_distribution().sum_over_spots(name, 30.0)
 
 
 def test_traction_over_friction():
     # errata: t/(mu f) = 3.59, 1.93, 1.39 at s_ec, s_epc1, s_epc2, three digits
-    s, edge = HU.spots(), log(hu2023.critical_area(HU) / HU.surface.s_min)
+    s, edge = HU.spot_distribution(), log(hu2023.critical_area(HU) / HU.surface.s_min)
     tau = HU.sigma_y / sqrt(3)
     for area, ratio in ((1.0, 3.59), (7.1197, 1.93), (205.3827, 1.39)):
         t = edge + log(area) - 1e-6  # just inside the regime below
-        load = sum(float(term.spot_value(t)) for term in s.regime_terms["load"])
+        load = sum(float(term.evaluate_spot(t)) for term in s.regime_terms["load"])
         assert tau * HU.surface.s_min * exp(t) / (HU.mu * load) == pytest.approx(ratio, abs=5e-3)
 
 
 def test_lower_bound_of_the_mean_pressure():
     # 286 MPa at s_l = s_ec with s_min -> 0 (three digits), and never below for a larger spot
     law = changed(HU, {"surface.s_min": 1e-60})  # s_min^(1.5 - D/2) = 1e-14 of the sum
-    s, edge = law.spots(), log(hu2023.critical_area(law) / 1e-60)
+    s, edge = law.spot_distribution(), log(hu2023.critical_area(law) / 1e-60)
     u = edge + np.linspace(0.0, 12.0, 200)
     mean = s.sum_over_spots("load", u) / s.sum_over_spots("area", u)
     assert mean[0] == pytest.approx(286e6, abs=0.5e6)
@@ -221,7 +221,7 @@ def test_mean_pressure_at_the_onset_of_full_plasticity():
     law = changed(HU, {"side1.nu": 0.3})
     edge = log(hu2023.critical_area(law) / law.surface.s_min)
     t = edge + log(kogut_etsion.PLASTIC_AREA_RATIO) - 1e-9
-    load = sum(float(term.spot_value(t)) for term in law.spots().regime_terms["load"])
+    load = sum(float(term.evaluate_spot(t)) for term in law.spot_distribution().regime_terms["load"])
     mean = load / (law.surface.s_min * exp(t))
     assert mean / law.hardness == pytest.approx(0.993, abs=5e-4)  # three digits
 
@@ -235,7 +235,10 @@ def test_exponents():
     # K_re ~ s_min^(1 - D/2) = s_min^-0.265 at one largest spot; the spots below are (1e-40)^0.265 = 2e-11
     small, smaller = (changed(HU, {"surface.s_min": s}) for s in (1e-50, 1e-51))
     s_ec = hu2023.critical_area(HU)
-    K_re = [law.spots().sum_over_spots("normal", log(s_ec / law.surface.s_min)) for law in (small, smaller)]
+    K_re = [
+        law.spot_distribution().sum_over_spots("normal", log(s_ec / law.surface.s_min))
+        for law in (small, smaller)
+    ]
     assert -np.log10(K_re[1] / K_re[0]) == pytest.approx(-0.265, abs=5e-4)
     assert -np.log10(K_re[1] / K_re[0]) == pytest.approx(1 - HU.surface.D / 2, rel=1e-9)
 
@@ -245,7 +248,7 @@ def test_regimes_above_a_large_smallest_spot():
     s_ec = hu2023.critical_area(HU)
     for multiple in (2.0, 50.0, 300.0):
         law = changed(HU, {"surface.s_min": multiple * s_ec})
-        paper, s = Paper(law), law.spots()
+        paper, s = Paper(law), law.spot_distribution()
         s_l = law.surface.s_min * exp(3.0)
         elastic = paper.total(lambda a: a, s_l, paper.s_ec, power=1.0)
         assert s.sum_over_spots("elastic_area", 3.0) == pytest.approx(elastic, rel=QUAD)
@@ -310,7 +313,7 @@ def closed_forms(paper, s_l):
 @pytest.mark.parametrize("D", [2.1, 2.5304, 2.9])
 def test_closed_forms(D):
     law = changed(HU, {"surface.D": D, "surface.s_min": 1e-20})
-    paper, s = Paper(law), law.spots()
+    paper, s = Paper(law), law.spot_distribution()
     s_l = 1e4 * paper.s_ec
     m, u = 0.5 * D - 0.5, log(s_l / law.surface.s_min)
     common = m * s.size_prefactor * exp(m * u)
@@ -323,11 +326,13 @@ def test_closed_forms(D):
             continue
         for term, expected in zip(s.regime_terms[name], regimes, strict=True):
             # five printed digits of each coefficient and 5e-5 ln(205) of each exponent
-            assert common * term.integral(m, u) == pytest.approx(expected, rel=5e-4)
+            assert common * term.integrate_over_spots(m, u) == pytest.approx(expected, rel=5e-4)
         # the elastic and the plastic regime have no rounded coefficient
-        assert common * s.regime_terms[name][0].integral(m, u) == pytest.approx(regimes[0], rel=1e-11)
+        assert common * s.regime_terms[name][0].integrate_over_spots(m, u) == pytest.approx(
+            regimes[0], rel=1e-11
+        )
     plastic = closed_forms(paper, s_l)["load"][3]
-    assert common * s.regime_terms["load"][3].integral(m, u) == pytest.approx(plastic, rel=1e-11)
+    assert common * s.regime_terms["load"][3].integrate_over_spots(m, u) == pytest.approx(plastic, rel=1e-11)
 
 
 @pytest.mark.parametrize("k", range(2, 15))
@@ -335,7 +340,7 @@ def test_near_the_ends_of_the_dimension(k):
     """The exponent 1 - D/2 of Eq. 30 is singular at D = 2, 3/2 - D/2 of the areas at D = 3."""
     for D in (2 + 10.0**-k, 3 - 10.0**-k):
         law = changed(HU, {"surface.D": D})
-        paper, s = Paper(law), law.spots()
+        paper, s = Paper(law), law.spot_distribution()
         s_l = 50.0 * paper.s_ec
         u = log(s_l / law.surface.s_min)
         assert s.sum_over_spots("area", u) == pytest.approx(

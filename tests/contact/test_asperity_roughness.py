@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
 from jointfmu.contact.laws import persson, roughness
-from jointfmu.contact.laws.roughness import FEW_SPOTS_FACTOR, RoughnessLaw
+from jointfmu.contact.laws.roughness import FEW_SPOTS_STIFFNESS_FACTOR, RoughnessLaw
 from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
@@ -42,7 +42,7 @@ def test_many_spots_have_the_pressure_over_gamma_h():
     wide = changed(A_0=10.0)  # a load far beyond that of few spots
     p = np.array([1e6, 1e7, 1e8])
     state = evaluate_at_pressure(wide, p)
-    few = FEW_SPOTS_FACTOR * (p * 10.0 / (MODULUS * 1.5e-6 * 1e-3)) ** (-0.8 / 1.8)
+    few = FEW_SPOTS_STIFFNESS_FACTOR * (p * 10.0 / (MODULUS * 1.5e-6 * 1e-3)) ** (-0.8 / 1.8)
     assert np.max(few) < 1e-2  # of 1/gamma = 2.2
     assert state["K_N"] / 10.0 == pytest.approx(p / 1.5e-6 * (1.0 / 0.45 + few), rel=1e-13)
     assert state["F"] == pytest.approx(10.0 * p, rel=1e-13)

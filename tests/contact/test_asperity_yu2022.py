@@ -107,7 +107,7 @@ class Paper:
 
 @given(law=yu_laws, u=log_areas)
 def test_totals_are_sums_over_spots(law, u):
-    paper, s = Paper(law), law.spots()
+    paper, s = Paper(law), law.spot_distribution()
     assert s.reference_area == pytest.approx(paper.a_nec, rel=1e-11)  # brentq: 1e-13 in ln a
     a_l = paper.a_nec * exp(u)
     # closer to an edge than 1 % the quadrature's own difference of logarithms is lost
@@ -130,7 +130,7 @@ def test_totals_are_sums_over_spots(law, u):
 @given(law=yu_laws)
 def test_order_of_the_regimes(law):
     """a_npc < a_nepc < a_nec: small spots are plastic."""
-    paper, s = Paper(law), law.spots()
+    paper, s = Paper(law), law.spot_distribution()
     plastic, second, first, *elastic = s.regime_terms["load"]
     assert plastic.upper_log_area < second.upper_log_area < 0.0
     assert plastic.lower_log_area is None
@@ -245,7 +245,7 @@ def test_elastic_load(law, u):
         c *= (1 - paper.e**2) ** (sign * D / 4) / (3 * paper.f1**1.5 * (3 - z - D))
         power = (3 - z - D) / 2
         expected += law.lambda_ * c * a_l ** (z / 2) * (a_l**power - paper.a_nec**power)
-    s = law.spots()
+    s = law.spot_distribution()
     elastic = sum(term.integral(s.size_exponent, u) for term in s.regime_terms["load"][3:])
     # difference of powers: 1e-11 of a_nec over 0.1 * 0.025
     assert s.size_exponent * s.size_prefactor * np.exp(s.size_exponent * u) * elastic == pytest.approx(
@@ -257,7 +257,7 @@ def test_elastic_load(law, u):
 def test_elastic_plastic_loads_of_equal_dimensions(plastic_area):
     """Eqs. 62 and 63 with the exponent -d/n: powers of a for the spot's own curvature, D1 = D2."""
     law = changed(YU, {"plastic_area": plastic_area, "e": 0.0})
-    paper, s = Paper(law), law.spots()
+    paper, s = Paper(law), law.spot_distribution()
     D, u = paper.D1, 5.0
     F_nec = paper.f2 * 4 / 3 * paper.E * sqrt(paper.R_m(paper.a_nec)) * paper.w_nec(paper.a_nec) ** 1.5
     ends = ((paper.a_npc, paper.a_nepc), (paper.a_nepc, paper.a_nec))
@@ -271,7 +271,7 @@ def test_elastic_plastic_loads_of_equal_dimensions(plastic_area):
         integral = (high**x - low**x) / (x * paper.a_nec**x)
         expected = law.lambda_ * paper.m * F_nec * c * m ** (-d / n) * exp(paper.m * u) * integral
         # brentq's 1e-13 in ln a, twice
-        assert s.size_exponent * s.size_prefactor * np.exp(s.size_exponent * u) * term.integral(
+        assert s.size_exponent * s.size_prefactor * np.exp(s.size_exponent * u) * term.integrate_over_spots(
             s.size_exponent, u
         ) == pytest.approx(expected, rel=1e-10)
 
@@ -279,8 +279,10 @@ def test_elastic_plastic_loads_of_equal_dimensions(plastic_area):
 @pytest.mark.parametrize(("plastic_area", "jump"), [("geometric", 1.03), ("kogut_etsion", 1.12816)])
 def test_jump_of_the_force_at_the_onset(plastic_area, jump):
     """What the fit of the first stage leaves: c for the geometric area, c m^(-d/n) for its own."""
-    s = changed(YU, {"plastic_area": plastic_area}).spots()
-    below, above = (sum(float(term.spot_value(t)) for term in s.regime_terms["load"]) for t in (0.0, 1e-12))
+    s = changed(YU, {"plastic_area": plastic_area}).spot_distribution()
+    below, above = (
+        sum(float(term.evaluate_spot(t)) for term in s.regime_terms["load"]) for t in (0.0, 1e-12)
+    )
     assert below / above == pytest.approx(jump, abs=5e-6)  # six digits
 
 
@@ -299,7 +301,7 @@ def test_continuity_through_the_singular_exponents(name, k):
     values = SINGULAR[name]
     for step in (10.0**-k, -(10.0**-k)):
         law = changed(YU, values | {"surface1.D": values["surface1.D"] + step})
-        paper, s = Paper(law), law.spots()
+        paper, s = Paper(law), law.spot_distribution()
         u = 6.0
         a_l = paper.a_nec * exp(u)
         assert s.sum_over_spots("load", u) == pytest.approx(paper.total(paper.load, a_l), rel=QUAD)
@@ -310,6 +312,6 @@ def test_continuity_through_the_singular_exponents(name, k):
 
 def test_singular_cases_are_singular():
     for name, values in SINGULAR.items():
-        s = changed(YU, values).spots()
+        s = changed(YU, values).spot_distribution()
         terms = s.regime_terms["normal"][2:] if "stiffness" in name else s.regime_terms["load"][3:]
         assert min(abs(term.exponent - s.size_exponent) for term in terms) < 4 * EPS, name

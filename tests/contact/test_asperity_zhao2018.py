@@ -79,7 +79,7 @@ class Paper:
 
 @given(law=zhao_laws, u=log_areas)
 def test_totals_are_sums_over_spots(law, u):
-    paper, s = Paper(law), law.spots()
+    paper, s = Paper(law), law.spot_distribution()
     largest = paper.ac * np.exp(u)
     stick = (1 - law.traction_ratio) ** (1 / 3)
     D, x = paper.D, 1 - paper.D / 2
@@ -106,7 +106,7 @@ def test_totals_are_sums_over_spots(law, u):
 
 @given(law=zhao_laws, u=st.floats(0.1, 20.0))
 def test_state_is_made_of_the_sums(law, u):
-    paper, s = Paper(law), law.spots()
+    paper, s = Paper(law), law.spot_distribution()
     state = law.contact_quantities(u)
     largest = paper.ac * np.exp(u)
     for symbol, name in {
@@ -289,7 +289,7 @@ def test_closed_forms(D, u):
 @pytest.mark.parametrize("sign", [1, -1])
 def test_continuity_through_the_singular_dimension(D, k, sign):
     law = changed(ZHAO, {"surface.D": D + sign * 10.0**-k})
-    paper, s, u = Paper(law), law.spots(), 6.0
+    paper, s, u = Paper(law), law.spot_distribution(), 6.0
     largest = paper.ac * np.exp(u)
     work = paper.elastic(lambda a: 8 / 15 * paper.E * sqrt(paper.R(a)) * paper.delta(a) ** 2.5, largest)
     assert s.sum_over_spots("elastic_work", u) == pytest.approx(work, rel=QUAD)

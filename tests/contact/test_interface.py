@@ -18,7 +18,7 @@ from jointfmu.contact.interface import (
     stiffness_curve,
 )
 from jointfmu.parameters import load_default
-from jointfmu.quantity import flat_fields, flatten_parameters
+from jointfmu.quantity import flatten_fields, flatten_parameters
 
 EPS = np.finfo(float).eps
 RESIDUAL = 1e-12
@@ -30,7 +30,7 @@ log_pressures = st.floats(np.log(1e-9), np.log(1e13))  # Pa: far beyond any join
 
 
 def load(law, pressure):
-    return law.spots().sum_over_spots("load", solve_largest_spot(law, pressure))
+    return law.spot_distribution().sum_over_spots("load", solve_largest_spot(law, pressure))
 
 
 @each_kind
@@ -45,7 +45,7 @@ def test_inversion_residual(kind, data):
 @given(data=st.data(), v=st.floats(-30.0, 30.0))
 def test_newton_step(kind, data, v):
     """The step is the residual over d ln F/dv, which lies within the bracket the safeguard assumes."""
-    spots = data.draw(RANDOM[kind]).spots()
+    spots = data.draw(RANDOM[kind]).spot_distribution()
 
     def log_load(v):
         return spots.log_sum_over_spots("load", v)[0]
@@ -95,7 +95,8 @@ def test_more_points_than_a_block(law, monkeypatch):
     u = solve_largest_spot(law, pressure)
     assert u.shape == pressure.shape
     assert np.all(np.diff(u.ravel()) > 0)
-    assert law.spots().sum_over_spots("load", u) == pytest.approx(pressure * law.A_0, rel=RESIDUAL)
+    load = law.spot_distribution().sum_over_spots("load", u)
+    assert load == pytest.approx(pressure * law.A_0, rel=RESIDUAL)
 
 
 # One parameter of every group that the load depends on, over the decades of its use.
@@ -140,7 +141,8 @@ def test_array_parameters_with_one_pressure(kind, name):
     law = changed(LAWS[kind], {name: values})
     u = solve_largest_spot(law, 1e6)
     assert u.shape == (7,)
-    assert law.spots().sum_over_spots("load", u) == pytest.approx(1e6 * law.A_0 * np.ones(7), rel=RESIDUAL)
+    load = law.spot_distribution().sum_over_spots("load", u)
+    assert load == pytest.approx(1e6 * law.A_0 * np.ones(7), rel=RESIDUAL)
 
 
 @array_cases
@@ -226,7 +228,7 @@ def test_spots_below_the_smallest_stiff_one():
 @given(data=st.data())
 def test_round_trip(kind, data):
     law = data.draw(RANDOM[kind])
-    spots = law.spots()
+    spots = law.spot_distribution()
     u = data.draw(st.floats(-20.0, 20.0))
     area = spots.reference_area * np.exp(u)
     there = evaluate_at_largest_spot(law, area)
@@ -257,7 +259,7 @@ def test_everything_grows_with_the_pressure(kind, data):
 @each_law
 def test_no_jump_across_the_regimes(law):
     """The single spot may jump at an edge of the fits, the sum over all spots may not."""
-    s = law.spots()
+    s = law.spot_distribution()
     ends = {
         end
         for term in (*s.regime_terms["load"], *s.regime_terms["normal"])
@@ -298,13 +300,13 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
         "energy": stress * length**3,
         "damping": np.sqrt(mass * stress * length),
     }
-    units = {name: item.metadata.get("unit") for name, item in flat_fields(type(law))}
+    units = {name: item.metadata.get("unit") for name, item in flatten_fields(type(law))}
     scaled = {
         name: value * factor[SCALES[units[name]]] if units[name] else value
         for name, value in flatten_parameters(law).items()
     }
     u = np.array([-20.0, -5.0, -0.5, 0.5, 3.0, 8.0, 20.0])
-    pressure = law.spots().sum_over_spots("load", u) / law.A_0
+    pressure = law.spot_distribution().sum_over_spots("load", u) / law.A_0
     before = evaluate_at_pressure(law, pressure)
     after = evaluate_at_pressure(changed(law, scaled), pressure * stress)
     assert before.keys() <= UNITS.keys()
@@ -324,7 +326,7 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
 def test_growth_of_the_elastic_limit(D, spot_stiffness):
     """K ~ F^(D/(3 - D)) for D < 1.5 and ~ F above, once the largest spots are far into the elastic."""
     law = changed(ZHAO, {"surface.D": D, "spot_stiffness": spot_stiffness})
-    pressure = law.spots().sum_over_spots("load", 290.0) / law.A_0
+    pressure = law.spot_distribution().sum_over_spots("load", 290.0) / law.A_0
     k, slope = stiffness_curve(law, pressure)
     exponent = D / (3 - D) if D < 1.5 else 1.0
     # what remains of the smaller spots: exp(-(D - 1)/2 290) and exp(-|3 - 2 D|/2 290), and round-off
@@ -335,7 +337,7 @@ def test_growth_of_the_elastic_limit(D, spot_stiffness):
 @each_law
 @pytest.mark.parametrize("name", ["normal", "area"])
 def test_slope_of_the_stiffness_curve(law, name):
-    s = law.spots()
+    s = law.spot_distribution()
     # away from the edges of the regimes, where the slope jumps; stiff for every law
     u = np.array([0.5, 1.7, 4.1, 9.3, 13.7]) + (5.0 if law is HU else 0.0)
     pressure = s.sum_over_spots("load", u) / law.A_0
@@ -392,10 +394,10 @@ def test_laws_take_symbols(variant, name):
     law = changed(*VARIANTS[variant])
     clone, symbols = symbolic(law)
     u = casadi.SX.sym("u")
-    total = clone.spots().sum_over_spots(name, u)
+    total = clone.spot_distribution().sum_over_spots(name, u)
     function = casadi.Function("total", [u, *(symbol for symbol, _ in symbols.values())], [total])
     values = [value for _, value in symbols.values()]
-    s = law.spots()
+    s = law.spot_distribution()
     for point in (-12.0, -3.0, -0.4, 0.3, 2.5, 9.0, 15.0, 40.0):
         # two libraries' exp and log, and their order of operations: eps times logarithms of 50 and 1/(D - 1)
         assert float(function(point, *values)) == pytest.approx(s.sum_over_spots(name, point), rel=1e-12)
@@ -408,12 +410,12 @@ def test_derivatives_with_respect_to_parameters(kind):
     law = LAWS[kind]
     clone, symbols = symbolic(law)
     u = 3.0 + (10.0 if law is HU else 0.0)
-    reference = law.spots().reference_area
+    reference = law.spot_distribution().reference_area
     for name in ("surface.gamma", "side1.E", "side1.nu"):
         symbol, value = symbols[name]
         # at one largest spot, not at one ratio to a reference area that moves with the parameter
         area = reference * np.exp(u)
-        spots = clone.spots()
+        spots = clone.spot_distribution()
         total = spots.sum_over_spots("load", np.log(area / spots.reference_area))
         inputs = [s for s, _ in symbols.values()]
         slope = casadi.Function("slope", inputs, [casadi.gradient(total, symbol)])

@@ -103,34 +103,36 @@ def test_power(p, m, lower, span, u):
     end = min(lower + span, u)
     expected = reference(lambda t: 2.5 * np.exp((p - m) * t), lower, end) if end > lower else 0.0
     # quadrature 1e-12; the span of the clipped interval loses eps max|t|/span, absolutely
-    assert term.integral(m, u) == pytest.approx(expected, rel=4e-12, abs=20 * EPS * np.exp(abs(p - m) * 12))
+    assert term.integrate_over_spots(m, u) == pytest.approx(
+        expected, rel=4e-12, abs=20 * EPS * np.exp(abs(p - m) * 12)
+    )
 
 
 @given(p=st.floats(-1.0, 2.0), u=points)
 def test_power_at_the_singular_exponent(p, u):
     term = PowerTerm(2.5, p, -1.0, 3.0)
     span = min(3.0, u) - min(-1.0, u)
-    assert term.integral(p, u) == pytest.approx(2.5 * span, rel=4 * EPS)
+    assert term.integrate_over_spots(p, u) == pytest.approx(2.5 * span, rel=4 * EPS)
 
 
 @given(m=st.floats(0.1, 0.9), u=points)
 def test_power_open_at_both_ends(m, u):
-    assert PowerTerm(2.0, 1.0).integral(m, u) == pytest.approx(
+    assert PowerTerm(2.0, 1.0).integrate_over_spots(m, u) == pytest.approx(
         2.0 * np.exp((1 - m) * u) / (1 - m), rel=8 * EPS
     )
     # an open upper end is u, an open lower end below a closed upper one is clipped to u as well
     closed = min(0.0, u)
-    assert PowerTerm(2.0, 1.0, upper_log_area=0.0).integral(m, u) == pytest.approx(
+    assert PowerTerm(2.0, 1.0, upper_log_area=0.0).integrate_over_spots(m, u) == pytest.approx(
         2.0 * np.exp((1 - m) * closed) / (1 - m), rel=8 * EPS
     )
     above = reference(lambda t: 2.0 * np.exp((1 - m) * t), 0.0, u) if u > 0.0 else 0.0
-    assert PowerTerm(2.0, 1.0, 0.0).integral(m, u) == pytest.approx(above, rel=4e-12)
+    assert PowerTerm(2.0, 1.0, 0.0).integrate_over_spots(m, u) == pytest.approx(above, rel=4e-12)
 
 
 def test_power_on_one_spot():
     term = PowerTerm(2.0, 0.5, 0.0, 1.0)
     t = np.array([-0.1, 0.0, 0.5, 1.0, 1.1])
-    assert term.spot_value(t) == pytest.approx(
+    assert term.evaluate_spot(t) == pytest.approx(
         [0.0, 0.0, 2 * np.exp(0.25), 2 * np.exp(0.5), 0.0], rel=4 * EPS
     )
 
@@ -145,9 +147,9 @@ def test_smooth(m, lower, span, u):
     end = min(lower + span, u)
     expected = reference(lambda t: bump(t) * np.exp(-m * t), lower, end) if end > lower else 0.0
     # poles of the bump at +-10.5 i: the 32-point rule has converged (error 3.4^-64); quadrature 1e-12
-    assert term.integral(m, u) == pytest.approx(expected, rel=4e-12, abs=1e-12)
-    assert term.spot_value(lower + 0.5 * span) == bump(lower + 0.5 * span)
-    assert term.spot_value(lower - 0.01) == 0.0
+    assert term.integrate_over_spots(m, u) == pytest.approx(expected, rel=4e-12, abs=1e-12)
+    assert term.evaluate_spot(lower + 0.5 * span) == bump(lower + 0.5 * span)
+    assert term.evaluate_spot(lower - 0.01) == 0.0
 
 
 def slip_value(t, p, h, q):
@@ -176,16 +178,18 @@ def test_slip(m, q, onset, lower, span, u):
         # own substitution t = start + y^3 for the adaptive rule: a cube root has no Taylor series
         expected = reference(lambda y: 3.0 * y**2 * value(start + y**3), 0.0, np.cbrt(end - start))
     # 1e-9: the cancellation in 1 - h exp(-q t) near the onset, (eps/(q y^3))^(1/3) over the first y
-    assert term.integral(m, u) == pytest.approx(expected, rel=1e-9, abs=1e-13)
+    assert term.integrate_over_spots(m, u) == pytest.approx(expected, rel=1e-9, abs=1e-13)
     middle = lower + 0.5 * span
     # eps/(1 - h exp(-q t)) on the bracket, whose cube root is taken
-    assert term.spot_value(middle) == pytest.approx(3.0 * slip_value(middle, 0.5, h, q), rel=1e-9, abs=1e-4)
+    assert term.evaluate_spot(middle) == pytest.approx(
+        3.0 * slip_value(middle, 0.5, h, q), rel=1e-9, abs=1e-4
+    )
 
 
 def test_slip_is_zero_when_every_spot_slips():
     term = SlipTerm(3.0, 0.5, np.exp(0.5 * 9.0), 0.5, 0.0, 8.0)  # onset 9 above the regime
-    assert term.integral(0.7, 20.0) == 0.0
-    assert term.spot_value(7.0) == 0.0
+    assert term.integrate_over_spots(0.7, 20.0) == 0.0
+    assert term.evaluate_spot(7.0) == 0.0
 
 
 TERMS = {
@@ -223,13 +227,13 @@ def test_slope_is_the_derivative_of_total(name, u):
     # eps/h = 2e-11 round-off; h^2/6 = 2e-11 times the third derivative, which the cube root makes large:
     # u^(1/3 - 3) at 1e-3 from the onset gives 1e-4 there
     tolerance = 2e-4 if name == "slip" and 0.7 < u < 1.2 else 1e-8
-    assert SPOTS.sum_derivative(name, u) == pytest.approx(finite, rel=tolerance, abs=1e-9)
+    assert SPOTS.sum_over_spots_derivative(name, u) == pytest.approx(finite, rel=tolerance, abs=1e-9)
 
 
 @given(u=st.floats(-30.0, 30.0))
 def test_log_total_is_the_logarithm_of_total(u):
     value, growth = SPOTS.log_sum_over_spots("load", u)
-    total, slope = SPOTS.sum_over_spots("load", u), SPOTS.sum_derivative("load", u)
+    total, slope = SPOTS.sum_over_spots("load", u), SPOTS.sum_over_spots_derivative("load", u)
     assert value == pytest.approx(np.log(total), rel=8 * EPS, abs=8 * EPS)
     assert growth == pytest.approx(slope / total, rel=16 * EPS)
 

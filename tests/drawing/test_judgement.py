@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.common.judgement import MAX_STIFFNESS_RATIO, assess_law, find_rms_height
-from jointfmu_tools.common.pressure import judge_joint_stiffness, nominal_pressure
+from jointfmu_tools.common.judgement import MAX_STIFFNESS_RATIO, assess_law_stiffness, find_rms_height
+from jointfmu_tools.common.pressure import find_nominal_pressure_model, judge_joint_stiffness
 from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.inputs.drawing.tables import read_threads
 from jointfmu_tools.inputs.drawing.vdi2230 import proof_load, stress_area
@@ -32,7 +32,7 @@ def rough(joint, h):
 def test_the_ratio_is_that_of_the_joint():
     """K_zz of the uneven joint over F/(0.45 h): the law at the mean pressure says it within 10 %."""
     found = judge_joint_stiffness(BOLTED, [9e3, 15e3])
-    for ratio, preload in zip(found.comparison.ratio, (9e3, 15e3), strict=True):
+    for ratio, preload in zip(found.stiffness_comparison.ratio, (9e3, 15e3), strict=True):
         K = BoltedJointSpring.for_joint(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
         assert ratio == pytest.approx(K * PERSSON_GAMMA * find_rms_height(BOLTED) / (8 * preload), rel=0.1)
     assert found.warnings == ()
@@ -41,7 +41,7 @@ def test_the_ratio_is_that_of_the_joint():
 def test_the_law_roughness_is_judged_by_its_own_height():
     """Many spots on 0.04 m2: the line itself, and a little for the few spots."""
     found = judge_joint_stiffness(load_default("bolted_joint", "roughness"), [9e3])
-    assert found.comparison.ratio == pytest.approx([1.0], abs=0.05)
+    assert found.stiffness_comparison.ratio == pytest.approx([1.0], abs=0.05)
 
 
 def test_a_height_that_is_no_roughness():
@@ -55,10 +55,10 @@ def test_a_factor_of_three_either_way(side):
     k = evaluate_at_pressure(BOLTED.values, p)["K_N"] / BOLTED.values.A_0
     for factor, doubtful in ((0.99 * MAX_STIFFNESS_RATIO, False), (1.01 * MAX_STIFFNESS_RATIO, True)):
         h = factor**side * p / (PERSSON_GAMMA * k)
-        found = assess_law(BOLTED.values, [p], h)
-        assert found.comparison.ratio == pytest.approx([factor**side], rel=1e-9)
-        assert bool(found.warnings) == found.comparison.is_doubtful == doubtful
-    assert f"{found.comparison.ratio[0]:.3g} times" in found.warnings[0]
+        found = assess_law_stiffness(BOLTED.values, [p], h)
+        assert found.stiffness_comparison.ratio == pytest.approx([factor**side], rel=1e-9)
+        assert bool(found.warnings) == found.stiffness_comparison.is_doubtful == doubtful
+    assert f"{found.stiffness_comparison.ratio[0]:.3g} times" in found.warnings[0]
     assert "measure the joint" in found.warnings[0]
 
 
@@ -66,26 +66,26 @@ def test_what_is_not_known_is_not_judged():
     for joint in KINDS:
         file = load_default(joint)
         found = judge_joint_stiffness(file)
-        assert (found.comparison is None) == (find_rms_height(file) is None)
+        assert (found.stiffness_comparison is None) == (find_rms_height(file) is None)
         assert judge_joint_stiffness(file).to_json()["warnings"] == []
-    assert assess_law(BOLTED.values, [0.0], 1e-6).comparison is None
+    assert assess_law_stiffness(BOLTED.values, [0.0], 1e-6).stiffness_comparison is None
 
 
-@pytest.mark.parametrize("joint", [name for name in KINDS if nominal_pressure(KINDS[name])])
+@pytest.mark.parametrize("joint", [name for name in KINDS if find_nominal_pressure_model(KINDS[name])])
 def test_every_joint_is_judged_under_its_load(joint):
     file = rough(joint, 2e-6)
-    how, found = nominal_pressure(KINDS[joint]), judge_joint_stiffness(file)
+    how, found = find_nominal_pressure_model(KINDS[joint]), judge_joint_stiffness(file)
     assert how.load_variable in KINDS[joint].variables
     pressure = how.mean_pressure(file.values, how.default_load(file.values))
-    assert found.comparison.pressure == pytest.approx([pressure])
+    assert found.stiffness_comparison.pressure == pytest.approx([pressure])
     law = KINDS[joint].extract_law(file.values)
     expected = (
         evaluate_at_pressure(law, pressure)["K_N"]
         / law.A_0
         * how.stiffness_ratio(file.values, how.default_load(file.values))
     )
-    assert found.comparison.stiffness == pytest.approx([float(expected)], rel=1e-9)
-    assert found.comparison.ratio == pytest.approx(
+    assert found.stiffness_comparison.stiffness == pytest.approx([float(expected)], rel=1e-9)
+    assert found.stiffness_comparison.ratio == pytest.approx(
         [float(expected) / predicted_stiffness(pressure, 2e-6)], rel=1e-9
     )
 
@@ -94,7 +94,7 @@ def test_the_start_value_of_the_load_is_a_working_point(tmp_path):
     text = format_parameter_file(BOLTED).replace("preload = { value = 0.0", "preload = { value = 12e3")
     (tmp_path / "tight.toml").write_text(text)
     found = judge_joint_stiffness(load_parameter_file(tmp_path / "tight.toml"))
-    assert found.comparison.pressure == pytest.approx([8 * 12e3 / BOLTED.values.A_0])
+    assert found.stiffness_comparison.pressure == pytest.approx([8 * 12e3 / BOLTED.values.A_0])
 
 
 # Where the law ends
@@ -124,7 +124,7 @@ def test_the_law_roughness_is_proven_in_a_range():
     (line,) = [text for text in find_validity_violations(law, 1.01 * flat) if "wave" in text]
     assert f"above {flat:.3g} Pa, the upper end of the checked range" in line
     assert not any("wave" in text for text in find_validity_violations(law, 0.99 * flat))
-    (line,) = assess_law(law, [0.5 * few, 2.0 * few], law.h).warnings
+    (line,) = assess_law_stiffness(law, [0.5 * few, 2.0 * few], law.h).warnings
     assert f"{0.5 * few:.4g} Pa is below" in line
 
 

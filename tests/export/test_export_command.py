@@ -9,7 +9,7 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.export import exports
-from jointfmu_tools.exchange.export.exports import FORMAT_CONTENTS
+from jointfmu_tools.exchange.export.exports import CONTENTS_BY_FORMAT
 
 from jointfmu import __version__
 from jointfmu.parameters import format_parameter_file, load_default
@@ -31,7 +31,7 @@ def run(capsys, *arguments):
 
 
 @pytest.mark.parametrize(
-    ("form", "what"), [(form, what) for form, kinds in FORMAT_CONTENTS.items() for what in kinds]
+    ("form", "what"), [(form, what) for form, kinds in CONTENTS_BY_FORMAT.items() for what in kinds]
 )
 def test_every_file_says_what_it_is(form, what, folder, capsys):
     options = [] if what == "contact" else ["--preload", "9e3"]
@@ -170,7 +170,7 @@ def test_place_that_cannot_be_written(folder, capsys):
 def test_a_joint_without_the_part_is_refused(monkeypatch):
     monkeypatch.setattr(exports, "load_tool_module", lambda kind, tool: None)
     with pytest.raises(ValueError, match="curve of a gear_contact cannot be written"):
-        exports.require_content("gear_contact", "curve")
+        exports.require_export("gear_contact", "curve")
 
 
 def test_what_can_be_written_and_fitted_is_known_without_scipy():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from clients import needs
 from jointfmu_tools.fem import newton, require_fem_packages
-from jointfmu_tools.fem.balance import RigidBalance
-from jointfmu_tools.fem.bolted_contact import BoltedContact, bolt_midpoints, elastic_body
+from jointfmu_tools.fem.balance import RigidBodyBalance
+from jointfmu_tools.fem.bolted_contact import BoltedContact, bolt_midpoints, make_elastic_body
 from jointfmu_tools.fem.contact import ContactInterface, ContactModel, ContactSolution
 from jointfmu_tools.fem.elasticity import Cholesky, ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
@@ -200,7 +200,7 @@ def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
 @needs("gmsh")
 def test_a_mirror_image_equals_two_bodies(plates, law):
     assembly = plates.assembly
-    sides = [elastic_body(plates.plan_mesh, assembly, side, 0.5) for side in (1, 2)]
+    sides = [make_elastic_body(plates.plan_mesh, assembly, side, 0.5) for side in (1, 2)]
     heads = [
         np.stack([body.uniform_load(body.mesh.boundaries[f"head{i}"]) for i in (1, 2)], axis=1)
         for body in sides
@@ -256,7 +256,7 @@ def test_without_a_load_to_close_it_the_contact_is_refused(plates, law, factor):
 @needs("gmsh")
 def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
     """Without the look at the loads: by the solver, or by the look at the contact that it returns."""
-    monkeypatch.setattr(RigidBalance, "check_loads", lambda self: None)
+    monkeypatch.setattr(RigidBodyBalance, "check_loads", lambda self: None)
     model, loads = pulled(plates, law, 1.0, 1.0)
     with pytest.raises(RuntimeError, match=r"positive definite|not settled|stays closed|not in balance"):
         model.solve(loads, 1e5)
@@ -265,17 +265,17 @@ def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
 @needs("gmsh")
 def test_contact_forces_are_checked_by_their_sums(plates, law):
     model, loads = pulled(plates, law, -4e3, -4e3)
-    solution, balance = model.solve(loads, 1e6), model.rigid_balance(loads)
+    solution, balance = model.solve(loads, 1e6), model.rigid_body_balance(loads)
     force = (
         0.5 * model.contact_interface.quadrature_area * solution.pressure
     )  # the mirror image takes the other half
-    balance.check_contact(force * (1.0 + 1e-8))
+    balance.check_contact_forces(force * (1.0 + 1e-8))
     with pytest.raises(RuntimeError, match=r"leaves \S+ times the loads unbalanced, allowed is 1e-06$"):
-        balance.check_contact(force * (1.0 + 1e-5))
+        balance.check_contact_forces(force * (1.0 + 1e-5))
     with pytest.raises(RuntimeError, match="stays closed at 1 of 2412 points"):
-        balance.check_contact(np.where(np.arange(force.size) == 7, force, 0.0))
+        balance.check_contact_forces(np.where(np.arange(force.size) == 7, force, 0.0))
     with pytest.raises(RuntimeError, match="not in equilibrium: it leaves nan"):
-        balance.check_contact(np.where(np.arange(force.size) == 7, np.nan, force))
+        balance.check_contact_forces(np.where(np.arange(force.size) == 7, np.nan, force))
 
 
 @needs("gmsh")

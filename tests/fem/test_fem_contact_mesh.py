@@ -9,7 +9,7 @@ from clients import needs
 from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.elasticity import ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
-from jointfmu_tools.fem.mesh import body_mesh, contact_mesh, find_contact_cells, mesh_plan
+from jointfmu_tools.fem.mesh import contact_mesh, extrude_body_mesh, find_contact_cells, mesh_plan_view
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector, LinearForm, MeshHex, condense, solve
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
@@ -44,13 +44,13 @@ def volume(mesh: MeshHex) -> float:
 @pytest.fixture(scope="module")
 def box_on_plate():
     assembly = Assembly("box on plate", PLATE, BOX, FRAME)
-    return assembly, mesh_plan(assembly, 0.6)
+    return assembly, mesh_plan_view(assembly, 0.6)
 
 
 @needs("gmsh")
 def test_the_mesh_has_the_bodies_volumes(box_on_plate):
     assembly, plan = box_on_plate
-    plate, box = (body_mesh(plan, assembly, side, 0.6) for side in (1, 2))
+    plate, box = (extrude_body_mesh(plan, assembly, side, 0.6) for side in (1, 2))
     hole = np.pi * 0.00875**2
     flange = 0.24 * 0.34 - 0.12 * 0.22 - 8.0 * hole
     walls, floor = 0.16 * 0.26 - 0.12 * 0.22, 0.16 * 0.26
@@ -66,14 +66,14 @@ def test_the_contact_has_the_nodes_of_both_bodies(box_on_plate):
     contact = contact_mesh(plan, find_contact_cells(plan, assembly))
     wanted = {tuple(p) for p in contact.p.T.tolist()}
     for side in (1, 2):
-        mesh = body_mesh(plan, assembly, side, 0.6)
+        mesh = extrude_body_mesh(plan, assembly, side, 0.6)
         assert wanted <= {tuple(p) for p in mesh.p[:2, mesh.p[2] == 0.0].T.tolist()}
 
 
 @needs("gmsh")
 def test_heads_are_annuli(box_on_plate):
     assembly, plan = box_on_plate
-    body = ElasticBody(body_mesh(plan, assembly, 2, 0.6), 1.5e11, 0.28, 7800.0)
+    body = ElasticBody(extrude_body_mesh(plan, assembly, 2, 0.6), 1.5e11, 0.28, 7800.0)
     for i, at in enumerate(assembly.bolts.positions):
         push = body.uniform_load(body.mesh.boundaries[f"head{i + 1}"])[2::3]
         nodes = body.nodes[:, push != 0.0]
@@ -87,7 +87,7 @@ def test_heads_are_annuli(box_on_plate):
 @needs("gmsh")
 def test_refinement_divides_the_sizes():
     assembly = Assembly("boxes", BOX, BOX, FRAME)
-    counts = [mesh_plan(assembly, refinement).cells.shape[1] for refinement in (0.5, 1.0, 2.0)]
+    counts = [mesh_plan_view(assembly, refinement).cells.shape[1] for refinement in (0.5, 1.0, 2.0)]
     assert counts[0] < counts[1] < counts[2] / 2
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from jointfmu_tools.fem.reduction.patch_work import (
     FrictionPoints,
-    LinearContact,
     PatchFit,
     ShearStates,
+    StickContactStiffness,
     compute_friction_work,
     evaluate_friction,
     rigid_displacement_matrix,
@@ -30,7 +30,7 @@ def disc():
     place = place[np.hypot(*place.T) < RADIUS]
     lag, nothing = 1.0 - np.sum(place**2, axis=1) / RADIUS**2, np.zeros(len(place))
     rows = np.concatenate([np.stack([-lag, nothing], axis=1), np.stack([nothing, -lag], axis=1)])
-    approach = float(law.curve.inverse(5e6))
+    approach = float(law.pressure_curve.inverse(5e6))
     area = np.full(len(place), 1e-6)
     points = FrictionPoints(area, np.full(len(place), approach), rigid_displacement_matrix(place))
     number = np.arange(PATCHES) + 0.5
@@ -55,11 +55,11 @@ def disc():
 LINEAR = ShearStates(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
 
 
-def tightened(disc) -> LinearContact:
+def tightened(disc) -> StickContactStiffness:
     """A joint twice as stiff as its contact against shifts."""
     law, points, rows = disc[:3]
     full = stick_stiffness_matrix(evaluate_friction(law, LINEAR, points, rows)[1], points.point_area)
-    return LinearContact(LINEAR, full, 2.0 * full.diagonal())
+    return StickContactStiffness(LINEAR, full, 2.0 * full.diagonal())
 
 
 def fit(disc) -> PatchFit:

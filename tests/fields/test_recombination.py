@@ -1,7 +1,7 @@
 """Few nodes keep the sums of many."""
 
 import numpy as np
-from jointfmu_tools.inputs.fields.reduction import recombine
+from jointfmu_tools.inputs.fields.reduction import recombine_weights
 
 
 def test_few_nodes_keep_the_sums():
@@ -9,7 +9,7 @@ def test_few_nodes_keep_the_sums():
     rng = np.random.default_rng(1)
     x, weights = rng.uniform(-1.0, 1.0, 4000), rng.uniform(0.5, 1.5, 4000)
     values = np.polynomial.chebyshev.chebvander(x, 19)
-    nodes, few = recombine(values, weights, np.eye(20))
+    nodes, few = recombine_weights(values, weights, np.eye(20))
     assert nodes.size <= 20
     assert np.all(few > 0.0)
     np.testing.assert_allclose(few @ values[nodes], weights @ values, atol=1e-9 * weights.sum())

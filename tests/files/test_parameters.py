@@ -12,7 +12,7 @@ from jointfmu_tools.cli.command import parse_setting
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ORIGINS, format_parameter_file, load_default, load_parameter_file
-from jointfmu.quantity import flat_fields, flatten_parameters
+from jointfmu.quantity import flatten_fields, flatten_parameters
 
 each_joint = pytest.mark.parametrize("joint", KINDS)
 
@@ -55,8 +55,8 @@ def test_round_trip(joint, file):
 @each_joint
 def test_defaults_say_where_every_value_comes_from(joint):
     file = load_default(joint)
-    assert isinstance(file.values, KINDS[joint].parameters)
-    declared = dict(flat_fields(KINDS[joint].parameters))
+    assert isinstance(file.values, KINDS[joint].default_parameter_class)
+    declared = dict(flatten_fields(KINDS[joint].default_parameter_class))
     numbers = {name for name in flatten_parameters(file.values) if "unit" in declared[name].metadata}
     assert numbers <= set(file.origins)
     for name in file.origins:
@@ -71,7 +71,9 @@ def test_calibrated_values_are_those_the_code_marks(joint):
     file = load_default(joint)
     fitted = {name for name, kind in file.origins.items() if kind == "calibration"}
     declared = {
-        name for name, item in flat_fields(KINDS[joint].parameters) if item.metadata.get("calibration")
+        name
+        for name, item in flatten_fields(KINDS[joint].default_parameter_class)
+        if item.metadata.get("calibration")
     }
     assert declared <= fitted
     # radial_deformation is fitted as the paper's unpublished nominal one, though a user may choose it

@@ -18,7 +18,7 @@ def test_every_partner_has_one_file() -> None:
 @pytest.mark.parametrize("name", PARTNERS)
 def test_a_file_gives_every_parameter_with_its_source(name: str) -> None:
     file = load_partner_parameters(name)
-    assert isinstance(file.values, PARTNERS[name].parameters)
+    assert isinstance(file.values, PARTNERS[name].parameter_class)
     assert set(flatten_parameters(file.values)) == set(file.origins) == set(file.sources)
     assert set(file.origins.values()) <= set(ORIGINS)
 

@@ -374,12 +374,12 @@ def rough_joint():
     """The default joint with the law `roughness`."""
     from jointfmu.joints.bolted_joint import KIND
     from jointfmu.parameters import ParameterFile
-    from jointfmu.quantity import build_parameter_set, flat_fields
+    from jointfmu.quantity import build_parameter_set, flatten_fields
 
     known = load_default("bolted_joint").values_by_name
     known = {"h": 1e-6, "gamma": 0.45, "longest_wave": 0.8e-3, "hurst": 0.8, "slope": 0.1, **known}
     cls = KIND.laws["roughness"]
-    values = {name: known[name] for name, _ in flat_fields(cls) if name in known}
+    values = {name: known[name] for name, _ in flatten_fields(cls) if name in known}
     return ParameterFile("bolted_joint", "rough", build_parameter_set(cls, values), {}, {})
 
 

@@ -12,7 +12,7 @@ from jointfmu_tools.inputs.fitting import branches, decay
 from jointfmu_tools.inputs.fitting.hysteresis import HysteresisLaw, NonlinearSpring, Oscillator
 from jointfmu_tools.inputs.fitting.least_squares import Solution, Unknown
 from jointfmu_tools.inputs.fitting.measurement import MIN_ROWS, ColumnNames, read_columns
-from jointfmu_tools.inputs.fitting.outcome import FitResult, Picture
+from jointfmu_tools.inputs.fitting.outcome import FitPlot, FitResult
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
 from oracles import joint_measurements as measurements
@@ -34,7 +34,7 @@ AMPLITUDES = np.array([1e-7, 1e-6, 1e-5])
 def test_first_loading_is_the_normal_curve_once_more():
     """B(u) = mu (F_N(0) - F_N(kappa u/mu)) with the normal force of the exported joint, all of its nodes."""
     joint = load_default("bolted_joint").values
-    law, told = loop.first_loading(joint, PRELOAD)
+    law, told = loop.make_shear_loop_law(joint, PRELOAD)
     spring = BoltedJointSpring.for_interface_nodes(joint)
 
     def state(apart):
@@ -44,8 +44,8 @@ def test_first_loading_is_the_normal_curve_once_more():
     kappa = float(joint.shear_stiffness_ratio())
     motion = np.array([1e-8, 1e-7, 1e-6, 5e-6, 9e-6])
     expected = [-joint.mu * state(kappa * u / joint.mu)["f_z"] for u in motion]
-    np.testing.assert_allclose(law.friction(motion), expected, rtol=3e-6)  # the table of 48 steps
-    assert law.friction(np.array([1.0])) == pytest.approx([joint.mu * joint.n_bolts * PRELOAD])
+    np.testing.assert_allclose(law.friction_force(motion), expected, rtol=3e-6)  # the table of 48 steps
+    assert law.friction_force(np.array([1.0])) == pytest.approx([joint.mu * joint.n_bolts * PRELOAD])
     assert told["shear_stiffness"][0] == pytest.approx(kappa * rest["K_zz"], rel=1e-5)
     assert told["shear_stiffness"][0] == pytest.approx(rest["K_xx"], rel=5e-3)  # that of the patches
     near = [state(s)["K_zz"] for s in (-1e-9, 1e-9)]
@@ -56,7 +56,9 @@ def test_first_loading_is_the_normal_curve_once_more():
 
 def test_work_is_the_integral_of_the_friction():
     law, u = measurements.joint_law(), np.linspace(0.0, 12e-6, 20001)
-    whole = np.concatenate([[0.0], np.cumsum(0.5 * (law.friction(u)[1:] + law.friction(u)[:-1])) * u[1]])
+    whole = np.concatenate(
+        [[0.0], np.cumsum(0.5 * (law.friction_force(u)[1:] + law.friction_force(u)[:-1])) * u[1]]
+    )
     np.testing.assert_allclose(law.friction_work(u)[1000:], whole[1000:], rtol=1e-6)  # trapezoids
 
 
@@ -241,7 +243,9 @@ def test_the_command_writes_what_it_found(tmp_path, capsys):
 @pytest.mark.slow
 def test_law_of_a_roughness_has_a_level_and_no_exponent(tmp_path):
     file = load_parameter_file("models/bolted_joint/box_specimen_roughness.toml", "bolted_joint")
-    law = loop.first_loading(file.with_values({"mu": 0.3, "h": 4e-6}, "user", "true").values, PRELOAD)[0]
+    law = loop.make_shear_loop_law(file.with_values({"mu": 0.3, "h": 4e-6}, "user", "true").values, PRELOAD)[
+        0
+    ]
     run, motion, force = measurements.loops(law, (1e-6, 4e-6), np.random.default_rng(1))
     path = measurements.save(
         tmp_path / "m.csv", "run [1], displacement [um], force [N]", run, 1e6 * motion, force
@@ -401,19 +405,21 @@ def test_frequency_and_damping_over_the_amplitude(tmp_path):
     true = measurements.JOINT | {"damping_ratio": 0.004}
     for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
-    assert len(found.pictures) == 2
+    assert len(found.fit_plots) == 2
 
 
 @pytest.mark.slow
 def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
     """No beam is a joint alone: stated or fitted in series the joint is found, without it it is not."""
     true = measurements.file("bolted_joint", measurements.JOINT)
-    joint, series = loop.rest_stiffness(true.values, PRELOAD), 0.5
-    law = loop.first_loading(true.values, PRELOAD, series * joint)[0]
-    alone = loop.first_loading(true.values, PRELOAD)[0]
+    joint, series = loop.shear_stiffness_at_rest(true.values, PRELOAD), 0.5
+    law = loop.make_shear_loop_law(true.values, PRELOAD, series * joint)[0]
+    alone = loop.make_shear_loop_law(true.values, PRELOAD)[0]
     motion = np.geomspace(1e-8, 3e-6, 20)
-    both = motion + alone.friction(motion) / (series * joint)
-    np.testing.assert_allclose(law.friction(both), alone.friction(motion), rtol=1e-4)  # between its nodes
+    both = motion + alone.friction_force(motion) / (series * joint)
+    np.testing.assert_allclose(
+        law.friction_force(both), alone.friction_force(motion), rtol=1e-4
+    )  # between its nodes
     frequency, damping = Oscillator(law, measurements.MASS).free_vibration(np.geomspace(1e-7, 1e-5, 25))
     noise = np.random.default_rng(1)
     frequency, damping = (
@@ -474,7 +480,8 @@ def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(
     for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / measurements.JOINT[name])) < 3.0 * deviation, name
     assert found.facts["shear_stiffness"][0] == pytest.approx(
-        loop.rest_stiffness(measurements.file("bolted_joint", measurements.JOINT).values, PRELOAD), rel=1e-3
+        loop.shear_stiffness_at_rest(measurements.file("bolted_joint", measurements.JOINT).values, PRELOAD),
+        rel=1e-3,
     )
     assert found.solution.relative_deviations["surface.G"] > 100.0 * 1e-4
 
@@ -539,5 +546,5 @@ def test_what_a_fit_does_not_say(stuck, deviation, h, says):
     seen, nothing = np.eye(2), np.zeros(2)
     values = {"mu": 0.1, "h": h}
     solution = Solution(wanted, values, nothing, deviation, seen, deviation**2 * seen, stuck, None)
-    picture = Picture(nothing, nothing, nothing, (nothing, nothing), ("", "", ""))
+    picture = FitPlot(nothing, nothing, nothing, (nothing, nothing), ("", "", ""))
     assert FitResult(load_default("bolted_joint"), solution, {}, picture).rejection_reason() == says

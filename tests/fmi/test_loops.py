@@ -41,7 +41,7 @@ def test_hysteresis_appears(drive, amplitude):
     u = np.array([AMPLITUDES[amplitude]])
     assert row["loss"] == pytest.approx(float(law.loop_area(u)[0]), rel=1e-3)
     assert row["loss"] == pytest.approx(row["E_loss"], rel=1e-3)
-    force = law.friction(u) + law.elastic_spring.force(u)
+    force = law.friction_force(u) + law.elastic_spring.force(u)
     assert row["secant_stiffness"] == pytest.approx(float(force[0] / u[0]), rel=1e-9)
     assert row["loss_factor"] == pytest.approx(row["loss"] / (np.pi * force[0] * u[0]), rel=1e-12)
 
@@ -111,7 +111,9 @@ def test_loops_of_a_bolted_joint_give_its_friction_and_level_back(native, tmp_pa
     assert cli.main([*map(str, ["ramp", fmu, *words])]) == 0
     found = shear.fit(path, fitted_names=["mu", "surface.G"], preload=9e3)
     assert found.solution.values["mu"] == pytest.approx(true.mu, rel=2e-3)  # as the force in gross slip
-    assert found.facts["shear_stiffness"][0] == pytest.approx(shear.rest_stiffness(true, 9e3), rel=0.01)
+    assert found.facts["shear_stiffness"][0] == pytest.approx(
+        shear.shear_stiffness_at_rest(true, 9e3), rel=0.01
+    )
     assert found.facts["loop_area"][0] == pytest.approx(found.facts["loop_area_law"][0], rel=0.01)
 
 

@@ -37,7 +37,7 @@ def plate(monkeypatch):
     """Makes a bolted joint of PLATE, without the finite elements beside it."""
     monkeypatch.setattr(
         plate_finite_elements,
-        "compute_facts",
+        "compute_joint_or_warning",
         lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
     )
     return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)

@@ -7,7 +7,7 @@ import jointfmu_fmu_src.joints as builders
 import jointfmu_tools as tools
 import pytest
 from jointfmu_fmu_src.folders import find_fmu_parts
-from jointfmu_tools.common.joint_parts import TOOL_NAMES, ToolParts, load_tool_module
+from jointfmu_tools.common.joint_parts import TOOL_NAMES, JointToolModules, load_tool_module
 
 from jointfmu.joints import KINDS, MODELS
 
@@ -39,14 +39,14 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def test_a_part_is_a_module(package: str) -> None:
-    parts = ToolParts(package, ("export",))
-    assert parts.load("export") is sys.modules[f"{package}.export"]
-    assert parts.load("fit") is None
+    parts = JointToolModules(package, ("export",))
+    assert parts.load_module("export") is sys.modules[f"{package}.export"]
+    assert parts.load_module("fit") is None
 
 
 def test_a_module_may_serve_several_tools(package: str) -> None:
-    parts = ToolParts(package, ("export",), pressure="helper", checks="helper")
-    assert parts.load("pressure") is parts.load("checks") is sys.modules[f"{package}.helper"]
+    parts = JointToolModules(package, ("export",), pressure="helper", checks="helper")
+    assert parts.load_module("pressure") is parts.load_module("checks") is sys.modules[f"{package}.helper"]
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_a_module_may_serve_several_tools(package: str) -> None:
 )
 def test_a_wrong_module_fails_at_import(package: str, modules: dict[str, str], what: str) -> None:
     with pytest.raises(ImportError, match=what):
-        ToolParts(package, ("export",), **modules)
+        JointToolModules(package, ("export",), **modules)
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_a_wrong_module_fails_at_import(package: str, modules: dict[str, str], w
 )
 def test_a_wrong_name_fails_at_import(package: str, names: tuple[str, ...], what: str) -> None:
     with pytest.raises(ImportError, match=what):
-        ToolParts(package, names)
+        JointToolModules(package, names)
 
 
 def test_a_joint_without_parts_cannot_be_built(monkeypatch: pytest.MonkeyPatch) -> None:

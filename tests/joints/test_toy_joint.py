@@ -29,7 +29,7 @@ C = 1e4
 @pytest.fixture(scope="module", autouse=True)
 def toy():
     joints.register_joint(toy_joint.KIND)
-    builders.FMU_PARTS["toy"], tools.PARTS["toy"] = toy_fmu.FMU_PARTS, toy_tools.TOOL_PARTS
+    builders.FMU_PARTS["toy"], tools.PARTS["toy"] = toy_fmu.FMU_PARTS, toy_tools.TOOL_MODULES
     yield
     del builders.FMU_PARTS["toy"], tools.PARTS["toy"]
     del joints.KINDS["toy"], joints.MODELS["ToySpring"]

@@ -285,7 +285,7 @@ def test_measured_error_covers_the_true_error(name, segments):
 def test_approach_is_the_integral_of_dp_over_k(law):
     """Pressure and stiffness at an approach integrated by adaptive quadrature, to MAX_ERROR."""
     curve = tabulate_approach(law)
-    spots = law.spots()
+    spots = law.spot_distribution()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     pressures = np.geomspace(start, 0.999 * law.hardness, 7)
     ends = [end for end in spots.sorted_regime_end_log_areas if end > spots.stiffness_onset_log_area]
@@ -321,7 +321,7 @@ def test_stiffness_is_the_laws(law):
 @given(data=st.data())
 def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
     law = data.draw(RANDOM[kind])
-    if law.spots().stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO) >= solve_largest_spot(
+    if law.spot_distribution().stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO) >= solve_largest_spot(
         law, law.hardness
     ):
         with pytest.raises(ValueError, match="plastic"):
@@ -346,8 +346,9 @@ def test_closing_begins_at_nothing_and_joins_smoothly(law):
     assert curve.displacement[0] == pytest.approx(-4.0 * p / k, rel=1e-14)  # one multiplication
     # the closing takes over the very same numbers; its last polynomial sums three of them
     assert curve.stiffness_slope_end[i - 1] == pytest.approx(curve.stiffness_slope_start[i], rel=1e-12)
+    spots = law.spot_distribution()
     state = evaluate_at_largest_spot(
-        law, law.spots().reference_area * np.exp(law.spots().stiffness_onset_log_area) * CLOSING_AREA_RATIO
+        law, spots.reference_area * np.exp(spots.stiffness_onset_log_area) * CLOSING_AREA_RATIO
     )
     assert p == pytest.approx(float(state["pressure"]), rel=1e-12)  # round-off of exp and log
     slope = stiffness_curve(law, p)[1]

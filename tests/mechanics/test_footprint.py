@@ -238,7 +238,7 @@ def test_calibrated_values_are_marked():
 def test_merged_nodes_keep_the_sums(moment):
     """Area, pressure and second moments of area in total, and node by node those that only mirrors share."""
     shape = pressure_distribution(JOINT.pattern)
-    merged = shape.merge_nodes(keeps_moment=moment)
+    merged = shape.merge_nodes(keeps_moment_pressure=moment)
     mirrors = 2 if moment else 4  # the frame's axes; a moment tells its two rows apart
     assert merged.area_share.size <= shape.area_share.size / mirrors + 4  # but for nodes on an axis
     x2, y2 = shape.position.T**2

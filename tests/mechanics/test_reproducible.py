@@ -9,11 +9,11 @@ from jointfmu.mechanics.footprint import patch_reduction as reduction
 from jointfmu.mechanics.footprint import point_reduction
 from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.mechanics.footprint.reproducible import (
-    binary_power,
-    binary_root,
     clear_round_off,
     matrix_product,
+    raise_to_power_of_two,
     round_distribution,
+    take_power_of_two_root,
 )
 
 TIMES = 20
@@ -59,7 +59,7 @@ def searched(monkeypatch):
 
         return known
 
-    monkeypatch.setattr(point_reduction, "_select_groups", once(point_reduction._select_groups))
+    monkeypatch.setattr(point_reduction, "_select_node_groups", once(point_reduction._select_node_groups))
     monkeypatch.setattr(reduction, "_fit_points", once(reduction._fit_points))
     return done
 
@@ -122,7 +122,7 @@ def test_functions_are_those_of_numpy():
     """Roots and powers of two, products of matrices."""
     rng = np.random.default_rng(3)
     values, power = rng.random((4, 9)), np.array([[2.0], [4.0], [16.0], [64.0]])
-    np.testing.assert_allclose(binary_root(values, power), values ** (1.0 / power), rtol=1e-15)
-    np.testing.assert_allclose(binary_power(values, power), values**power, rtol=1e-14)
+    np.testing.assert_allclose(take_power_of_two_root(values, power), values ** (1.0 / power), rtol=1e-15)
+    np.testing.assert_allclose(raise_to_power_of_two(values, power), values**power, rtol=1e-14)
     one, other = rng.standard_normal((3, 50)), rng.standard_normal((4, 50))
     np.testing.assert_allclose(matrix_product(one, other), one @ other.T, rtol=0.0, atol=1e-13)

@@ -193,13 +193,15 @@ def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.Fix
     table = records.decimate_curve(curve)
     assert table.rows.shape[0] < curve.displacement.size / 3
     x = np.linspace(curve.displacement[0], 1.1 * curve.end_point[0], 20001)[1:]
-    for exact, rough in zip(curve.derivatives(x), records.to_curve(table).derivatives(x), strict=True):
+    for exact, rough in zip(
+        curve.derivatives(x), records.make_curve_of_table(table).derivatives(x), strict=True
+    ):
         assert np.all(np.abs(rough - exact) <= EXACT * np.abs(exact))
 
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
     joint = bolted_modelica.combine_nodes(bolted, 15e3, 4500.0)
-    total = records.to_curve(joint.force_table)
+    total = records.make_curve_of_table(joint.force_table)
     preload = 15e3 * bolted.joint.n_bolts
     rest = bolted.evaluate(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for s_z in (-5e-6, -1e-6, -1e-7, 0.0, 1e-7, 1e-6, 5e-6, 2e-5, 4e-5):
@@ -436,7 +438,7 @@ def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: An
     u = (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
     assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
     curve = [found[f"joint.{name}"] for name in ("G", "K_n", "bend")]
-    x, y, *_, lifted, _ = elastic_shear(limit, total.shear_ratio, [*curve, 0.0 * u[0]], *u)
+    x, y, *_, lifted, _ = elastic_shear(limit, total.shear_stiffness_ratio, [*curve, 0.0 * u[0]], *u)
     for name, force in (("f[1]", x), ("f[2]", y)):
         np.testing.assert_allclose(found[f"joint.{name}"], -force, rtol=0.0, atol=EXACT * limit)
     normal = found["joint.G"] - total.preload_contact_force + lifted

@@ -123,7 +123,7 @@ def test_without_a_compiler_the_python_law_answers_and_says_so(monkeypatch, caps
         raise ImportError("No module named 'ziglang'")
 
     monkeypatch.setattr("jointfmu_fmu_src.native.library.get_compiled_model", missing)
-    engine._announce_python.cache_clear()
+    engine._announce_python_evaluation.cache_clear()
     for _ in range(2):
         joint = open_joint(model, file)
         assert isinstance(joint, PythonJoint)
@@ -135,7 +135,7 @@ def test_without_a_compiler_the_python_law_answers_and_says_so(monkeypatch, caps
 
 def test_on_a_platform_without_libraries_the_python_law_answers(monkeypatch, capsys):
     monkeypatch.setattr("platform.machine", lambda: "riscv64")
-    engine._announce_python.cache_clear()
+    engine._announce_python_evaluation.cache_clear()
     file = load_default("gear_contact")
     joint = open_joint(KINDS["gear_contact"].models[0], file)
     assert isinstance(joint, PythonJoint)

@@ -135,7 +135,7 @@ def test_properties_are_those_of_python(library: CDLL, curve: Curve) -> None:
     rng, contacts = np.random.default_rng(3), np.zeros(3, dtype=int)
     for _ in range(FOUNDATIONS):
         drawn = draw_foundation(library, curve, rng)
-        foundation, table = drawn.foundation, drawn.foundation.curve
+        foundation, table = drawn.foundation, drawn.foundation.pressure_curve
         span = table.displacement[-1] - table.displacement[0]
         np.testing.assert_allclose(
             foundation.heights, drawn.expected_heights, rtol=0.0, atol=1e-11 * span, strict=True
@@ -165,7 +165,7 @@ def test_the_friction_limit_grows_with_the_pressure_in_full_contact(library: CDL
     rng = np.random.default_rng(4)
     for _ in range(FOUNDATIONS):
         drawn = draw_foundation(library, curve, rng)
-        table, heights = drawn.foundation.curve, drawn.foundation.heights
+        table, heights = drawn.foundation.pressure_curve, drawn.foundation.heights
         closed = drawn.approach >= heights[-1]
         total = np.sum(drawn.found[..., 1], axis=-1)[closed]
         load, stiffness = table.derivatives(drawn.approach[closed], 1)

@@ -26,7 +26,7 @@ from jointfmu_fmu_src.native.code.generate import (
     RUNTIME_FOLDER,
     generate_sources,
     list_runtime_files,
-    read_token,
+    read_instantiation_token,
 )
 from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS
 from jointfmu_fmu_src.native.compiled.compiler import _write_source_folder as source_folder
@@ -117,7 +117,12 @@ class Sources(NamedTuple):
     @property
     def arguments(self) -> tuple[str, ...]:
         """Token and layout on the command line of a host."""
-        return (read_token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
+        return (
+            read_instantiation_token(dict(self.files)),
+            str(self.inputs),
+            str(self.outputs),
+            str(self.parameters),
+        )
 
 
 ELASTIC_FILES: list[ParameterFile] = []

@@ -99,9 +99,9 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
             instance.reset()
             instance.enter_initialization()
             instance.set_values({parameter: value})
-            reason = attempt(lambda v: model.tabulate(make(model.parameters, v)), start | {parameter: value})[
-                1
-            ]
+            reason = attempt(
+                lambda v: model.tabulate(make(model.parameter_class, v)), start | {parameter: value}
+            )[1]
             if not reason:
                 instance.fmu.exitInitializationMode()
                 continue

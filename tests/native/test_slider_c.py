@@ -14,7 +14,13 @@ from jointfmu_fmu_src.native.code.emit import C_HELPER_FUNCTIONS, format_functio
 from jointfmu_fmu_src.native.code.generate import RUNTIME_FOLDER
 from jointfmu_fmu_src.native.compiled import compiler
 
-from jointfmu.mechanics.jenkins import Sliders, elastic_predictor, limit_function, return_map, yield_function
+from jointfmu.mechanics.jenkins import (
+    Sliders,
+    elastic_predictor,
+    return_map,
+    slip_limit_function,
+    yield_function,
+)
 from jointfmu.mechanics.sliders import sum_slider_forces, torsion_directions
 
 pytestmark = pytest.mark.slow
@@ -188,7 +194,7 @@ def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> n
     tried, sticks = np.empty((2, SLIDERS)), (c_double * 3)()
     out = (POINTER_TO * 2)(*map(pointer, tried))
     first = library.sliders_predict(AVX, SLIDERS, byref(s), out, sticks)
-    at_limit = np.append(limit_function(list(tried), rows["limit_end"]) > 0.0, True)
+    at_limit = np.append(slip_limit_function(list(tried), rows["limit_end"]) > 0.0, True)
     assert first == np.argmax(at_limit) // 2 * 2
     sums = sum_slider_forces(np.where(np.arange(SLIDERS) < first, tried, 0.0))
     assert_close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))

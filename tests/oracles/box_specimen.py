@@ -18,7 +18,7 @@ from jointfmu_tools.fem.modes import DEFAULT_REFINEMENT
 from jointfmu_tools.joints.bolted_joint.frequencies import ASSEMBLY_FILE
 from scipy.optimize import least_squares
 
-from jointfmu.joints.bolted_joint.law import BoltedJoint
+from jointfmu.joints.bolted_joint.law import BoltedJointParameters
 
 LENGTHS = ("length", "height", "wall", "flange_thickness", "overhang")
 STEP = 0.01
@@ -79,7 +79,7 @@ def lengths_of(assembly: Assembly) -> Array:
 
 
 def frequencies(
-    assembly: Assembly, joint: BoltedJoint, states: Sequence[tuple[float, float]], **options: Any
+    assembly: Assembly, joint: BoltedJointParameters, states: Sequence[tuple[float, float]], **options: Any
 ) -> Array:
     """Frequencies (states, modes) [Hz] with the shear stiffness of the joint."""
     return modes.compute_frequencies(assembly, joint, float(joint.shear_stiffness_ratio()), states, **options)
@@ -87,7 +87,7 @@ def frequencies(
 
 def identify(
     start: Assembly,
-    joint: BoltedJoint,
+    joint: BoltedJointParameters,
     preload: float,
     measured: Array,
     refinement: float = DEFAULT_REFINEMENT,

@@ -76,9 +76,9 @@ def frequency_fit(rng, path):
 def series_fit(rng, path):
     """Fit the frequency over the preload and a series stiffness of the structure, 0.2 % of noise."""
     save(path, "preload [N], frequency [Hz]", *preload_series(rng, "frequency", 0.002, series=3e10))
-    free = ["surface.D", "surface.G", preload.SERIES_STIFFNESS]
+    free = ["surface.D", "surface.G", preload.SERIES_STIFFNESS_NAME]
     return preload.fit(path, START, fitted_names=free, modal_mass=JOINT["mass"]), JOINT | {
-        preload.SERIES_STIFFNESS: 3e10
+        preload.SERIES_STIFFNESS_NAME: 3e10
     }
 
 

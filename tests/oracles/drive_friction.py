@@ -5,13 +5,13 @@ from importlib.resources import files
 
 import numpy as np
 from jointfmu_tools.joints.harmonic_drive import catalogue
-from jointfmu_tools.joints.harmonic_drive.friction import collect_published, scale_friction
+from jointfmu_tools.joints.harmonic_drive.friction import collect_published_friction, scale_friction
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from scipy.optimize import minimize_scalar
 
 from jointfmu.joints.harmonic_drive.friction import dry_friction_factor, friction_limits, viscous_torque
 
-DRIVES = {name: each for name, (each, _) in collect_published(catalogue.list_drives()).items()}
+DRIVES = {name: each for name, (each, _) in collect_published_friction(catalogue.list_drives()).items()}
 
 
 def leave_one_out():

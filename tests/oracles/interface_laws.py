@@ -118,7 +118,7 @@ def law_state(case, side):
     """Law on the nominal area of one square: k [N/m3], area and plastic share of the real area [1]."""
     law = case.with_side(side)
     u = solve_largest_spot(law, case.pressures)
-    s, state = law.spots(), evaluate_at_pressure(law, case.pressures)
+    s, state = law.spot_distribution(), evaluate_at_pressure(law, case.pressures)
     if "elastic_fraction" in state:
         elastic = state["elastic_fraction"]
     elif "elastic_area" in s.regime_terms:

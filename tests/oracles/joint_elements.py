@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy import sparse as sp
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
-from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, preload_pressure
+from jointfmu.joints.bolted_joint.law import RoughBoltedJointParameters, preload_pressure
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.distribution import NodalField, PressureDistribution
@@ -349,7 +349,7 @@ class Lap:
 
     assembly: Assembly
     bodies: JointFiniteElements
-    values: RoughBoltedJoint
+    values: RoughBoltedJointParameters
 
     @classmethod
     def of(cls, refinement: float = 1.0) -> "Lap":

@@ -30,7 +30,7 @@ def file(kind, values):
 @cache
 def joint_law():
     """Loops of the joint in shear, with the true parameters."""
-    return loop.first_loading(file("bolted_joint", JOINT).values, PRELOAD)[0]
+    return loop.make_shear_loop_law(file("bolted_joint", JOINT).values, PRELOAD)[0]
 
 
 def loops(law, amplitudes, rng, cycles=2, points=100, noise=NOISE):

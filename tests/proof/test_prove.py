@@ -21,7 +21,7 @@ from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import make_proof_files
 from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_tools import cli
-from jointfmu_tools.run.proof.importers import FMI_VERSIONS as KNOWN
+from jointfmu_tools.run.proof.importers import SUPPORTED_FMI_VERSIONS as KNOWN
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
 

@@ -15,7 +15,7 @@ from jointfmu_tools.studies.published.reference import (
     GUESS_ROLES,
     ROLES,
     Guess,
-    Point,
+    PublishedPoint,
     compute_trivial_guesses,
     read_points,
 )
@@ -30,14 +30,16 @@ from jointfmu_tools.studies.published.validation import (
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_default
-from jointfmu.quantity import flat_fields, flatten_parameters
+from jointfmu.quantity import flatten_fields, flatten_parameters
 
 REPRODUCED = 1e-6
 """Relative tolerance of a value fitted again [1]: the fit stops at residuals of 1e-8, and the worst of
 its parameters moves about ten times as much."""
 
 PAPERS = [paper for kind in KINDS.values() for paper in load_published_numbers(kind).papers]
-OBSERVABLES = {q: f for kind in KINDS.values() for q, f in load_published_numbers(kind).observables.items()}
+OBSERVABLES = {
+    q: f for kind in KINDS.values() for q, f in load_published_numbers(kind).observable_functions.items()
+}
 FITS = {
     name: (load_published_numbers(kind).papers[0], load_published_numbers(kind).calibration)
     for name, kind in KINDS.items()
@@ -130,7 +132,7 @@ def test_table_3_is_divided_by_the_experiment(rows):
 
 
 def point(**changes):
-    base = Point(
+    base = PublishedPoint(
         paper="p",
         joint="gear_contact",
         id="x",
@@ -291,7 +293,7 @@ def test_a_wrong_computed_value_is_a_miss(monkeypatch):
                 wrong = first.value + sign * 2.0 * off
             assert not compare_point(first, wrong).has_passed
     monkeypatch.setitem(
-        load_published_numbers(KINDS["bolted_joint"]).observables, "psi", lambda values, D: 2.0
+        load_published_numbers(KINDS["bolted_joint"]).observable_functions, "psi", lambda values, D: 2.0
     )
     found = validate()
     wrong = [p.id for p in ALL if p.quantity == "psi"]
@@ -387,7 +389,7 @@ def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
     unknowns = {name for fit in FITS[joint][1] for name in fit.unknowns}
     file = load_default(joint)
     assert unknowns == {name for name, kind in file.origins.items() if kind == "calibration"}
-    declared = {name for name, item in flat_fields(type(file.values)) if item.metadata.get("calibration")}
+    declared = {name for name, item in flatten_fields(type(file.values)) if item.metadata.get("calibration")}
     assert declared <= unknowns
     for fit in FITS[joint][1]:
         for name in fit.unknowns:

@@ -15,7 +15,7 @@ from jointfmu.quantity import (
     check_fields,
     choice_field,
     find_problem,
-    flat_fields,
+    flatten_fields,
     flatten_parameters,
     group_field,
     quantity_field,
@@ -65,7 +65,7 @@ def test_build_and_flatten_are_inverse():
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_laws_survive_flattening(law):
     assert build_parameter_set(type(law), flatten_parameters(law)) == law
-    names = [name for name, _ in flat_fields(type(law))]
+    names = [name for name, _ in flatten_fields(type(law))]
     assert names == list(flatten_parameters(law))
     assert len(names) == len(set(names))
     assert not any(name.endswith("_") for name in names)
@@ -73,7 +73,7 @@ def test_laws_survive_flattening(law):
 
 def test_lambda_has_its_published_name():
     assert "lambda" in flatten_parameters(YU)
-    assert dict(flat_fields(Yu2022))["lambda"].name == "lambda_"
+    assert dict(flatten_fields(Yu2022))["lambda"].name == "lambda_"
     assert replace_values(YU, {"lambda": 0.125}).lambda_ == 0.125
 
 
@@ -194,8 +194,8 @@ def test_a_set_has_one_of_the_alternatives(values):
     hole = build_parameter_set(Hole, values)
     assert flatten_parameters(hole) == values
     assert flatten_parameters(build_parameter_set(Part, nested(values))) == nested(values)
-    assert list(dict(flat_fields(Hole))) == ["depth", "round.radius", "square.side", "square.corner"]
-    assert list(dict(flat_fields(Hole, parameter_names=values))) == list(values)
+    assert list(dict(flatten_fields(Hole))) == ["depth", "round.radius", "square.side", "square.corner"]
+    assert list(dict(flatten_fields(Hole, parameter_names=values))) == list(values)
 
 
 @pytest.mark.parametrize("most", [ROUND, SQUARE])
@@ -289,12 +289,12 @@ def test_no_physical_value_has_a_default():
         with pytest.raises(ValueError, match=r"^missing ") as error:
             build_parameter_set(cls, {})
         missing = set(str(error.value).removeprefix("missing ").split(", "))
-        assert missing == {name for name, item in flat_fields(cls) if "unit" in item.metadata}
+        assert missing == {name for name, item in flatten_fields(cls) if "unit" in item.metadata}
 
 
 def test_every_number_has_a_unit_and_a_meaning():
     for cls in (Zhao2018, type(HU), Yu2022):
-        for name, item in flat_fields(cls):
+        for name, item in flatten_fields(cls):
             assert item.metadata["doc"].strip(), name
             if "allowed" not in item.metadata:
                 assert item.metadata["unit"] in {"1", "m", "m2", "Pa", "kg"}, name

@@ -15,7 +15,7 @@ from jointfmu_tools.systems.system import load_systems
 from scipy import constants
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flatten_fields
 from jointfmu.quantity.units import (
     UNITS,
     base_exponents,
@@ -207,8 +207,8 @@ def test_sets_are_consistent():
 
 def declared():
     """Every SI unit that a parameter, a variable, a system or a file declares, by where."""
-    for cls in (*(kind.parameters for kind in KINDS.values()), Layer, Plate, BoxSection):
-        for name, item in flat_fields(cls):
+    for cls in (*(kind.default_parameter_class for kind in KINDS.values()), Layer, Plate, BoxSection):
+        for name, item in flatten_fields(cls):
             if "unit" in item.metadata:
                 yield f"{cls.__name__}.{name}", item.metadata["unit"]
     for name, model in (MODELS | PARTNERS).items():

@@ -72,7 +72,7 @@ def paths(tmp_path_factory) -> list[Path]:
             assert cli.main(drawing(name, folder)) == 0
             patch.setattr(
                 plate_finite_elements,
-                "compute_facts",
+                "compute_joint_or_warning",
                 lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
             )
     return sorted(folder.iterdir())

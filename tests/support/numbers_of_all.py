@@ -32,7 +32,7 @@ def texts(paths: list[Path]) -> dict[str, str]:
     shipped = files("jointfmu_models")
     found = texts_of([Path(str(p)) for kind in KINDS for p in sorted((shipped / kind).glob("*.toml"))])
     with pytest.MonkeyPatch.context() as patch:
-        for varied in ("_compute_boundary_experiments", "_compute_samples"):
+        for varied in ("_compute_boundary_experiments", "_compute_sampled_experiments"):
             patch.setattr(experiments, varied, lambda model, parameters: ())
         return found | texts_of(paths)
 

@@ -27,7 +27,7 @@ SIZE, GAMMA = 1e-3, 1.5
 
 
 def waves(points):
-    return synthesis.Waves(size=SIZE, points=points, gamma=GAMMA)
+    return synthesis.Waves(sample_length=SIZE, point_count=points, gamma=GAMMA)
 
 
 def gaussian_profile(points, H, G, seed, dx=1e-6):
@@ -139,7 +139,7 @@ def test_noise_and_tilt_do_not_pull_the_structure_function():
     rough = clean.with_heights(clean.z + noise + 1e3 * np.linspace(0.0, np.ptp(clean.z), 4096))
     before, after = (fit_law(structure_function(one, "profile"), 0.0, 1.0) for one in (clean, rough))
     assert abs(after.H - before.H) < 2.0 * np.sqrt(before.covariance[0, 0])
-    assert after.offset > 0.2 > 0.0 > before.offset
+    assert after.relative_offset > 0.2 > 0.0 > before.relative_offset
 
 
 def test_range_ends_where_the_surface_rolls_off():
@@ -177,9 +177,9 @@ def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
     for G in (best.profile.G, best.areal.G_s):
         assert not G.is_determined
         assert np.isnan([G.value, G.low, G.high]).all()
-        assert 200.0 < G.decades < 1000.0  # ln G = .../(2 (D - 1)), 1/(2 * 0.005) = 100 at most
+        assert 200.0 < G.interval_decades < 1000.0  # ln G = .../(2 (D - 1)), 1/(2 * 0.005) = 100 at most
     (text,) = [text for text in found.warnings if text.startswith("G is not determined")]
-    assert f"spans {best.profile.G.decades:.1f} decades" in text
+    assert f"spans {best.profile.G.interval_decades:.1f} decades" in text
     assert "lies at the end of 1 to 2" in found.undetermined_reason()
     for joint in KINDS:
         before = load_default(joint)
@@ -187,7 +187,7 @@ def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
         assert after.values == before.values
         assert after.roughness["Rq1"] == found.h
         with pytest.raises(ValueError, match=rf"G of smooth is not determined .*: {joint} needs a number"):
-            with_surface(before, found, force=True)
+            with_surface(before, found, set_undetermined=True)
 
 
 def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
@@ -226,7 +226,7 @@ def test_roughness_leaves_the_floating_point_numbers():
     for value, low, high in ((-300.0, -800.0, 0.0), (-750.0, -760.0, -740.0), (600.0, 500.0, 800.0)):
         outside = RoughnessEstimate.from_logarithms(value, low, high)
         assert not outside.is_determined
-        assert outside.decades == pytest.approx((high - low) / np.log(10.0), rel=1e-14)  # round-off
+        assert outside.interval_decades == pytest.approx((high - low) / np.log(10.0), rel=1e-14)  # round-off
 
 
 def test_pair_adds_the_powers():
@@ -315,7 +315,7 @@ def test_intervals_apart_leave_the_dimension_open():
     assert apart.undetermined_reason().startswith("the methods disagree, D = ")
     before = load_default("bolted_joint")
     assert with_surface(before, apart).values == before.values
-    forced = with_surface(before, apart, force=True).values.surface
+    forced = with_surface(before, apart, set_undetermined=True).values.surface
     assert apart.select_best_result().profile.D.value == forced.D
     crooked = replace(second, fit=replace(second.fit, deviation=1.0))
     assert replace(found, results=(first, crooked)).undetermined_reason() == "not self-affine (psd)"

@@ -40,7 +40,7 @@ def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
     A line has profile_share of the power of the surface that it is cut from.
     """
     H = fractal.hurst_exponent(D)
-    waves = synthesis.Waves(size=SIZE, points=5000, gamma=gamma)
+    waves = synthesis.Waves(sample_length=SIZE, point_count=5000, gamma=gamma)
     missing = gamma ** (-2.0 * H * waves.frequencies.size)  # waves shorter than two spacings
     h = fractal.rms_height(D, G, SIZE, gamma=gamma) * np.sqrt(
         fractal.profile_power_ratio(H) * (1.0 - missing)
@@ -70,7 +70,7 @@ def test_a_sine_counts_up_to_its_wavelength():
     over, under = (form.scan_roughness(line, line, wave) for wave in (5.1e-5, 4.9e-5))
     assert over.h == pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6)
     assert under.h < 1e-9 * over.h
-    assert (over.rms, over.mean_absolute) == (
+    assert (over.rms_height, over.mean_absolute_height) == (
         pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6),
         pytest.approx(4e-6 / np.pi, rel=1e-2),
     )
@@ -103,5 +103,5 @@ def test_missing_points_count_in_h_as_filled():
     z = line.z.copy()
     z[100:110] = np.nan
     found = form.scan_roughness(line.with_heights(z), line, 1e-3)
-    assert found.rms == pytest.approx(1e-6 / np.sqrt(2.0), rel=0.02)
+    assert found.rms_height == pytest.approx(1e-6 / np.sqrt(2.0), rel=0.02)
     assert np.isfinite(found.h)

@@ -127,7 +127,9 @@ def test_loops_inside_have_the_area_of_the_fmus(name):
     springs = fit_spring(own, own.rated_torque)
     for share in (0.1, 0.2, 0.3, 0.5, 0.7):
         torques, x = own.compute_loop(share * own.rated_torque)
-        assert loop_area(x, springs.torque_at(x)) == pytest.approx(loop_area(x, torques), rel=0.05), share
+        assert loop_area(x, springs.compute_torque(x)) == pytest.approx(loop_area(x, torques), rel=0.05), (
+            share
+        )
 
 
 @pytest.mark.parametrize(("speed", "since"), [(0.01, 0.0), (5.0, 0.045), (60.0, 0.045)])

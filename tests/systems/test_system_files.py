@@ -406,7 +406,7 @@ def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatc
     def diverges(*_: object) -> None:
         raise ValueError("too large")
 
-    monkeypatch.setattr(cosimulation, "simulate", diverges)
+    monkeypatch.setattr(cosimulation, "simulate_system", diverges)
     path = changed(tmp_path)
     said = refused_line(capsys, "system", path, "--out", out, "--csv", tmp_path / "run.csv")
     assert "too large; experiment.interval = 0.0005 s may be too long" in said

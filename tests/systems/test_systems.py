@@ -38,12 +38,12 @@ from jointfmu_fmu_src.partners.laws import (
 from jointfmu_fmu_src.ssv import REAL_ELEMENT
 from jointfmu_tools import cli
 from jointfmu_tools.inputs.fitting import decay
-from jointfmu_tools.joints.harmonic_drive.job import TORQUE_RATIOS
+from jointfmu_tools.joints.harmonic_drive.job import VIBRATION_TORQUE_RATIOS
 from jointfmu_tools.pages.report.systems import wind_up_and_tip_error
 from jointfmu_tools.systems import decays, ringing, ssp
-from jointfmu_tools.systems.cosimulation import simulate as simulate_system
+from jointfmu_tools.systems.cosimulation import simulate_system as simulate_system
 from jointfmu_tools.systems.master import Slave, simulate_motion
-from jointfmu_tools.systems.ssp import MASTERS, Master
+from jointfmu_tools.systems.ssp import MASTERS, MasterKind
 from jointfmu_tools.systems.system import list_system_names, load_system, load_systems
 from jointfmu_tools.systems.wiring import find_model, find_signals
 from lxml import etree
@@ -154,7 +154,7 @@ def test_a_partner_computes_the_packages_equations(make: Make, name: str, versio
     values = {v.name: float(rng.normal()) for v in (*model.inputs, *model.outputs[: model.state_count])}
     fmu.enter_initialization(0.7)
     fmu.set_values(given | values)
-    expected = model.evaluate(model.parameters(**given), values | {"time": 0.7})
+    expected = model.evaluate(model.parameter_class(**given), values | {"time": 0.7})
     assert fmu.get() == pytest.approx(dict(expected), rel=1e-14)  # at once, without a step
     assert not fmu.messages or not fmu.warnings
 
@@ -294,7 +294,7 @@ MASTER = pytest.mark.parametrize("master", MASTERS, ids=["side by side", "in tur
 @MASTER
 @pytest.mark.parametrize("name", list_system_names())
 def test_an_archive_is_complete_and_its_connections_fit(
-    built: Path, name: str, version: str, master: Master
+    built: Path, name: str, version: str, master: MasterKind
 ) -> None:
     found, folder = load_system(name), ssp.ARCHIVE_FOLDERS[version][0]
     with zipfile.ZipFile(built / folder / f"{name}{master.suffix}.ssp") as archive:
@@ -307,7 +307,7 @@ def test_an_archive_is_complete_and_its_connections_fit(
     root = etree.fromstring(members["SystemStructure.ssd"])
     space = {"ssd": root.nsmap["ssd"], "ssc": root.nsmap["ssc"]}
     assert root.get("version") == version
-    assert master.lag_reason in root.get("description")
+    assert master.force_lag_reason in root.get("description")
     fmus = ssp.find_fmu_names(found)
     units = {}
     for component in root.iterfind(".//ssd:Component", space):
@@ -366,7 +366,7 @@ def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Pa
 @MASTER
 @pytest.mark.parametrize("name", list_system_names())
 def test_a_reader_of_both_versions_opens_the_archives(
-    built: Path, name: str, version: str, master: Master
+    built: Path, name: str, version: str, master: MasterKind
 ) -> None:
     """pyssp_standard, which brings schemas of its own: connections, numbers and the FMUs' descriptions."""
     from pyssp_standard.ssp import SSP
@@ -564,7 +564,7 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
     found, (_, in_turn) = load_system(name), MASTERS
     stop = 0.6 * found.stop_time
 
-    def run(master: Master, h: float) -> Array:
+    def run(master: MasterKind, h: float) -> Array:
         thin = round(step / h)
         return simulate_system(found, built / "fmi2", master, step=h, stop=stop)[shown][::thin]
 
@@ -1004,7 +1004,10 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     struck = decay.analyse_decay(rows["time"][free], rows["column.s"][free])
     column = ringing.find_vibrating_joints()["bolted_column"]
     (pulled,) = decays.simulate_decays(
-        column, built / "fmi2", column.test.slip_deflection.deflection, [column.test.slip_deflection.load]
+        column,
+        built / "fmi2",
+        column.vibration_test.slip_deflection.deflection,
+        [column.vibration_test.slip_deflection.load],
     )
     order = np.argsort(pulled.amplitude)
     seen = struck.amplitude > 1.2e-7
@@ -1084,7 +1087,9 @@ def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixtur
     folder = ["--fmus", str(built / "fmi2"), "--json"]
     assert cli.main(["ring", "robot_joint", *folder, "--inertia", "0.2"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in TORQUE_RATIOS]
+    assert [row["load"] for row in found["rows"]] == [
+        x * DRIVE.joint.rated_torque for x in VIBRATION_TORQUE_RATIOS
+    ]
     first = found["rows"][0]
     assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)
     assert cli.main(["ring", "bolted_column", *folder, "--load", "20e3", "--inertia", "50"]) == 0

@@ -97,7 +97,7 @@ def test_rows_of_a_study_are_read(tmp_path: Path) -> None:
     path = written(tmp_path / "out", json.dumps(GOOD).encode(), json.dumps(FAILED).encode())
     with journal.Journal(path.parent, 8) as held:
         assert (held.finished_runs, held.failed_count) == ({0, 1}, 1)
-        held.add({**GOOD, "run": 5})
+        held.append_entries({**GOOD, "run": 5})
     assert [one["run"] for one in journal.read_entries(path.parent)] == [0, 1, 5]
     units = {"tau": "N.m", "K_WTS": "N.m/rad"}
     assert format_runs_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")

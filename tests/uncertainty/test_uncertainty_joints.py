@@ -19,7 +19,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import node_pressure, with_rigid_members
 from jointfmu.parameters import load_default
-from jointfmu.quantity import build_parameter_set, flat_fields, flatten_parameters
+from jointfmu.quantity import build_parameter_set, flatten_fields, flatten_parameters
 
 pytestmark = pytest.mark.slow
 
@@ -47,8 +47,8 @@ def test_outputs_are_those_of_the_python_law(joint, study):
         columns, parameters = sample_of(task, points, i)
         spring = model.tabulate(replace(parameters, **curves.settings))
         stated = {v.name: 0.0 for v in model.inputs} | dict(curves.other_inputs(parameters))
-        for row, load in enumerate(columns[task.load.name]):
-            exact = model.evaluate(spring, stated | {task.load.name: float(load)})
+        for row, load in enumerate(columns[task.ramped_input.name]):
+            exact = model.evaluate(spring, stated | {task.ramped_input.name: float(load)})
             for variable in curves.outputs:
                 scale = np.abs(columns[variable.name]).max()
                 found = columns[variable.name][row]
@@ -98,7 +98,7 @@ def test_pattern_of_the_bolts_may_be_uncertain():
     task = state_problem(load_default("bolted_joint"), {"pattern.decay_length": "+-20%"}, None, 4)
     points = propagate.sample_designs(task, 4, 0)[0]
     found = propagate.compute_bands(task, points)
-    assert found.refusals.count == 0
+    assert found.refused_samples.count == 0
     columns, joint = sample_of(task, points, 2)
     exact = BoltedJointSpring.for_joint(joint).evaluate(30e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert columns["K_zz"][-1] == pytest.approx(exact["K_zz"], rel=1e-8)
@@ -130,9 +130,9 @@ def test_refused_samples_are_counted_with_the_reason():
     """Eccentricity of normal(5e-6, 5e-6): 15.87 % lie below zero."""
     task = state_problem(load_default("harmonic_drive"), {"eccentricity": "normal(5e-6, 5e-6)"}, None, 3)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 1024, 0)[0])
-    assert found.refusals.count == pytest.approx(0.158655 * 1024, abs=1.5)  # a balanced sequence
-    assert "is outside [0, 0.001): installation eccentricity" in found.refusals.reason
-    assert found.refusals.example["eccentricity"] < 0.0
+    assert found.refused_samples.count == pytest.approx(0.158655 * 1024, abs=1.5)  # a balanced sequence
+    assert "is outside [0, 0.001): installation eccentricity" in found.refused_samples.reason
+    assert found.refused_samples.first_refused_sample["eccentricity"] < 0.0
     assert np.all(np.isfinite(found.quantiles["K_WTS"]))
 
 
@@ -142,12 +142,12 @@ def test_samples_that_only_the_law_refuses():
     points = propagate.sample_designs(task, 256, 0)[0]
     found = propagate.compute_bands(task, points)
     runs, law = task.list_runs(points), KINDS["bolted_joint"]
-    for i in list(found.samples.errors)[:3]:
+    for i in list(found.sampled_outputs.errors)[:3]:
         values = {**task.evaluator.file.values_by_name, **runs[i]}
         with pytest.raises(ValueError, match=r"representable|no stiffness"):
-            law.models[0].tabulate(build_parameter_set(law.parameters, values))
-    assert 0 < found.refusals.count < 200
-    assert "D" in found.refusals.reason
+            law.models[0].tabulate(build_parameter_set(law.default_parameter_class, values))
+    assert 0 < found.refused_samples.count < 200
+    assert "D" in found.refused_samples.reason
 
 
 def test_loads_beyond_the_table_are_refused():
@@ -155,8 +155,8 @@ def test_loads_beyond_the_table_are_refused():
     given = {"surface.D": "+-1%", "tau": "normal(29, 1)"}
     task = state_problem(load_default("harmonic_drive"), given, None, 3)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 1024, 0)[0])
-    assert found.refusals.count == pytest.approx(0.158655 * 1024, abs=1.5)
-    assert "is outside (0, 30]: up to the end of the tabulated law" in found.refusals.reason
+    assert found.refused_samples.count == pytest.approx(0.158655 * 1024, abs=1.5)
+    assert "is outside (0, 30]: up to the end of the tabulated law" in found.refused_samples.reason
 
 
 def test_all_refused():
@@ -295,11 +295,11 @@ def test_every_parameter_can_be_uncertain():
     """+-1 % of any number that is not counted or zero, in one study per joint."""
     for joint in KINDS:
         values = flatten_parameters(load_default(joint).values)
-        declared = dict(flat_fields(KINDS[joint].parameters))
+        declared = dict(flatten_fields(KINDS[joint].default_parameter_class))
         counted = {name for name, item in declared.items() if item.metadata.get("whole")}
         names = [n for n, v in values.items() if isinstance(v, float) and v and n not in counted]
         names = [n for n in names if not n.startswith("pattern.")]  # one by one, see above
         given = {name: "+-1%" for name in names if name != "traction_ratio"}
         task = state_problem(load_default(joint), given, None, 3)
         found = propagate.compute_bands(task, propagate.sample_designs(task, 16, 0)[0])
-        assert np.any(found.samples.accepted), joint
+        assert np.any(found.sampled_outputs.accepted), joint

@@ -122,7 +122,7 @@ def test_bands_of_a_linear_output():
         assert row == pytest.approx(found.loads * law.ppf(q), rel=2e-3)
     assert found.mean["K_N"] == pytest.approx(found.loads * 10.5, rel=1e-4)
     assert found.standard_deviation["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
-    assert found.refusals.count == 0
+    assert found.refused_samples.count == 0
     indices = propagate.compute_sensitivity(task, found, A[:4096], B[:4096]).outputs["K_N"]
     exact = np.array([0.36, 0.0025]) / 0.3625
     assert np.all(np.abs(indices.first - exact) < 0.01)  # Sobol' sequence of 4096

@@ -214,7 +214,7 @@ def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
     task = state_fmu_problem(fmu, DRIVE, given)
     runs = runs_of(task, 8)
     done = do_runs(task, runs, tmp_path, scheduler=cluster)
-    assert (done.accepted.size, done.new_runs, done.errors) == (8, 8, {})
+    assert (done.accepted.size, done.new_run_count, done.errors) == (8, 8, {})
     found = {entry["run"]: entry for entry in journal.read_entries(tmp_path)}
     for i, settings in enumerate(runs):
         assert (
@@ -289,7 +289,7 @@ def test_a_study_of_a_joint_is_killed_and_resumed(tmp_path, capsys):
     assert "mu = " in expected["refused"]["reason"]
     assert found == expected
     assert sorted(indices(out)) == list(range(512))
-    assert (out / journal.INDEX_RUNS_FILE).exists()
+    assert (out / journal.SOBOL_RUNS_FILE).exists()
     assert (out / journal.BANDS_FILE).read_text().startswith("preload [N],K_zz nominal [N/m]")
     assert "holds another study (points = 30, now 31)" in refused_line(
         capsys, *arguments[:-3], "--points", "31", "--samples", "512", "--out", out
@@ -355,7 +355,7 @@ def test_a_local_run_that_kills_its_process(fmu, tmp_path):
 def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path):
     """It is recorded with its parameters; those whose results went down with it are done again."""
     done = run_until_five_dies(fmu, tmp_path, scheduler=cluster)
-    assert (done.accepted.size, done.new_runs, done.errors) == (24, 24, DIED)
+    assert (done.accepted.size, done.new_run_count, done.errors) == (24, 24, DIED)
     assert sorted(indices(tmp_path)) == list(range(24))
 
 
@@ -378,8 +378,8 @@ def test_one_sweep_per_folder(tmp_path):
 def test_a_run_is_written_once(tmp_path):
     first, second = ({"run": 3, "parameters": {}, "error": text} for text in ("x", "y"))
     with journal.Journal(tmp_path, 8) as held:
-        held.add(first)
-        held.add(second)
+        held.append_entries(first)
+        held.append_entries(second)
     with journal.Journal(tmp_path, 8) as held:
         assert held.finished_runs == {3}
         assert held.first_failure == first

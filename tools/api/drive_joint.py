@@ -24,19 +24,19 @@ class DriveJoint(Joint):
 
     def wind_up(self, torque: ArrayLike) -> Array:
         """Wind-up (n) [rad] of the output under torques (n) [N.m]; odd in the torque."""
-        return self._midline.odd_inverse(torque)[()]
+        return self._midline_curve.odd_inverse(torque)[()]
 
     def torque(self, wind_up: ArrayLike) -> Array:
         """Torque (n) [N.m] at wind-ups (n) [rad]; odd in the wind-up."""
         phi = np.asarray(wind_up, dtype=np.float64)
-        return np.asarray(np.copysign(self._midline.derivatives(np.abs(phi), 1)[0], phi))[()]
+        return np.asarray(np.copysign(self._midline_curve.derivatives(np.abs(phi), 1)[0], phi))[()]
 
     def stiffness(self, torque: ArrayLike) -> Array:
         """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
-        return np.asarray(self._midline.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
+        return np.asarray(self._midline_curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
 
     @property
-    def _midline(self) -> Curve:
+    def _midline_curve(self) -> Curve:
         """Midline of the hysteresis loop: torque [N.m] over wind-up [rad], both positive."""
         curve = self.spring.curve
         assert isinstance(curve, Curve)

@@ -18,7 +18,7 @@ from ..common import plots
 from ..common.judgement import find_rms_height
 from ..common.options import require_package
 from ..common.pressure import judge_joint_stiffness
-from ..common.shown import format_quantity, list_entries
+from ..common.shown import format_quantity, list_parameter_file_entries
 from ..run.engine import JointEngine, open_joint
 from ..run.ramps.ramp import broadcast_columns
 from .frame import Frame, Table, TableDisplay
@@ -27,7 +27,7 @@ from .law import Law
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Facts = Mapping[str, tuple[float, str, str]]
+JointFacts = Mapping[str, tuple[float, str, str]]
 """Additional results of a joint: {name: (value [SI], unit, meaning)}."""
 
 
@@ -46,7 +46,7 @@ class Joint(TableDisplay):
     """
 
     file: ParameterFile
-    facts: Facts = field(default_factory=dict)
+    facts: JointFacts = field(default_factory=dict)
     notes: Sequence[str] = ()
 
     @property
@@ -87,8 +87,8 @@ class Joint(TableDisplay):
     def parameters(self) -> Table:
         """Table of all parameters with value, unit, meaning, kind and source."""
         rows = [
-            (entry.name, *format_quantity(entry.value, entry.unit), entry.doc, entry.kind, entry.source)
-            for entry in list_entries(self.file)
+            (entry.name, *format_quantity(entry.value, entry.unit), entry.meaning, entry.origin, entry.source)
+            for entry in list_parameter_file_entries(self.file)
         ]
         return Table(self._title, ("name", "value", "unit", "meaning", "kind", "source"), rows)
 
@@ -257,7 +257,7 @@ class Joint(TableDisplay):
         with require_package("build"):
             from jointfmu_fmu_src import building
 
-            return building.build_fmus(names, flavours, self.file, Path(out), alias=name, force=force)
+            return building.build_fmus(names, flavours, self.file, Path(out), alias=name, overwrite=force)
 
     def report(self, path: str | Path, fmu: str | None = None, *, force: bool = False) -> Path:
         """Write a page about the joint (HTML): curves, loops, sources of its numbers.

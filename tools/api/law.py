@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike
 
 from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
 from jointfmu.contact.laws import LAWS
-from jointfmu.quantity import Array, flat_fields, flatten_parameters
+from jointfmu.quantity import Array, flatten_fields, flatten_parameters
 
 from ..common import plots
-from ..common.judgement import assess_law
+from ..common.judgement import assess_law_stiffness
 from ..common.shown import format_quantity
-from ..inputs.laws import LAW_COLUMN_UNITS, LAW_COLUMNS, build_law_parameters, known_surface_height
+from ..inputs.laws import LAW_COLUMN_UNITS, LAW_COLUMNS, build_law_parameters, find_surface_rms_height
 from ..run.ramps.ramp import broadcast_columns
 from .frame import Frame, Table, TableDisplay
 
@@ -46,7 +46,7 @@ class Law(TableDisplay):
         return flatten_parameters(self.parameters)
 
     def _build_table(self) -> Table:
-        fields = {name: item.metadata for name, item in flat_fields(type(self.parameters))}
+        fields = {name: item.metadata for name, item in flatten_fields(type(self.parameters))}
         rows = [
             (name, *format_quantity(value, fields[name].get("unit")), fields[name]["doc"])
             for name, value in self.values.items()
@@ -66,7 +66,7 @@ class Law(TableDisplay):
         if many := ", ".join(self._array_parameters):
             return self._build_frame(state, (f"level and range are not judged for arrays of {many}",))
         return self._build_frame(
-            state, assess_law(self.parameters, state["pressure"].tolist(), self.h).warnings
+            state, assess_law_stiffness(self.parameters, state["pressure"].tolist(), self.h).warnings
         )
 
     def at_largest_spot(self, area: ArrayLike) -> Frame:
@@ -128,4 +128,4 @@ def law(name: str, **parameters: Any) -> Law:
         raise ValueError(f"law = {name!r}, allowed are {', '.join(LAWS)}")
     settings = {n: np.ravel(v) if np.ndim(v) else v for n, v in parameters.items()}
     values = build_law_parameters(name, None, settings)
-    return Law(name, values, known_surface_height(name, values, None, settings))
+    return Law(name, values, find_surface_rms_height(name, values, None, settings))

@@ -26,12 +26,12 @@ from ..joints.harmonic_drive.catalogue import list_drives
 from ..joints.harmonic_drive.new import NEW_JOINT_COMMAND as NEW_DRIVE
 from .drive_joint import DriveJoint
 from .frame import Table, TableDisplay
-from .joint import Facts, Joint
+from .joint import Joint, JointFacts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_MAKER_DOCSTRING = """Make {}.
+_JOINT_FUNCTION_DOCSTRING = """Make {}.
 
     Numbers have the unit stated below; a text may have its own unit: '0.8 um'. Write a size as (200, 100),
     and different values for each side or bolt as [0.8, 1.6]. Lists, tuples and arrays are equivalent.
@@ -47,7 +47,7 @@ _OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
 
 
 def create_joint(
-    parameter_file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()
+    parameter_file: ParameterFile, facts: JointFacts | None = None, notes: Sequence[str] = ()
 ) -> Joint:
     """Make the joint object of a parameter file."""
     joint_class = DriveJoint if parameter_file.joint == "harmonic_drive" else Joint
@@ -72,7 +72,7 @@ def load(source: str | Path) -> Joint:
     if Path(source).suffix == ".toml" or Path(source).is_file():
         return create_joint(load_file(source))
     if any(item.name.lower() == name.lower() for item in list_drives()):
-        with _use_python_names():
+        with _rename_options_in_errors():
             return make_from_drawing(NEW_DRIVE, {"catalogue": name})
     raise ValueError(
         f"{name!r} is not a parameter file (.toml) or a known name; allowed are "
@@ -102,7 +102,7 @@ def make_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str
 
 
 @contextmanager
-def _use_python_names() -> Iterator[None]:
+def _rename_options_in_errors() -> Iterator[None]:
     """Context that replaces option names of the command line in errors by argument names of Python."""
     try:
         yield
@@ -157,7 +157,7 @@ def create_joint_function(
 
     def make_joint(*args: object, **options: object) -> Joint:
         arguments = signature.bind(*args, **options).arguments
-        with _use_python_names():
+        with _rename_options_in_errors():
             return make_from_drawing(drawing, arguments)
 
     ordered = sorted(drawing.options, key=lambda option: option.name != first_option)
@@ -174,7 +174,7 @@ def create_joint_function(
     make_joint.__module__ = "jointfmu"
     make_joint.__signature__ = signature  # type: ignore[attr-defined]
     meanings = "\n".join(f"    {option.name} : {_option_help(option)}" for option in ordered)
-    make_joint.__doc__ = _MAKER_DOCSTRING.format(
+    make_joint.__doc__ = _JOINT_FUNCTION_DOCSTRING.format(
         drawing.description, meanings, doctest_example.replace("\n", "\n    ")
     )
     return make_joint
@@ -230,12 +230,12 @@ class Fit(TableDisplay):
 
 
 def _procedure_paths(
-    procedure: str, takes_several: bool, file: str | Path | Sequence[str | Path]
+    procedure: str, takes_several_files: bool, file: str | Path | Sequence[str | Path]
 ) -> Path | list[Path]:
     """Convert the argument `file` to what a procedure takes: one path, or a list of paths."""
     if isinstance(file, str | Path):
-        return [Path(file)] if takes_several else Path(file)
-    if not takes_several:
+        return [Path(file)] if takes_several_files else Path(file)
+    if not takes_several_files:
         raise ValueError(f"procedure {procedure!r} takes one file")
     return [Path(path) for path in file]
 
@@ -298,7 +298,7 @@ def fit(
         raise ValueError(f"{', '.join(missing)} missing: {declared[missing[0]].help_text}")
     data = () if file is None else (_procedure_paths(procedure, chosen.takes_several_files, file),)
     names = [free] if isinstance(free, str) else free
-    with _use_python_names():
+    with _rename_options_in_errors():
         values = {
             n: _to_procedure_value(option, options.get(n, option.default)) for n, option in declared.items()
         }

@@ -13,7 +13,7 @@ from typing import Any, NoReturn, TypeAlias
 from jointfmu.files.outputs import FileKind
 
 from ..common.judgement import Plausibility
-from ..common.options import option_flag
+from ..common.options import format_option_flag
 from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
 
 
@@ -29,20 +29,20 @@ class CommandResult:
     exit_status   : exit status of the process
     """
 
-    document: Any
+    json_document: Any
     lines: Iterable[str] = ()
     notes: Iterable[str] = ()
-    judgement: Plausibility | None = None
+    stiffness_judgement: Plausibility | None = None
     written_files: Iterable[object] = ()
     exit_status: int = 0
 
     def print_result(self, as_json: bool) -> int:
         """Print the result, as one JSON object or as text; returns the exit status."""
         if as_json:
-            validity = {} if self.judgement is None else self.judgement.to_json()
-            print(json.dumps({**self.document, **validity} if validity else self.document))
+            validity = {} if self.stiffness_judgement is None else self.stiffness_judgement.to_json()
+            print(json.dumps({**self.json_document, **validity} if validity else self.json_document))
             return self.exit_status
-        judgement = self.judgement or Plausibility(None, ())
+        judgement = self.stiffness_judgement or Plausibility(None, ())
         for line in (*self.lines, *judgement.format_lines()):
             print(line)
         for note in (*self.notes, *(f"warning: {text}" for text in judgement.warnings)):
@@ -59,7 +59,7 @@ DEFAULT_SUBCOMMANDS = {"surface": ("identify", "synthesize")}
 """{command: its sub-commands}. If the user names no sub-command, the first one runs."""
 
 
-_INVALID_CHOICE = re.compile(r"invalid choice: '?([^' ]*)'? \(choose from (.*)\)")
+_INVALID_CHOICE_PATTERN = re.compile(r"invalid choice: '?([^' ]*)'? \(choose from (.*)\)")
 """Error message of argparse for an invalid choice."""
 
 
@@ -77,11 +77,11 @@ class Parser(argparse.ArgumentParser):
     """
 
     example: str | None = None
-    outputs: dict[str, FileKind]
+    output_file_kinds: dict[str, FileKind]
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
-        self.outputs = {}
+        self.output_file_kinds = {}
         self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
 
     def format_help(self) -> str:
@@ -95,7 +95,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print the error on one line, with a suggestion for an invalid choice, and exit with status 2."""
-        if match := _INVALID_CHOICE.search(message):
+        if match := _INVALID_CHOICE_PATTERN.search(message):
             message += suggest_word(match[1], re.findall(r"[\w.-]+", match[2]))
         print(f"{self.prog}: {message}", file=sys.stderr)
         raise SystemExit(2)
@@ -133,7 +133,7 @@ def declare_command(
     sub: Parser = command_parsers.add_parser(
         command_name, help=help_text, description=format_sentence(help_text)
     )
-    sub.set_defaults(run=command_function, outputs=sub.outputs)
+    sub.set_defaults(run=command_function, outputs=sub.output_file_kinds)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
 
@@ -148,7 +148,7 @@ def option_of_setting(args: argparse.Namespace, setting: str) -> str:
 
     The command lists in `options` the settings whose option has another name.
     """
-    return option_flag(getattr(args, "options", {}).get(setting, setting))
+    return format_option_flag(getattr(args, "options", {}).get(setting, setting))
 
 
 def parse_joint_name(text: str) -> str:

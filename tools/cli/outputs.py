@@ -12,7 +12,7 @@ from jointfmu.files.writing import is_standard_output
 from ..common import plots
 from .command import Parser, declare_argument
 
-FORCE_HELP = "replace files that jointfmu did not write, or that were edited"
+FORCE_OPTION_HELP = "replace files that jointfmu did not write, or that were edited"
 
 
 def declare_output(
@@ -21,7 +21,7 @@ def declare_output(
     file_kind: FileKind,
     help_text: str,
     *,
-    allow_force: bool = True,
+    allow_overwrite: bool = True,
     **options: Any,
 ) -> None:
     """Declare an option that names a file or folder to write, and the option `--force`.
@@ -31,9 +31,9 @@ def declare_output(
     """
     metavar = "DIR" if file_kind is OUTPUT_FOLDER else "FILE"
     declare_argument(parser, argument_name, Path, help_text, metavar, **options)
-    parser.outputs[argument_name.lstrip("-")] = file_kind
-    if allow_force and "--force" not in parser._option_string_actions:
-        parser.add_argument("--force", action="store_true", help=FORCE_HELP)
+    parser.output_file_kinds[argument_name.lstrip("-")] = file_kind
+    if allow_overwrite and "--force" not in parser._option_string_actions:
+        parser.add_argument("--force", action="store_true", help=FORCE_OPTION_HELP)
 
 
 def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namespace) -> None:
@@ -51,7 +51,7 @@ def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namesp
         if args.json and is_standard_output(path):
             raise ValueError(f"--{name} {path}: --json writes to the same place; state another file")
         if outputs[name] is PICTURE_FILE:
-            plots.check_picture(path)
+            plots.check_picture_path(path)
         check_output(path, outputs[name], getattr(args, "force", False))
 
 

@@ -29,10 +29,10 @@ COMMAND_MODULES = {
     "sweep": "uncertainty",
     "validate": "prove",
 }
-"""{command: module whose function `add_COMMAND` declares it}, if no module has the command's name."""
+"""{command: module whose function `add_COMMAND_command` declares it}, if no module has the command's name."""
 
 
-class CommandLine(Parser):
+class CommandLineParser(Parser):
     """Top-level parser. It accepts a command without its sub-command if a default sub-command exists."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
@@ -61,7 +61,7 @@ class CommandLine(Parser):
         return formatter.format_help()
 
 
-class Completion(argparse.Action):
+class PrintCompletionScript(argparse.Action):
     """Print a script for command completion in a shell, and exit."""
 
     def __call__(self, parser: argparse.ArgumentParser, _: Any, shell: Any, option: Any = None) -> None:
@@ -109,17 +109,19 @@ def _insert_subcommand(words: list[str]) -> list[str]:
     return [words[0], names[0], *words[1:]]
 
 
-def build_parser(words: Sequence[str] = ()) -> CommandLine:
+def build_parser(words: Sequence[str] = ()) -> CommandLineParser:
     """Build the parser of the command that the words begin with.
 
     If the words name no command, the parser has all commands; building it takes longer.
     """
-    top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
+    top = CommandLineParser(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
     text = f"print a script for command completion in a shell: {', '.join(COMPLETION_SHELLS)}"
-    top.add_argument("--completion", action=Completion, choices=COMPLETION_SHELLS, metavar="SHELL", help=text)
+    top.add_argument(
+        "--completion", action=PrintCompletionScript, choices=COMPLETION_SHELLS, metavar="SHELL", help=text
+    )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
         module = import_module(f"jointfmu_tools.cli.commands.{COMMAND_MODULES.get(name, name)}")
-        (getattr(module, f"add_{name}") if name in COMMAND_MODULES else module.add_command)(commands)
+        (getattr(module, f"add_{name}_command") if name in COMMAND_MODULES else module.add_command)(commands)
     return top

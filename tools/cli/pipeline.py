@@ -36,7 +36,7 @@ from ..systems.system import System
 
 
 @dataclass(slots=True)
-class JobResult:
+class PipelineResult:
     """Results of the main job.
 
     fmi2_folder : folder of the FMUs of FMI 2.0
@@ -98,13 +98,13 @@ def report_name(fmu: Path) -> str:
     return f"{fmu.parent.name}/{fmu.stem}"
 
 
-def run_job(out_folder: Path) -> JobResult:
+def run_pipeline(out_folder: Path) -> PipelineResult:
     """Build, prove and check the FMUs of all flavours; write report and laboratory page to out_folder/report.
 
     The report shows the ramps of the flavour `fmi2`. The ramps of the other flavours must be equal to them.
     """
     folder = out_folder / "fmi2"
-    outcome = JobResult(folder)
+    outcome = PipelineResult(folder)
     with worker_processes() as pool:
         outcome.fmu_paths = build_fmus([], list(FLAVOUR_BUILDERS), None, out_folder, pool=pool)
         outcome.system_files = build_systems(out_folder, build_joints=False, pool=pool)
@@ -136,31 +136,31 @@ def _validate_and_prove(path: Path) -> tuple[list[str], Proof]:
     return [f"{report_name(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
 
-def _compare_ramps(job_result: JobResult, out_folder: Path) -> None:
+def _compare_ramps(pipeline_result: PipelineResult, out_folder: Path) -> None:
     """Run and check the ramps of all FMUs, and compare with the published numbers."""
     for name in track_progress(MODELS, "ramp", len(MODELS)):
-        result = run_default_ramp(name, job_result.fmi2_folder)
-        job_result.ramps[name] = result
-        job_result.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
+        result = run_default_ramp(name, pipeline_result.fmi2_folder)
+        pipeline_result.ramps[name] = result
+        pipeline_result.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out_folder / "report" / f"{name}.csv", result.format_csv())
-        job_result.checks += check_ramp(name, job_result.fmi2_folder, result)
+        pipeline_result.checks += check_ramp(name, pipeline_result.fmi2_folder, result)
         other_folders = [
             out_folder / flavour
             for flavour in FLAVOUR_BUILDERS
-            if out_folder / flavour != job_result.fmi2_folder
+            if out_folder / flavour != pipeline_result.fmi2_folder
         ]
-        job_result.checks += [compare_flavour(name, folder, result) for folder in other_folders]
+        pipeline_result.checks += [compare_flavour(name, folder, result) for folder in other_folders]
     for step in track_progress(("package", "FMUs"), "compare", 2):
         if step == "package":
-            job_result.validated_points = validation.validate()
+            pipeline_result.validated_points = validation.validate()
         else:
-            job_result.fmu_validated_points = compute_published_points(job_result.fmi2_folder)
+            pipeline_result.fmu_validated_points = compute_published_points(pipeline_result.fmi2_folder)
 
 
 def main(out_folder: Path) -> int:
     """Run the main job and print a summary. Returns the exit code: 0, 1 for a failure, 2 for bad input."""
     try:
-        outcome = run_job(out_folder)
+        outcome = run_pipeline(out_folder)
     except (ValueError, RuntimeError) as error:
         print(f"build_fmus.py: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
@@ -177,7 +177,7 @@ def main(out_folder: Path) -> int:
     partners = [path for path in outcome.system_files if path.suffix == ".fmu"]
     print(f"validated with fmpy: {len(outcome.fmu_paths) + len(partners)}; ramps run: {len(outcome.ramps)}")
     worst = max((proof.worst_point.error_ratio for proof in outcome.proofs if proof.worst_point), default=0.0)
-    runs = sum(proof.run_count for proof in outcome.proofs)
+    runs = sum(proof.executed_experiment_count for proof in outcome.proofs)
     print(
         f"proved in fmpy: {len(outcome.proofs)} FMUs by {runs} runs of their experiments, "
         f"at worst {worst:.1e} of what is allowed"

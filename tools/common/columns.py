@@ -32,7 +32,7 @@ ColumnHead: TypeAlias = tuple[str, str | None]
 CONTROL_CHARACTERS = re.compile(rb"[\x00-\x08\x0e-\x1f]")
 """Control characters: a file that has them is not a text."""
 _HEADING_PATTERN = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
-_WRITTEN_HEADING_PATTERN = re.compile(r"\S.* \[[^\[\]]+\]")
+_HEADING_WITH_UNIT_PATTERN = re.compile(r"\S.* \[[^\[\]]+\]")
 """Heading of one column as `format_table` writes it: `name [unit]`."""
 MAX_HEADING_BYTES = 65536
 """Bytes at the start of a file that are searched for its heading."""
@@ -65,9 +65,11 @@ class Columns:
             )
         return self.columns[column_name]
 
-    def check_positive(self, names: Iterable[str], allowed_units: Mapping[str, UnitSizes]) -> "Columns":
+    def check_positive(
+        self, column_names: Iterable[str], allowed_units: Mapping[str, UnitSizes]
+    ) -> "Columns":
         """Return self; raise ValueError with the line if a number of the named columns is not positive."""
-        for name in names:
+        for name in column_names:
             if np.any(wrong := self.columns[name] <= 0.0):
                 first = int(np.argmax(wrong))
                 value = f"{name} = {self.columns[name][first]:g} {next(iter(allowed_units[name]))}"
@@ -80,11 +82,11 @@ def is_table(path: Path) -> bool:
     with path.open("rb") as file:
         lines = file.read(MAX_HEADING_BYTES).decode("utf-8", "replace").splitlines()
     head = next((line for line in lines if not line.startswith("#")), "")
-    return all(_WRITTEN_HEADING_PATTERN.fullmatch(cell) for cell in next(csv.reader([head]), [""]))
+    return all(_HEADING_WITH_UNIT_PATTERN.fullmatch(cell) for cell in next(csv.reader([head]), [""]))
 
 
 TABLE_FILE_KIND = FileKind("table", (".csv",), is_table)
-FIELD_FILE_KIND = FileKind(
+PRESSURE_FIELD_FILE_KIND = FileKind(
     "field", (".csv", ".vtu"), lambda path: is_table(path) or MESH_FILE.is_program_file(path)
 )
 
@@ -134,7 +136,7 @@ def read_columns(
     return Columns(path, columns, numbers, {name: unit for name, (_, _, unit) in places.items()})
 
 
-def read_names(path: str | Path) -> list[str]:
+def read_column_names(path: str | Path) -> list[str]:
     """Read the names of a file's columns in lower case; an empty list if the file is empty.
 
     Raises ValueError if the file cannot be read or is not a text.
@@ -300,15 +302,18 @@ def _identify_column(
 
 
 def _resolve_alias(
-    word: str, unit: str | None, allowed_units: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
+    heading_name: str,
+    unit: str | None,
+    allowed_units: Mapping[str, UnitSizes],
+    aliases: Mapping[str, Sequence[str]],
 ) -> str:
     """Return the column that has `word` as an alias and allows the unit; else `word` itself."""
     for name, words in aliases.items():
-        if word in words and name in allowed_units and unit is not None:
+        if heading_name in words and name in allowed_units and unit is not None:
             with suppress(ValueError):
                 unit_size_in(unit, allowed_units[name])
                 return name
-    return word
+    return heading_name
 
 
 def _parse_column(path: Path, column_name: str, line_numbers: Sequence[int], cells: Sequence[str]) -> Array:
@@ -328,7 +333,7 @@ def _parse_column(path: Path, column_name: str, line_numbers: Sequence[int], cel
 
 
 def format_table(
-    heads: Sequence[ColumnHead],
+    column_headings: Sequence[ColumnHead],
     columns: Sequence[Column],
     digits: int | None = None,
     header_lines: Sequence[str] = (),
@@ -339,9 +344,11 @@ def format_table(
     header_lines : lines before the heading
     """
     first = io.StringIO()
-    names = [name if unit is None else f"{name} [{unit}]" for name, unit in heads]
+    names = [name if unit is None else f"{name} [{unit}]" for name, unit in column_headings]
     csv.writer(first, lineterminator="").writerow(names)
-    return "\n".join([*header_lines, first.getvalue(), *format_rows(columns, [digits] * len(heads)), ""])
+    return "\n".join(
+        [*header_lines, first.getvalue(), *format_rows(columns, [digits] * len(column_headings)), ""]
+    )
 
 
 def format_rows(columns: Iterable[Column], digits: Sequence[int | None], delimiter: str = ",") -> list[str]:

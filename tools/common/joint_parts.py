@@ -1,7 +1,7 @@
 """Tool modules of the joints: for each joint, which module of its folder in `tools/joints` serves which tool.
 
-The `__init__.py` of the folder names the modules (`ToolParts`). `import jointfmu_tools` reads these names; a
-module is imported when its tool asks for it.
+The `__init__.py` of the folder names the modules (`JointToolModules`). `import jointfmu_tools` reads these
+names; a module is imported when its tool asks for it.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ TOOL_NAMES = (
 """Tools that look for a module in the folder of a joint."""
 
 
-class ToolParts:
+class JointToolModules:
     """Tool modules of one joint.
 
     package      : name of the package that is the joint's folder
@@ -57,17 +57,17 @@ class ToolParts:
     def folder(self) -> Path:
         return Path(str(import_module(self.package).__file__)).parent
 
-    def load(self, tool_name: str) -> ModuleType | None:
+    def load_module(self, tool_name: str) -> ModuleType | None:
         """Import the module for a tool; None if the joint has no such module."""
         return (
             import_module(f"{self.package}.{self.modules[tool_name]}") if tool_name in self.modules else None
         )
 
 
-PARTS: dict[str, ToolParts] = {}
+PARTS: dict[str, JointToolModules] = {}
 """{name of a joint: its tool modules}. `jointfmu_tools.joints` fills it; other packages add their joints."""
 
 
-def load_tool_module(kind: "JointKind", tool_name: str) -> ModuleType | None:
+def load_tool_module(joint_kind: "JointKind", tool_name: str) -> ModuleType | None:
     """Import the module of a joint for a tool; None if the joint has no such module."""
-    return PARTS[kind.name].load(tool_name) if kind.name in PARTS else None
+    return PARTS[joint_kind.name].load_module(tool_name) if joint_kind.name in PARTS else None

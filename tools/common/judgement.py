@@ -11,7 +11,12 @@ from typing import Any
 import numpy as np
 
 from jointfmu.contact.interface import InterfaceLaw, find_validity_violations, stiffness_curve
-from jointfmu.contact.roughness import MAX_HEIGHT, PERSSON_GAMMA, combined_height, predicted_stiffness
+from jointfmu.contact.roughness import (
+    MAX_ROUGHNESS_HEIGHT,
+    PERSSON_GAMMA,
+    combined_height,
+    predicted_stiffness,
+)
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
@@ -70,21 +75,24 @@ class Plausibility:
     comparison : None if the roughness is unknown
     """
 
-    comparison: StiffnessComparison | None
+    stiffness_comparison: StiffnessComparison | None
     warnings: tuple[str, ...]
 
     def format_lines(self) -> Iterator[str]:
         """Format the stiffness comparison as lines of text. The warnings are not included."""
-        if self.comparison is not None:
-            yield str(self.comparison)
+        if self.stiffness_comparison is not None:
+            yield str(self.stiffness_comparison)
 
     def with_warnings(self, extra_warnings: Sequence[str]) -> "Plausibility":
         """Return a copy that has the extra warnings, followed by its own warnings."""
-        return Plausibility(self.comparison, (*extra_warnings, *self.warnings))
+        return Plausibility(self.stiffness_comparison, (*extra_warnings, *self.warnings))
 
     def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object: {"level": object or null, "warnings": [...]}."""
-        return {"level": self.comparison and self.comparison.to_json(), "warnings": list(self.warnings)}
+        return {
+            "level": self.stiffness_comparison and self.stiffness_comparison.to_json(),
+            "warnings": list(self.warnings),
+        }
 
 
 def find_rms_height(parameter_file: ParameterFile) -> float | None:
@@ -96,13 +104,13 @@ def find_rms_height(parameter_file: ParameterFile) -> float | None:
     return combined_height(parameter_file.roughness) if h is None else h
 
 
-def assess_law(
+def assess_law_stiffness(
     law: InterfaceLaw,
     pressures: Sequence[float],
     rms_height: float | None,
     peak_pressure: float = 0.0,
     stiffness_ratio: Sequence[float] | float = 1.0,
-    check_limits: bool = True,
+    warn_outside_validity: bool = True,
 ) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa].
 
@@ -120,12 +128,14 @@ def assess_law(
         comparison = StiffnessComparison(rms_height, p, factor * stiffness_curve(law, p)[0])
     highest = float(np.max(p, initial=peak_pressure))
     lowest = float(np.min(p, initial=highest))
-    warnings = find_validity_violations(law, highest, lowest) if check_limits and highest > 0.0 else []
-    if rms_height is not None and rms_height > 2.0 * MAX_HEIGHT:
+    warnings = (
+        find_validity_violations(law, highest, lowest) if warn_outside_validity and highest > 0.0 else []
+    )
+    if rms_height is not None and rms_height > 2.0 * MAX_ROUGHNESS_HEIGHT:
         warnings.insert(
             0,
             f"h = {rms_height:.3g} m is not a roughness: faces that are joined have up to "
-            f"{MAX_HEIGHT:g} m each",
+            f"{MAX_ROUGHNESS_HEIGHT:g} m each",
         )
     if comparison is not None and comparison.is_doubtful:
         warnings.append(

@@ -39,7 +39,7 @@ class Option:
     unit_option: str = ""
 
 
-def option_flag(name: str) -> str:
+def format_option_flag(name: str) -> str:
     """Return the option that sets an argument: `--rated-torque` for `rated_torque`."""
     return "--" + name.replace("_", "-")
 

@@ -34,7 +34,7 @@ RESOLUTION = 150
 """Dots per inch of a PNG."""
 
 
-def check_picture(path: str | Path) -> None:
+def check_picture_path(path: str | Path) -> None:
     """Raise ValueError if the file name has no picture format, or if matplotlib is missing.
 
     Call it before long work.
@@ -57,7 +57,7 @@ def open_figure(path: str | Path, figure_size: tuple[float, float] = (7.2, 4.2))
     with plots.open_figure("ramp.png") as figure:
         axes = figure.subplots()
     """
-    check_picture(path)
+    check_picture_path(path)
     from matplotlib.figure import Figure
 
     with apply_style():
@@ -98,7 +98,7 @@ def create_figure(figure_size: tuple[float, float]) -> "Figure":
 
 def save_figure(figure: "Figure", path: str | Path) -> None:
     """Save a figure as .png or .svg. A failure leaves no file."""
-    check_picture(path)
+    check_picture_path(path)
     suffix = Path(path).suffix.lower()
     data = io.BytesIO()
     metadata = (

@@ -12,11 +12,11 @@ from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile
 
 from .joint_parts import load_tool_module
-from .judgement import Plausibility, assess_law, find_rms_height
+from .judgement import Plausibility, assess_law_stiffness, find_rms_height
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NominalPressure:
+class NominalPressureModel:
     """Nominal contact pressure of a joint as a function of its load.
 
     load_variable   : name of the input or output that is the load
@@ -42,7 +42,7 @@ def pressure_over_area(parameters: Any, load: float) -> float:
     return float(load / parameters.A_0)
 
 
-FLANK_PRESSURE = NominalPressure(
+FLANK_PRESSURE_MODEL = NominalPressureModel(
     load_variable="f",
     default_load=lambda joint: min(3e3, 0.1 * joint.hardness * joint.A_0),
     mean_pressure=pressure_over_area,
@@ -51,9 +51,9 @@ FLANK_PRESSURE = NominalPressure(
 """Nominal pressure of gear flanks under a normal force f [N]."""
 
 
-def nominal_pressure(kind: JointKind) -> NominalPressure | None:
+def find_nominal_pressure_model(joint_kind: JointKind) -> NominalPressureModel | None:
     """Nominal pressure that the joint's folder defines; None if it defines none."""
-    module = load_tool_module(kind, "pressure")
+    module = load_tool_module(joint_kind, "pressure")
     return module.NOMINAL_PRESSURE if module else None
 
 
@@ -62,12 +62,12 @@ def judge_joint_stiffness(
 ) -> Plausibility:
     """Judge the stiffness of a joint under loads.
 
-    loads : values of `NominalPressure.load_variable` [SI]; None: the start value in the file, or, if it is
-            zero, the default load. At the default load the stiffness is only compared with the estimate from
+    loads : values of `NominalPressureModel.load_variable` [SI]; None: the start value in the file, or, if it
+            is zero, the default load. At the default load the stiffness is only compared with the estimate from
             roughness
     """
     kind = KINDS[parameter_file.joint]
-    nominal = nominal_pressure(kind)
+    nominal = find_nominal_pressure_model(kind)
     if nominal is None or kind.extract_law(parameter_file.values) is None:
         return Plausibility(None, ())
     if loads is None and parameter_file.start_value(nominal.load_variable) > 0.0:
@@ -80,7 +80,7 @@ def judge_joint_stiffness(
     if loads is None:
         loads = [nominal.default_load(parameter_file.values)]
     loads = [load for load in loads if load > 0.0]
-    judgement = assess_law(
+    judgement = assess_law_stiffness(
         law,
         [nominal.mean_pressure(parameter_file.values, load) for load in loads],
         h,

@@ -9,16 +9,16 @@ import numpy as np
 from jointfmu.contact.roughness import HEIGHT_FIELDS
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import describe_range, flat_fields
+from jointfmu.quantity import describe_range, flatten_fields
 from jointfmu.quantity.units import conversion_factor, display_unit
 
-STIFFNESS_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
+STIFFNESS_DISPLAY_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
 """{SI unit: display unit on all pages} of stiffnesses. Other display units depend on the value."""
 
 
 def choose_display_unit(unit: str, typical_value: float) -> str:
     """Choose the display unit of a variable by its typical value."""
-    return STIFFNESS_UNITS.get(unit) or display_unit(unit, typical_value)
+    return STIFFNESS_DISPLAY_UNITS.get(unit) or display_unit(unit, typical_value)
 
 
 def format_unit(unit: str) -> str:
@@ -38,14 +38,14 @@ def format_quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str,
     return f"{conversion_factor(unit, shown) * value:.{digits}g}", format_unit(shown)
 
 
-def align_columns(rows: Sequence[Sequence[str]], word_columns: int | None = None) -> list[str]:
+def align_columns(rows: Sequence[Sequence[str]], text_column_count: int | None = None) -> list[str]:
     """Format rows of cells as lines, columns as wide as their widest cell.
 
     word_columns : number of columns of words at the left, aligned left; the others are aligned right; None:
                    all columns are words
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    signs = ["<" if word_columns is None or i < word_columns else ">" for i in range(len(widths))]
+    signs = ["<" if text_column_count is None or i < text_column_count else ">" for i in range(len(widths))]
     pattern = "  ".join(f"{{:{sign}{width}}}" for sign, width in zip(signs, widths, strict=True))
     return [pattern.format(*row).rstrip() for row in rows]
 
@@ -58,12 +58,12 @@ def format_facts(facts_by_name: Mapping[str, tuple[float, str, str]]) -> list[st
     ]
 
 
-def fact_document(facts_by_name: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
+def facts_to_json(facts_by_name: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
     """Convert facts {name: (value, unit, meaning)} to a JSON object."""
     return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts_by_name.items()}
 
 
-class FileEntry(NamedTuple):
+class ParameterFileEntry(NamedTuple):
     """Entry of a parameter file: a number in SI units or a choice, with meaning, origin and source.
 
     unit : SI unit; None for a choice
@@ -73,8 +73,8 @@ class FileEntry(NamedTuple):
     name: str
     value: Any
     unit: str | None
-    doc: str
-    kind: str
+    meaning: str
+    origin: str
     source: str
 
 
@@ -85,10 +85,10 @@ def _format_source(parameter_file: ParameterFile, parameter_name: str) -> str:
     return f"{low:g} to {high:g}; {text}" if high > low else text
 
 
-def list_entries(parameter_file: ParameterFile) -> list[FileEntry]:
+def list_parameter_file_entries(parameter_file: ParameterFile) -> list[ParameterFileEntry]:
     """List all entries of a parameter file: parameters, start values of inputs, roughnesses."""
     fields: dict[str, Mapping[str, Any]] = {
-        name: item.metadata for name, item in flat_fields(type(parameter_file.values))
+        name: item.metadata for name, item in flatten_fields(type(parameter_file.values))
     }
     fields |= {parameter_file.heights_prefix + name: item.metadata for name, item in HEIGHT_FIELDS.items()}
     inputs = (v for model in KINDS[parameter_file.joint].models for v in model.inputs)
@@ -99,7 +99,7 @@ def list_entries(parameter_file: ParameterFile) -> list[FileEntry]:
         parameter_file.heights_prefix + name: value for name, value in parameter_file.roughness.items()
     }
     return [
-        FileEntry(
+        ParameterFileEntry(
             name,
             value,
             fields[name].get("unit"),

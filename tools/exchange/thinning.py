@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def decimate(fixed_nodes: Collection[int], segment_fits: Callable[[int, int], bool]) -> NDArray[np.intp]:
+def decimate_table(
+    fixed_nodes: Collection[int], segment_fits: Callable[[int, int], bool]
+) -> NDArray[np.intp]:
     """Select nodes of a table, from 0 to the last fixed node, with segments as long as allowed.
 
     fixed_nodes  : indices of nodes that must be kept

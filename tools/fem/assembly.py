@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.parameters import read_document, read_entries
-from jointfmu.quantity import build_parameter_set, flat_fields
+from jointfmu.quantity import build_parameter_set, flatten_fields
 
 from .geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
 
@@ -60,7 +60,7 @@ def _read_section(path: Path, toml_document: Mapping[str, Any], section_name: st
     if not isinstance(shape, str) or shape not in classes:
         raise ValueError(f"{path}: {section_name}.{type_key} = {shape!r}, allowed are {', '.join(classes)}")
     dimensions = {k: v for k, v in table.items() if k != type_key}
-    values, _, _ = read_entries(path, dict(flat_fields(classes[shape])), dimensions)
+    values, _, _ = read_entries(path, dict(flatten_fields(classes[shape])), dimensions)
     try:
         return build_parameter_set(
             classes[shape], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}

@@ -32,7 +32,7 @@ corners of a body, and its contact, give values of order 1."""
 
 
 @dataclass(frozen=True)
-class RigidBalance:
+class RigidBodyBalance:
     """Generalised forces of loads and contact on the rigid-body motions (each of rms displacement 1 m).
 
     Shapes: q quadrature points, m motions that only the contact can stop, k motions that no support stops.
@@ -45,8 +45,8 @@ class RigidBalance:
     """
 
     generalised_load: Array
-    rigid_approach: Array
-    unsupported_approach: Array
+    rigid_motion_approach: Array
+    unsupported_motion_approach: Array
     total_load: float
     hull_points: IndexArray
 
@@ -60,7 +60,7 @@ class RigidBalance:
         quadrature_position: Array,
         *,
         supports_carry_load: bool,
-    ) -> "RigidBalance":
+    ) -> "RigidBodyBalance":
         """Evaluate the generalised forces of loads (n) [N] on each body, for n unknowns of the body.
 
         approach_matrices   : matrices (q, n) [1]: approach at the quadrature points per displacement of each
@@ -85,13 +85,13 @@ class RigidBalance:
 
     def check_loads(self) -> None:
         """Raise RuntimeError if the contact cannot balance the loads by pushing, or if no load closes it."""
-        if not _has_independent_columns(self.unsupported_approach):
+        if not _has_independent_columns(self.unsupported_motion_approach):
             raise RuntimeError("a body can move rigidly: supports and contact do not hold it")
         if self.generalised_load.size == 0:
             return
         if not self.total_load > 0.0:
             raise RuntimeError("no load presses the contact closed: all loads are 0 N")
-        contact_force, imbalance = self._best_balance()
+        contact_force, imbalance = self._optimise_contact_forces()
         if imbalance > MAX_RELATIVE_IMBALANCE:
             raise RuntimeError(
                 f"the loads do not balance: without tension in the contact, a fraction of {imbalance:.2g} is "
@@ -103,27 +103,27 @@ class RigidBalance:
                 f"is more than {MAX_RELATIVE_IMBALANCE:g}"
             )
 
-    def check_contact(self, contact_force: Array) -> None:
+    def check_contact_forces(self, contact_force: Array) -> None:
         """Raise RuntimeError if contact forces (q) [N] >= 0 do not balance the loads or leave a body free."""
-        if not _has_independent_columns(self.unsupported_approach[contact_force > 0.0]):
+        if not _has_independent_columns(self.unsupported_motion_approach[contact_force > 0.0]):
             raise RuntimeError(
                 "the contact does not hold the bodies: it stays closed at "
                 f"{np.count_nonzero(contact_force)} of "
                 f"{contact_force.size} points"
             )
-        imbalance = float(np.abs(self.generalised_load - self.rigid_approach.T @ contact_force).sum())
+        imbalance = float(np.abs(self.generalised_load - self.rigid_motion_approach.T @ contact_force).sum())
         if not imbalance <= MAX_RELATIVE_IMBALANCE * self.total_load:
             raise RuntimeError(
                 f"the contact is not in equilibrium: it leaves {imbalance / self.total_load:.2g} times the "
                 f"loads unbalanced, allowed is {MAX_RELATIVE_IMBALANCE:g}"
             )
 
-    def _best_balance(self) -> tuple[float, float]:
+    def _optimise_contact_forces(self) -> tuple[float, float]:
         """Find forces >= 0 at the corners of the contact that balance the loads best (linear programme).
 
         Returns the sum of these forces and the remaining imbalance, both over the total load [1].
         """
-        corner_approach = self.rigid_approach[self.hull_points].T
+        corner_approach = self.rigid_motion_approach[self.hull_points].T
         slack = np.eye(self.generalised_load.size)
         cost = np.concatenate([np.zeros(self.hull_points.size), np.ones(2 * self.generalised_load.size)])
         from scipy.optimize import linprog  # slow to import, and a linear joint needs no balance
@@ -144,11 +144,11 @@ def rigid_motions(body: ElasticBody) -> Array:
     return np.asarray(motions * np.sqrt(body.unknown_count / 3.0))
 
 
-def _has_independent_columns(rigid_approach: Array) -> bool:
+def _has_independent_columns(rigid_motion_approach: Array) -> bool:
     """Whether every combination of motions (columns) changes the approach of some points (rows)."""
-    if rigid_approach.shape[1] == 0:
+    if rigid_motion_approach.shape[1] == 0:
         return True
-    if rigid_approach.shape[0] < rigid_approach.shape[1]:
+    if rigid_motion_approach.shape[0] < rigid_motion_approach.shape[1]:
         return False
-    smallest = np.linalg.svd(rigid_approach, compute_uv=False)[-1]
-    return bool(smallest > MIN_RELATIVE_MOTION * np.sqrt(rigid_approach.shape[0]))
+    smallest = np.linalg.svd(rigid_motion_approach, compute_uv=False)[-1]
+    return bool(smallest > MIN_RELATIVE_MOTION * np.sqrt(rigid_motion_approach.shape[0]))

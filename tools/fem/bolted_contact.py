@@ -12,7 +12,7 @@ from ..inputs.fields.nodal_result import ContactField
 from .contact import ContactInterface, ContactModel, ContactSolution, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, BodyGeometry
-from .mesh import PlanMesh, body_mesh, contact_mesh, find_contact_cells, mesh_plan
+from .mesh import PlanMesh, contact_mesh, extrude_body_mesh, find_contact_cells, mesh_plan_view
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class BoltedContact:
 
         If both bodies are equal, only side 2 is meshed: side 1 is its mirror image.
         """
-        plan = mesh_plan(assembly, refinement)
+        plan = mesh_plan_view(assembly, refinement)
         sides = (2,) if assembly.side1 == assembly.side2 else (1, 2)
         bodies, heads = [], []
         for side in sides:
-            body = elastic_body(plan, assembly, side, refinement)
+            body = make_elastic_body(plan, assembly, side, refinement)
             bodies.append(body)
             heads.append(compute_bolt_head_loads(body, assembly))
         interface = ContactInterface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
@@ -71,10 +71,14 @@ class BoltedContact:
         return JointSolution(self, force, model.solve(loads, mean, initial_solution))
 
 
-def elastic_body(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
+def make_elastic_body(
+    plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0
+) -> ElasticBody:
     """Elastic body on side 1 or 2 of an assembly, extruded from a plan mesh."""
     body: BodyGeometry = assembly.side1 if side == 1 else assembly.side2
-    return ElasticBody(body_mesh(plan_mesh, assembly, side, refinement), body.E, body.nu, body.density)
+    return ElasticBody(
+        extrude_body_mesh(plan_mesh, assembly, side, refinement), body.E, body.nu, body.density
+    )
 
 
 def compute_bolt_head_loads(body: ElasticBody, assembly: Assembly) -> Array:
@@ -156,7 +160,7 @@ def bolt_midpoints(bolt_positions: Array) -> Array:
     return np.array(midpoints).reshape(-1, 2)
 
 
-DEFAULT_MOMENT_RATIO = 1.0 / 3.0
+SECOND_FIELD_MOMENT_RATIO = 1.0 / 3.0
 """Moment of the second pressure field over the moment that unloads a row of bolts [1], as in Zhao 2018."""
 
 
@@ -176,7 +180,7 @@ def insert_contact_field(
     )
 
     joint = solution.bolted_contact
-    tilting = moment or DEFAULT_MOMENT_RATIO * joint.assembly.max_moment(preload)
+    tilting = moment or SECOND_FIELD_MOMENT_RATIO * joint.assembly.max_moment(preload)
     equal = solution.solve_load_case(preload).contact_field if moment else solution.contact_field
     tilted = (
         solution.contact_field

@@ -22,7 +22,7 @@ from skfem import Basis, Element, ElementQuadS2, MeshQuad
 
 from jointfmu.quantity import Array
 
-from .balance import RigidBalance
+from .balance import RigidBodyBalance
 from .elasticity import ElasticBody, IndexArray
 from .newton import ContactEnergy, EnergyMinimum
 
@@ -168,7 +168,7 @@ class ContactModel:
         ------
         RuntimeError : there is no equilibrium: the contact cannot balance the loads, or a body is not held
         """
-        balance = self.rigid_balance(loads)
+        balance = self.rigid_body_balance(loads)
         balance.check_loads()
         gap = self.unloaded_gap(*self.contact_interface.quadrature_position.T)
         offset = (
@@ -183,7 +183,9 @@ class ContactModel:
         minimum = energy.minimise(
             offset - gap, None if initial_solution is None else initial_solution.energy_minimum
         )
-        balance.check_contact(energy.quadrature_area * self.pressure_law.derivatives(minimum.approach, 1)[0])
+        balance.check_contact_forces(
+            energy.quadrature_area * self.pressure_law.derivatives(minimum.approach, 1)[0]
+        )
         return ContactSolution(
             self, tuple(loads), self._expand_displacement(minimum.displacement), offset, minimum
         )
@@ -196,10 +198,10 @@ class ContactModel:
             all_unknowns[free] = values
         return displacement
 
-    def rigid_balance(self, loads: Sequence[Array]) -> RigidBalance:
+    def rigid_body_balance(self, loads: Sequence[Array]) -> RigidBodyBalance:
         """Generalised forces of loads (n) [N] and contact on the rigid-body motions of the bodies."""
         interface = self.contact_interface
-        return RigidBalance.from_loads(
+        return RigidBodyBalance.from_loads(
             self.bodies,
             [interface.interpolation_matrix @ trace for trace in self.approach_matrices()],
             loads,

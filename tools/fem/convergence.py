@@ -117,7 +117,7 @@ def observed_orders(mesh_results: Sequence[MeshResult]) -> dict[str, float]:
     return observed
 
 
-MAX_PEAK_DIFFERENCE = 0.1
+MAX_PEAK_PRESSURE_DIFFERENCE = 0.1
 """Largest relative difference of the peak pressures around equivalent bolts [1] on a mesh that is fine
 enough."""
 _POSITION_TOLERANCE = 1e-6
@@ -155,7 +155,7 @@ def check_bolt_symmetry(contact_field: ContactField, bolt_positions: Array, has_
     group = first_equivalent_bolts(bolt_positions, has_moment)
     ratio = peak / np.array([np.min(peak[group == first]) for first in group]).clip(1e-9)
     worst = int(np.argmax(ratio))
-    if not ratio[worst] > 1.0 + MAX_PEAK_DIFFERENCE:
+    if not ratio[worst] > 1.0 + MAX_PEAK_PRESSURE_DIFFERENCE:
         return []
     x, y = bolt_positions[worst]
     return [

@@ -49,8 +49,8 @@ class Cholesky:
 
         if sp.issparse(right_side):
             blocks = (
-                right_side[:, first : first + MAX_SPARSE_COLUMNS]
-                for first in range(0, right_side.shape[1], MAX_SPARSE_COLUMNS)
+                right_side[:, first : first + MAX_SPARSE_RIGHT_SIDES]
+                for first in range(0, right_side.shape[1], MAX_SPARSE_RIGHT_SIDES)
             )
             return np.hstack(
                 [np.array(dense(cholmod.spsolve(self._factor, _to_cvxopt(block)))) for block in blocks]
@@ -60,7 +60,7 @@ class Cholesky:
         return np.array(x).reshape(right_side.shape)
 
 
-MAX_SPARSE_COLUMNS = 32
+MAX_SPARSE_RIGHT_SIDES = 32
 """Largest number of sparse right-hand sides in one call: their solutions are in memory twice."""
 
 

@@ -50,9 +50,9 @@ def find_contact_cells(plan_mesh: PlanMesh, assembly: Assembly) -> NDArray[np.bo
     return cells1 & cells2
 
 
-def contact_mesh(plan_mesh: PlanMesh, in_contact: NDArray[np.bool_]) -> MeshQuad:
+def contact_mesh(plan_mesh: PlanMesh, contact_cell_mask: NDArray[np.bool_]) -> MeshQuad:
     """Plane mesh of the contact area: the cells of the plan that are in contact."""
-    used, cells = np.unique(plan_mesh.cells[:, in_contact], return_inverse=True)
+    used, cells = np.unique(plan_mesh.cells[:, contact_cell_mask], return_inverse=True)
     return MeshQuad(
         np.ascontiguousarray(plan_mesh.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1))
     )
@@ -72,7 +72,7 @@ def _narrowest_strip(body: BodyGeometry) -> float:
     return float(min(widths))
 
 
-def mesh_plan(assembly: Assembly, refinement: float = 1.0) -> PlanMesh:
+def mesh_plan_view(assembly: Assembly, refinement: float = 1.0) -> PlanMesh:
     """Mesh the plan view with quadrilaterals whose edges follow all body edges, holes and bolt heads.
 
     refinement : [1] divides all element sizes
@@ -83,7 +83,7 @@ def mesh_plan(assembly: Assembly, refinement: float = 1.0) -> PlanMesh:
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        _draw_plan(gmsh.model, assembly)
+        _draw_plan_view(gmsh.model, assembly)
         _set_element_sizes(gmsh.model, assembly, size_at_holes, max_size)
         for name, value in (
             ("Algorithm", 8),
@@ -115,7 +115,7 @@ def _match_hole_areas(points: Array, assembly: Assembly) -> None:
         points[:, rim] += (radius * np.sqrt(np.pi / area) - 1.0) * offset[:, rim]
 
 
-def _draw_plan(gmsh_model: object, assembly: Assembly) -> None:
+def _draw_plan_view(gmsh_model: object, assembly: Assembly) -> None:
     """Draw rectangles, holes and heads in gmsh, and split them into faces with common edges."""
     occ = gmsh_model.occ  # type: ignore[attr-defined]
     faces = [(2, occ.addRectangle(-x, -y, 0.0, 2 * x, 2 * y)) for x, y in layer_rectangles(assembly)]
@@ -170,7 +170,7 @@ def _read_quadrilaterals(gmsh_model: object) -> tuple[Array, IndexArray]:
     return points, cells if area > 0 else cells[::-1]
 
 
-def body_mesh(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
+def extrude_body_mesh(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
     """Extrude the plan mesh to the mesh of one body: side 1 towards -z, side 2 towards +z.
 
     Named boundaries: `contact` is the whole face at z = 0; `head1`, `head2`, ... are the faces under the bolt
@@ -186,14 +186,16 @@ def body_mesh(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: fl
         upper.append(cells + (k + 1) * count)
     if side == 1:
         heights, lower, upper = -heights, upper, lower
-    corners = _hexahedra(np.concatenate(lower, axis=1), np.concatenate(upper, axis=1))
+    corners = _make_hexahedra(np.concatenate(lower, axis=1), np.concatenate(upper, axis=1))
     used, cells = np.unique(corners, return_inverse=True)
     points = np.concatenate([np.tile(plan_mesh.points, heights.size), np.repeat(heights, count)[None]])
     mesh = MeshHex(np.ascontiguousarray(points[:, used]), np.ascontiguousarray(cells.reshape(8, -1)))
     return mesh.with_boundaries(_find_named_boundaries(mesh, assembly, side))
 
 
-def extrusion_levels(body: BodyGeometry, refinement: float, max_height: float) -> tuple[Array, list[int]]:
+def extrusion_levels(
+    body: BodyGeometry, refinement: float, max_element_height: float
+) -> tuple[Array, list[int]]:
     """Subdivision of a body along z: k rows of elements between k + 1 levels.
 
     Returns the distances (k + 1) [m] of the levels from the contact, and for each row the index of its layer.
@@ -204,13 +206,13 @@ def extrusion_levels(body: BodyGeometry, refinement: float, max_height: float) -
     for layer_index, layer in enumerate(body.layers()):
         thickness = layer.top_distance - layer.bottom_distance
         min_rows = ELEMENTS_THROUGH_THICKNESS if layer_index == 0 else 1
-        rows = max(round(min_rows * refinement), int(np.ceil(thickness / max_height - 1e-9)), 1)
+        rows = max(round(min_rows * refinement), int(np.ceil(thickness / max_element_height - 1e-9)), 1)
         heights += list(layer.bottom_distance + thickness * np.arange(1, rows + 1) / rows)
         owner += [layer_index] * rows
     return np.array(heights), owner
 
 
-def _hexahedra(lower_corners: IndexArray, upper_corners: IndexArray) -> IndexArray:
+def _make_hexahedra(lower_corners: IndexArray, upper_corners: IndexArray) -> IndexArray:
     """Corner indices (8, m) in the order of scikit-fem, from the corners (4, m) of lower and upper faces."""
     (a, b, c, d), (e, f, g, h) = lower_corners, upper_corners
     return np.stack([g, c, f, h, b, d, e, a])

@@ -63,14 +63,14 @@ def compute_modes(
         springs = _interface_stiffness(
             bodies, contact_interface, {0: tangential_stiffness, 1: tangential_stiffness, 2: normal_stiffness}
         )
-        motions = _lowest_modes(bodies, springs, RIGID_MODE_COUNT + mode_count)
+        motions = _solve_lowest_modes(bodies, springs, RIGID_MODE_COUNT + mode_count)
     else:
         motions = []
         for stiffness, sign in (
             ({2: normal_stiffness}, 1.0),
             ({0: tangential_stiffness, 1: tangential_stiffness}, -1.0),
         ):
-            half = _lowest_modes(
+            half = _solve_lowest_modes(
                 bodies,
                 2.0 * _interface_stiffness(bodies, contact_interface, stiffness),
                 RIGID_MODE_COUNT // 2 + mode_count,
@@ -112,7 +112,7 @@ def _interface_stiffness(
     return sp.csr_matrix(total)
 
 
-def _lowest_modes(
+def _solve_lowest_modes(
     bodies: tuple[ElasticBody, ...], interface_stiffness: sp.csr_matrix, mode_count: int
 ) -> list[tuple[float, tuple[Array, ...]]]:
     """Lowest frequencies [Hz] and mode shapes, by shift-invert Lanczos.
@@ -155,7 +155,7 @@ def preloaded_modes(
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
     mode_count : number of modes
     """
-    return _modes_with_stiffness(
+    return _compute_modes_for_stiffness(
         solution.bolted_contact, solution.contact_solution.stiffness, tangential_stiffness_ratio, mode_count
     )
 
@@ -175,7 +175,7 @@ def uniform_pressure_modes(
     area = bolted_contact.contact_interface.quadrature_area
     approach = pressure_law.inverse(np.asarray(total_bolt_force / area.sum()))
     stiffness = float(pressure_law.derivatives(approach, 1)[1])
-    return _modes_with_stiffness(
+    return _compute_modes_for_stiffness(
         bolted_contact, np.full(area.shape, stiffness), tangential_stiffness_ratio, mode_count
     )
 
@@ -187,7 +187,7 @@ def compute_frequencies(
     load_states: Sequence[tuple[float, float]],
     refinement: float = DEFAULT_REFINEMENT,
     mode_count: int = 6,
-    uniform_pressure: bool = False,
+    is_pressure_uniform: bool = False,
 ) -> Array:
     """Compute the natural frequencies (load states, modes) [Hz] of an assembly in several load states.
 
@@ -200,7 +200,7 @@ def compute_frequencies(
     contact = BoltedContact.from_assembly(assembly, refinement)
     rows = []
     for preload, moment in load_states:
-        if uniform_pressure:
+        if is_pressure_uniform:
             force = float(assembly.bolt_forces(preload, moment).sum())
             rows.append(
                 uniform_pressure_modes(contact, law, force, tangential_stiffness_ratio, mode_count).frequency
@@ -214,7 +214,7 @@ def compute_frequencies(
     return np.array(rows)
 
 
-def _modes_with_stiffness(
+def _compute_modes_for_stiffness(
     bolted_contact: BoltedContact, normal_stiffness: Array, tangential_stiffness_ratio: float, mode_count: int
 ) -> NaturalModes:
     """Natural modes for a normal stiffness per area (q) [N/m3] and the tangential stiffness ratio [1]."""

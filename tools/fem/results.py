@@ -11,7 +11,7 @@ from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.quantity import Array
 
 from ..common import plots
-from ..common.columns import FIELD_FILE_KIND
+from ..common.columns import PRESSURE_FIELD_FILE_KIND
 from ..inputs.fields import nodal_result
 from .bolted_contact import JointSolution
 from .elasticity import ElasticBody, IndexArray
@@ -37,10 +37,10 @@ def vtu_content(points: Array, cell_type: str, cells: IndexArray, point_data: Ma
 
 def check_field_path(path: str | Path) -> None:
     """Raise ValueError if the suffix of the path is no format of a field. Call before a long calculation."""
-    if Path(path).suffix.lower() not in FIELD_FILE_KIND.endings:
+    if Path(path).suffix.lower() not in PRESSURE_FIELD_FILE_KIND.endings:
         raise ValueError(
             f"{path}: suffix {Path(path).suffix!r} is not a field, allowed are "
-            f"{', '.join(FIELD_FILE_KIND.endings)}"
+            f"{', '.join(PRESSURE_FIELD_FILE_KIND.endings)}"
         )
 
 

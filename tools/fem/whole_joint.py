@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.quantity import Array
 
-from .bolted_contact import compute_bolt_head_loads, elastic_body
+from .bolted_contact import compute_bolt_head_loads, make_elastic_body
 from .contact import ContactInterface, displacement_matrix
 from .elasticity import Cholesky, ElasticBody, IndexArray
 from .geometry import Assembly
-from .mesh import contact_mesh, find_contact_cells, mesh_plan
+from .mesh import contact_mesh, find_contact_cells, mesh_plan_view
 
 COORDINATE_AXES = (0, 1, 2)
 MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
@@ -92,8 +92,8 @@ class JointFiniteElements:
         attachment : kind of attachment, a key of ATTACHMENT_NODES
         refinement : [1] divides the sizes of all elements
         """
-        plan = mesh_plan(assembly, refinement)
-        first, second = (elastic_body(plan, assembly, side, refinement) for side in (1, 2))
+        plan = mesh_plan_view(assembly, refinement)
+        first, second = (make_elastic_body(plan, assembly, side, refinement) for side in (1, 2))
         attachments, heads = [], []
         for side, body in enumerate((first, second), start=1):
             nodes = np.flatnonzero(ATTACHMENT_NODES[attachment](body, side))
@@ -211,13 +211,13 @@ class JointFiniteElements:
         return displacement, rigid, free, factor
 
 
-def _block_diagonal(first: sp.csr_matrix, second: sp.csr_matrix) -> sp.csr_matrix:
+def _block_diagonal(first_matrix: sp.csr_matrix, second_matrix: sp.csr_matrix) -> sp.csr_matrix:
     """Block diagonal matrix of two square matrices."""
-    size = first.shape[0]
-    indices = np.concatenate([first.indices, second.indices + size])
-    starts = np.concatenate([first.indptr, second.indptr[1:] + first.nnz])
-    data = np.concatenate([first.data, second.data])
-    return sp.csr_matrix((data, indices, starts), shape=(size + second.shape[0],) * 2)
+    size = first_matrix.shape[0]
+    indices = np.concatenate([first_matrix.indices, second_matrix.indices + size])
+    starts = np.concatenate([first_matrix.indptr, second_matrix.indptr[1:] + first_matrix.nnz])
+    data = np.concatenate([first_matrix.data, second_matrix.data])
+    return sp.csr_matrix((data, indices, starts), shape=(size + second_matrix.shape[0],) * 2)
 
 
 class MirrorFactorisation:

@@ -10,14 +10,14 @@ from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
 from jointfmu.contact.roughness import HEIGHT_FIELDS, check_heights, combined_height
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
-from jointfmu.quantity import Number, build_parameter_set, flat_fields, flatten_parameters
+from jointfmu.quantity import Number, build_parameter_set, flatten_fields, flatten_parameters
 
 from ..common.judgement import find_rms_height, law_rms_height
 from . import fractal
 
 LAW_COLUMNS = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of the output of every law; a column that a law does not define is null."""
-PROFILE_PARAMETERS = ("surface.D", "surface.G")
+FRACTAL_PROFILE_PARAMETERS = ("surface.D", "surface.G")
 """Fractal parameters of a profile, which must be set together."""
 LAW_COLUMN_UNITS = {
     **dict.fromkeys(("largest_spot", "A_r"), "m2"),
@@ -41,7 +41,7 @@ def build_law_parameters(law: str, parameter_file: ParameterFile | None, setting
     If the file has another law, its values are used as far as the law has them, else default values.
     """
     parameter_file = parameter_file or load_default(default_joint(law), law)
-    names = {name for name, _ in flat_fields(LAWS[law])}
+    names = {name for name, _ in flatten_fields(LAWS[law])}
     law_of = KINDS[parameter_file.joint].extract_law
     file_law, differs = law_of(parameter_file.values), parameter_file.law != law
     known = flatten_parameters(file_law)
@@ -76,7 +76,7 @@ def roughness_settings(
     heights as `roughness.check` does.
     """
     heights = {name: settings[name] for name in HEIGHT_FIELDS if name in settings}
-    fractals = {name: settings[name] for name in PROFILE_PARAMETERS if name in settings}
+    fractals = {name: settings[name] for name in FRACTAL_PROFILE_PARAMETERS if name in settings}
     others = {name: value for name, value in settings.items() if name not in {*heights, *fractals}}
     if heights and fractals:
         raise ValueError(f"{', '.join(fractals)} beside {', '.join(heights)}: expected D and G, or heights")
@@ -84,9 +84,11 @@ def roughness_settings(
         return others | (heights if [*heights] == ["h"] else {"h": combined_height(check_heights(heights))})
     if fractals:
         law_values = {
-            name: value for name, value in (law_values | fractals).items() if name in PROFILE_PARAMETERS
+            name: value
+            for name, value in (law_values | fractals).items()
+            if name in FRACTAL_PROFILE_PARAMETERS
         }
-        if missing := [name for name in PROFILE_PARAMETERS if name not in law_values]:
+        if missing := [name for name in FRACTAL_PROFILE_PARAMETERS if name not in law_values]:
             raise ValueError(f"{', '.join(fractals)} without {missing[0]}: expected both, or heights")
     elif stated_height is not None:
         return {"h": stated_height} | others
@@ -99,7 +101,7 @@ def roughness_settings(
     return {"h": h, "hurst": exponent} | others
 
 
-def known_surface_height(
+def find_surface_rms_height(
     law: str, parameters: Any, parameter_file: ParameterFile | None, settings: Iterable[str]
 ) -> Number | None:
     """Rms height h [m] of both surfaces together, for the parameter set of a law; None if it is not known.

@@ -21,11 +21,11 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, build_parameter_set, flatten_parameters
 
-_ERROR, _WARNING = 3, 1
+_ERROR_STATUS, _WARNING_STATUS = 3, 1
 """Status of a log message in FMI 3.0."""
-_LOGGER = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
-_POINTER = ctypes.c_void_p
-_SIZE = ctypes.c_size_t
+_LOGGER_TYPE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+_POINTER_TYPE = ctypes.c_void_p
+_SIZE_TYPE = ctypes.c_size_t
 
 
 class PathResult(NamedTuple):
@@ -71,7 +71,7 @@ def open_joint(model: Model, file: ParameterFile) -> JointEngine:
     try:
         return CompiledJoint(model, file)
     except (ImportError, OSError, RuntimeError) as error:
-        _announce_python(" ".join(str(error).split()))
+        _announce_python_evaluation(" ".join(str(error).split()))
         return PythonJoint(model, file)
 
 
@@ -143,7 +143,7 @@ class VariableJoint:
 
 
 @lru_cache(maxsize=1)
-def _announce_python(reason: str) -> None:
+def _announce_python_evaluation(reason: str) -> None:
     print(
         f"jointfmu: the joint is evaluated by its Python law, which is slow ({reason}); "
         "for the compiled joint: pip install 'jointfmu[build]'",
@@ -159,7 +159,7 @@ class CompiledJoint:
     """
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
-        from jointfmu_fmu_src.native.library import make_library
+        from jointfmu_fmu_src.native.library import make_joint_library
 
         self.model = model
         self._start_values = {v.name: file.start_value(v.name) for v in model.inputs}
@@ -169,12 +169,12 @@ class CompiledJoint:
         names = ["time", *self._start_values, *(v.name for v in model.outputs), *fields]
         self._references = {name: i for i, name in enumerate(names)}
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
-        library, messages = make_library(model, file), self._messages
+        library, messages = make_joint_library(model, file), self._messages
 
         def log(environment: Any, status: int, category: bytes, text: bytes) -> None:
             messages.append((status, text.decode("utf-8", "replace")))
 
-        self._logger = _LOGGER(log)
+        self._logger = _LOGGER_TYPE(log)
         folder = tempfile.mkdtemp(prefix="jointfmu-")
         try:
             path = Path(folder) / model.title
@@ -188,25 +188,26 @@ class CompiledJoint:
             model.title.encode(), library.token.encode(), None, False, False, False, False, None, 0, None,
             self._logger, None,
         )  # fmt: skip
-        self._instance = _POINTER(instance)
+        self._instance = _POINTER_TYPE(instance)
         # The file stays as long as the library is loaded: another file may get its number on the disk, and
         # the loader would take it for this one.
-        weakref.finalize(self, _close, self._library, self._instance, self._logger, folder)
+        weakref.finalize(self, _close_library, self._library, self._instance, self._logger, folder)
         if not instance:
             raise RuntimeError(self._messages[-1][1] if self._messages else "no instance of the library")
 
     def _declare_functions(self) -> None:
         lib = self._library
-        lib.fmi3InstantiateCoSimulation.restype = _POINTER
+        lib.fmi3InstantiateCoSimulation.restype = _POINTER_TYPE
         lib.fmi3InstantiateCoSimulation.argtypes = [
             ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_bool, ctypes.c_bool, ctypes.c_bool,
-            ctypes.c_bool, _POINTER, _SIZE, _POINTER, _LOGGER, _POINTER,
+            ctypes.c_bool, _POINTER_TYPE, _SIZE_TYPE, _POINTER_TYPE, _LOGGER_TYPE, _POINTER_TYPE,
         ]  # fmt: skip
         for function in (lib.fmi3SetFloat64, lib.fmi3SetBoolean):
-            function.argtypes = [_POINTER, _POINTER, _SIZE, _POINTER, _SIZE]
-        lib.jointfmu_follow_path.restype = _SIZE
+            function.argtypes = [_POINTER_TYPE, _POINTER_TYPE, _SIZE_TYPE, _POINTER_TYPE, _SIZE_TYPE]
+        lib.jointfmu_follow_path.restype = _SIZE_TYPE
         lib.jointfmu_follow_path.argtypes = [
-            _POINTER, ctypes.c_bool, _SIZE, _SIZE, _POINTER, _POINTER, _SIZE, _POINTER, _POINTER,
+            _POINTER_TYPE, ctypes.c_bool, _SIZE_TYPE, _SIZE_TYPE, _POINTER_TYPE, _POINTER_TYPE, _SIZE_TYPE,
+            _POINTER_TYPE, _POINTER_TYPE,
         ]  # fmt: skip
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
@@ -222,13 +223,13 @@ class CompiledJoint:
                 if function(
                     self._instance, references.ctypes.data, len(names), numbers.ctypes.data, len(names)
                 ):
-                    raise ValueError(self._take_error())
+                    raise ValueError(self._take_error_message())
 
     def _list_references(self, names: Sequence[str]) -> Any:
         return np.array([self._references[name] for name in names], np.uint32)
 
-    def _take_error(self) -> str:
-        text = next((text for status, text in reversed(self._messages) if status >= _ERROR), "refused")
+    def _take_error_message(self) -> str:
+        text = next((text for status, text in reversed(self._messages) if status >= _ERROR_STATUS), "refused")
         self._messages.clear()
         return text
 
@@ -250,13 +251,15 @@ class CompiledJoint:
                 len(outputs), read.ctypes.data, results.ctypes.data,
             )  # fmt: skip
             if done < len(values):
-                raise ValueError(self._take_error())
-            warnings = tuple(dict.fromkeys(text for status, text in self._messages if status == _WARNING))
+                raise ValueError(self._take_error_message())
+            warnings = tuple(
+                dict.fromkeys(text for status, text in self._messages if status == _WARNING_STATUS)
+            )
         found = dict(zip((*names, *outputs), (*values.T, *results.T), strict=True))
         return PathResult(found, warnings)
 
 
-def _close(library: Any, instance: Any, logger: Any, folder: str) -> None:
+def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> None:
     """Free the instance, unload the library and remove its folder.
 
     logger : callback of the instance, an argument only to keep it alive until here

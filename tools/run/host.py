@@ -22,7 +22,7 @@ _LIBRARY_LOCK = Lock()
 """Lock while a library is loaded: loading changes the working folder, which all threads share."""
 
 
-class Message(NamedTuple):
+class LogMessage(NamedTuple):
     """Log message of an FMU; status 0 is an event, 1 a warning, 3 an error."""
 
     status: int
@@ -56,7 +56,7 @@ class Instance:
         self.variables = {v.name: v for v in description.modelVariables}
         self.version = int(description.fmiVersion[0])
         self.is_model_exchange = model_exchange
-        self.messages: list[Message] = []
+        self.messages: list[LogMessage] = []
         self._log_lines = [] if log_lines is None else log_lines
         kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
         interface = description.modelExchange if model_exchange else description.coSimulation
@@ -91,7 +91,7 @@ class Instance:
 
     def _log(self, status: int, category: bytes | None, text: bytes) -> None:
         shown = text.decode("utf-8", "replace")
-        self.messages.append(Message(status, shown, (category or b"").decode("utf-8", "replace")))
+        self.messages.append(LogMessage(status, shown, (category or b"").decode("utf-8", "replace")))
         if status:
             self._log_lines.append(" ".join(shown.split()))
 
@@ -119,7 +119,7 @@ class Instance:
         declared = str(self.variables[variable_name].type)
         return declared if declared != "Enumeration" else "Integer" if self.version == 2 else "Int64"
 
-    def group_reals(self, names: Sequence[str]) -> "RealVariables":
+    def group_real_variables(self, names: Sequence[str]) -> "RealVariables":
         """Group real variables, so that one call sets or reads all of them."""
         return RealVariables(self, names)
 
@@ -245,7 +245,7 @@ def unpack_fmu(fmu: str | Path, model_exchange: bool = False) -> "Iterator[tuple
     try:
         with archives.open_archive(path) as archive:
             archives.extract_members(archive, folder, is_needed_to_run)
-        _check_python_flavour(resources, path)
+        _check_pythonfmu_files(resources, path)
         yield folder, described
     finally:
         while str(resources) in sys.path:
@@ -273,7 +273,7 @@ def _check_interface(model_description: "ModelDescription", fmu_path: Path, mode
         )
 
 
-def _check_python_flavour(resources_folder: Path, fmu_path: Path) -> None:
+def _check_pythonfmu_files(resources_folder: Path, fmu_path: Path) -> None:
     """Raise ValueError if files of a pythonfmu FMU are missing; its library would crash without them."""
     if not (resources_folder / "pythonfmu").is_dir():
         return

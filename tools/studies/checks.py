@@ -17,18 +17,18 @@ from ..systems.decays import DAMPING_TOLERANCE as LOOP_DAMPING_TOLERANCE
 from ..systems.decays import FREQUENCY_TOLERANCE, Decay
 from ..systems.ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, FreeVibration
 from .published.computed import load_published_numbers
-from .published.reference import Point, read_points
+from .published.reference import PublishedPoint, read_points
 from .published.validation import ValidatedPoint, compare_point
 
 _COARSE_STEP_FACTOR = 10.0
 """Step of the repeated ramp over the step of the default ramp [1]."""
 _SIMPSON_INTERVALS = 10_000
 """Intervals of the Simpson rule between two ends of an integral [1]."""
-FmuEvaluation = Callable[[Point, Path], float | None]
+FmuEvaluation = Callable[[PublishedPoint, Path], float | None]
 """(published point, folder of the FMUs) -> value computed by an FMU; None if no FMU has this quantity."""
 INTEGRATION_TOLERANCE = 1e-6
 """Allowed deviation [1] of an FMU from an independent integration of its stiffness."""
-REPEAT_TOLERANCE = 1e-9
+COARSE_STEP_TOLERANCE = 1e-9
 """Allowed deviation [1] of an FMU between ten times larger steps and the default ones, at the same loads."""
 FLAVOUR_TOLERANCE = 1e-9
 """Allowed deviation [1] between two builds of an FMU (FMI 2.0, FMI 3.0, Python): round-off in the inversion
@@ -65,7 +65,12 @@ def check_ramp(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> lis
     """Check the ramp of an FMU: repeat it with larger steps, then run the check that its joint defines."""
     worst = _coarse_ramp_deviation(fmu_name, folder, ramp_result)
     checks = [
-        Check(fmu_name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
+        Check(
+            fmu_name,
+            "ten times larger steps, every output at the shared points",
+            worst,
+            COARSE_STEP_TOLERANCE,
+        )
     ]
     module = load_tool_module(KINDS[MODELS[fmu_name].joint], "checks")
     if module and fmu_name in module.RAMP_CHECKS:

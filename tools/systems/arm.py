@@ -37,7 +37,7 @@ from jointfmu.quantity import (
     CheckedParameters,
     build_parameter_set,
     find_problem,
-    flat_fields,
+    flatten_fields,
     quantity_field,
     smooth_step,
     smooth_step_slopes,
@@ -189,7 +189,7 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
     for name, item in _MOTION_ENTRIES.items():
         if text := find_problem(name, times.get(name), item):
             raise ValueError(f"arm.{text}")
-    fields, links, drives = dict(flat_fields(Link)), [], {}
+    fields, links, drives = dict(flatten_fields(Link)), [], {}
     for name, axis_section in axes.items():
         if not isinstance(axis_section, Mapping) or axis_section.get("axis") not in AXIS_VECTORS:
             axis_name = axis_section.get("axis") if isinstance(axis_section, Mapping) else axis_section
@@ -214,7 +214,7 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
     sections: ComponentSections = {}
     wires: list[tuple[str, str]] = []
     for name, drive in drives.items():
-        ratio = _find_ratio(path, name, drive)
+        ratio = _find_gear_ratio(path, name, drive)
         sections |= _make_axis_sections(arm, name, drive, ratio)
         wires += [
             (f"{name}_motor", f"{name}_drive.flange1"),
@@ -224,7 +224,7 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
     return arm, sections, wires
 
 
-def _find_ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
+def _find_gear_ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
     """Gear ratio of the drive of an axis: given in its section, or by its parameter file."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():

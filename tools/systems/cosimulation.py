@@ -10,15 +10,15 @@ from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
 from .master import Slave
-from .ssp import MASTERS, Master, find_fmu_names, list_values
+from .ssp import MASTERS, MasterKind, find_fmu_names, list_values
 from .system import System, load_systems
 from .wiring import find_lag_parameters, find_signals
 
 
-def simulate(
+def simulate_system(
     system: System,
     folder: Path,
-    master: Master = MASTERS[0],
+    master: MasterKind = MASTERS[0],
     step: float | None = None,
     stop: float | None = None,
 ) -> dict[str, Array]:
@@ -56,12 +56,12 @@ def simulate(
         spans = {name: slice(ends[name] - len(outputs), ends[name]) for name, outputs in outputs_read.items()}
         current = [0.0] * len(columns)
 
-        def set_inputs(group: list[str]) -> None:
-            for name in group:
+        def set_inputs(component_names: list[str]) -> None:
+            for name in component_names:
                 slaves[name].set_inputs(*[current[k] for k in sources[name]])
 
-        def get_outputs(group: list[str]) -> None:
-            for name in group:
+        def get_outputs(component_names: list[str]) -> None:
+            for name in component_names:
                 current[spans[name]] = slaves[name].get_outputs()
 
         get_outputs(others)
@@ -82,4 +82,8 @@ def simulate(
 
 def simulate_arms(folder: Path) -> dict[str, tuple[System, dict[str, Array]]]:
     """Simulate the shipped systems that are arms, {name: (system, results)}; `folder` has FMI 2.0 FMUs."""
-    return {name: (system, simulate(system, folder)) for name, system in load_systems().items() if system.arm}
+    return {
+        name: (system, simulate_system(system, folder))
+        for name, system in load_systems().items()
+        if system.arm
+    }

@@ -72,7 +72,9 @@ def simulate_example_decays(folder: Path) -> dict[str, list[Decay]]:
 
     folder : folder of the FMUs (FMI 2.0)
     """
-    pulls = [(name, joint, joint.test.slip_deflection) for name, joint in find_vibrating_joints().items()]
+    pulls = [
+        (name, joint, joint.vibration_test.slip_deflection) for name, joint in find_vibrating_joints().items()
+    ]
     return {name: simulate_decays(joint, folder, pull.deflection, [pull.load]) for name, joint, pull in pulls}
 
 
@@ -96,7 +98,7 @@ def simulate_decays(
     """
     parameters = {**joint.parameters, **(settings or {})}
     loads = (
-        [max(joint.test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters))]
+        [max(joint.vibration_test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters))]
         if loads is None
         else loads
     )
@@ -116,7 +118,7 @@ def _simulate_decay(
     initial_deflection: float,
 ) -> Decay:
     """Simulate the free decay at one load, and compute frequency and damping by the joint's loops."""
-    body, path = joint.test, folder / f"{joint.fmu_name}.fmu"
+    body, path = joint.vibration_test, folder / f"{joint.fmu_name}.fmu"
     rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
     states = [v.name for v in partner.outputs[: partner.state_count]]
     # away from zero: monotonic loading, as the FMU starts at zero

@@ -13,7 +13,7 @@ from jointfmu.quantity import Array
 
 from ..run.host import open_instance, unpack_fmu
 
-T = TypeVar("T")
+ReturnType = TypeVar("ReturnType")
 
 
 class Slave:
@@ -44,19 +44,22 @@ class Slave:
                 self._fmu.fmu.exitInitializationMode()
             except FMICallException as error:
                 raise ValueError(f"{path}: {self.messages[0] if self.messages else error}") from None
-            self._in, self._out = self._fmu.group_reals(inputs), self._fmu.group_reals(outputs)
+            self._in, self._out = (
+                self._fmu.group_real_variables(inputs),
+                self._fmu.group_real_variables(outputs),
+            )
             self._entered = entered.pop_all()
 
     def set_inputs(self, *values: float) -> None:
-        self._call(self._in.set_values, *values)
+        self._call_fmu_function(self._in.set_values, *values)
 
     def get_outputs(self) -> list[float]:
-        return self._call(self._out.get_values)
+        return self._call_fmu_function(self._out.get_values)
 
     def do_step(self, time: float, step_size: float) -> None:
-        self._call(self._fmu.do_step, time, step_size)
+        self._call_fmu_function(self._fmu.do_step, time, step_size)
 
-    def _call(self, function: Callable[..., T], *arguments: float) -> T:
+    def _call_fmu_function(self, function: Callable[..., ReturnType], *arguments: float) -> ReturnType:
         """Call a function of the FMU; raises ValueError with the FMU's message if it returns an error."""
         try:
             return function(*arguments)

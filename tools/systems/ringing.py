@@ -11,7 +11,7 @@ from jointfmu_fmu_src.partners import load_partner_parameters as partner_paramet
 
 from jointfmu.joints import KINDS
 from jointfmu.progress import track_progress
-from jointfmu.quantity import Array, flat_fields
+from jointfmu.quantity import Array, flatten_fields
 
 from ..common.joint_parts import load_tool_module
 from .master import Slave, damping_ratio, peak_frequency, simulate_motion
@@ -27,7 +27,7 @@ RESONANCE_TOLERANCE = 5e-3
 """Relative tolerance [1] of the spectral peak frequency against sqrt(K/J)."""
 DAMPING_TOLERANCE = 1e-2
 """Relative tolerance [1] of the damping ratio by the decrement against that of the joint."""
-CURVE_POINTS = 41
+FREQUENCY_CURVE_POINT_COUNT = 41
 """Number of points of a curve over the load [1]."""
 MIN_DEFLECTION_RATIO = 1e-10
 """Smallest ratio of initial deflection to deflection at the working point [1]: round-off is then 1e-6."""
@@ -177,7 +177,7 @@ class VibratingJoint:
     inertia_parameter : parameter of this body that is its inertia
     """
 
-    test: VibrationTest
+    vibration_test: VibrationTest
     joint: Component
     fmu_name: str
     moving_body: Component
@@ -206,16 +206,16 @@ class VibratingJoint:
 
     @property
     def inertia_unit(self) -> str:
-        fields = dict(flat_fields(PARTNERS[self.moving_body.model_name].parameters))
+        fields = dict(flatten_fields(PARTNERS[self.moving_body.model_name].parameter_class))
         return str(fields[self.inertia_parameter].metadata["unit"])
 
     @property
     def motion_unit(self) -> str:
-        return KINDS[self.joint.joint_kind].variables[self.test.motion_inputs[0]].unit
+        return KINDS[self.joint.joint_kind].variables[self.vibration_test.motion_inputs[0]].unit
 
     @property
     def load_unit(self) -> str:
-        return KINDS[self.joint.joint_kind].variables[self.test.load_variable].unit
+        return KINDS[self.joint.joint_kind].variables[self.vibration_test.load_variable].unit
 
 
 def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
@@ -240,7 +240,7 @@ def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJ
         raise ValueError(
             f"{name}: expected a {body.model_name} that gets {body.motion_inputs[0]} from a {body.body_model}"
         )
-    key = next(iter(dict(flat_fields(PARTNERS[body.body_model].parameters))))
+    key = next(iter(dict(flatten_fields(PARTNERS[body.body_model].parameter_class))))
     return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)
 
 
@@ -269,9 +269,9 @@ def simulate_vibrations(
 
     Raises ValueError if an FMU is missing or returns an error, or if there is no vibration.
     """
-    parameters = {**joint.parameters, **joint.test.frictionless_parameters}
+    parameters = {**joint.parameters, **joint.vibration_test.frictionless_parameters}
     if loads is None:
-        loads = joint.test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters)
+        loads = joint.vibration_test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters)
     if inertia is None:
         inertia = joint.inertia
     return [
@@ -284,12 +284,15 @@ def frequency_curve(
     vibrating_joint: VibratingJoint, folder: Path, vibrations: Sequence[FreeVibration]
 ) -> tuple[Array, Array]:
     """Loads (n), evenly spaced over the range of simulated points, and sqrt(K/J) (n) [rad/s] there."""
-    joint = {**vibrating_joint.parameters, **vibrating_joint.test.frictionless_parameters}
+    joint = {**vibrating_joint.parameters, **vibrating_joint.vibration_test.frictionless_parameters}
     path = folder / f"{vibrating_joint.fmu_name}.fmu"
     ends, inertia = [point.load for point in vibrations], vibrations[0].inertia
-    loads = np.linspace(min(ends), max(ends), CURVE_POINTS)
+    loads = np.linspace(min(ends), max(ends), FREQUENCY_CURVE_POINT_COUNT)
     stiffness = np.array(
-        [vibrating_joint.test.find_working_point(path, float(load), joint).stiffness for load in loads]
+        [
+            vibrating_joint.vibration_test.find_working_point(path, float(load), joint).stiffness
+            for load in loads
+        ]
     )
     return loads, np.sqrt(stiffness / inertia)
 
@@ -298,7 +301,7 @@ def _simulate_vibration(
     joint: VibratingJoint, folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
 ) -> FreeVibration:
     """Simulate the free vibration at one load, with given parameters of the joint."""
-    body, path = joint.test, folder / f"{joint.fmu_name}.fmu"
+    body, path = joint.vibration_test, folder / f"{joint.fmu_name}.fmu"
     rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
     initial, smallest = body.release_force / rest.stiffness, MIN_DEFLECTION_RATIO * abs(rest.position)
     if not initial > smallest:

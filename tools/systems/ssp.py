@@ -29,7 +29,7 @@ _OMS_NAMESPACE = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/mas
 _FMU_TYPE = "application/x-fmu-sharedlibrary"
 
 
-class Master(NamedTuple):
+class MasterKind(NamedTuple):
     """Kind of co-simulation master for which an archive is made.
 
     suffix        : suffix of the archive name
@@ -41,18 +41,18 @@ class Master(NamedTuple):
 
     suffix: str
     force_lag: float
-    lag_reason: str
+    force_lag_reason: str
     is_sequential: bool = False
 
 
 MASTERS = (
-    Master(
+    MasterKind(
         "",
         1.0,
         "For masters that step all components side by side (Jacobi: fmpy, ecos, libcosim): the force of a "
         "joint reaches a body one step late, and a lag of 1 carries it on to the present.",
     ),
-    Master(
+    MasterKind(
         "_in_turn",
         0.0,
         "For masters that update components in turn (Gauss-Seidel: OMSimulator): the force of a joint "
@@ -63,7 +63,7 @@ MASTERS = (
 
 
 def format_structure(
-    system: System, fmu_names_by_component: Mapping[str, str], version: str, master: Master
+    system: System, fmu_names_by_component: Mapping[str, str], version: str, master: MasterKind
 ) -> bytes:
     """Content of SystemStructure.ssd; parameter sets are in `parameters/`, FMUs in `resources/`.
 
@@ -72,7 +72,7 @@ def format_structure(
     spaces = {"xmlns:ssd": f"{SSP_NAMESPACE}Description", "xmlns:ssc": f"{SSP_NAMESPACE}Common"}
     head = {**spaces, "version": version, "name": system.name, **file_attributes()}
     root = Element("ssd:SystemStructureDescription", head)
-    description = f"{system.description}. {master.lag_reason}"
+    description = f"{system.description}. {master.force_lag_reason}"
     root.set("description", description)
     system_node = SubElement(root, "ssd:System", name=system.name, description=description)
     _add_parameter_binding(system_node, system.name)
@@ -146,7 +146,7 @@ def build_systems(
     build_joints: bool = True,
     variability: str = VARIABILITIES[0],
     pool: Executor | None = None,
-    force: bool = False,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Write the archives of systems, and their component FMUs to `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
 
@@ -185,7 +185,7 @@ def build_systems(
     archives = [
         _archive_path(system, out, *kind) for system in chosen for kind in product(ARCHIVE_FOLDERS, MASTERS)
     ]
-    check_outputs([*fmus_out, *archives], ARCHIVE_FILE, force)
+    check_outputs([*fmus_out, *archives], ARCHIVE_FILE, overwrite)
     build_versions = partial(_build_versions, out, variability)
     fmu_paths = map_jobs(
         pool, build_versions, "build FMUs of systems", [*built_components], [*built_components.values()]
@@ -218,19 +218,19 @@ def write_archives(system: System, out: Path) -> list[Path]:
     ]
 
 
-def _archive_path(system: System, out: Path, version: str, master: Master) -> Path:
+def _archive_path(system: System, out: Path, version: str, master: MasterKind) -> Path:
     """Path of an archive."""
     return out / ARCHIVE_FOLDERS[version][0] / f"{system.name}{master.suffix}.ssp"
 
 
-def _write_archive(system: System, out: Path, version: str, master: Master) -> Path:
+def _write_archive(system: System, out: Path, version: str, master: MasterKind) -> Path:
     """Write the archive of a system for one SSP version and one kind of master."""
     lag_parameters, names = find_lag_parameters(system), find_fmu_names(system)
     members = {"SystemStructure.ssd": format_structure(system, names, version, master)}
     system_values: dict[str, ParameterValue] = {}
     for name, component in system.components.items():
         lag_values = {
-            lag: ParameterValue(master.force_lag, "1", master.lag_reason)
+            lag: ParameterValue(master.force_lag, "1", master.force_lag_reason)
             for lag in lag_parameters.get(name, ())
         }
         component_values = list_values(component) | lag_values

@@ -67,6 +67,8 @@ def _find_inertias(
             else None
         )
         if key and second.component:
-            inertia = second.component.values[PARTNERS[second.component.model_name].parameters.inertia_name]
+            inertia = second.component.values[
+                PARTNERS[second.component.model_name].parameter_class.inertia_name
+            ]
             inertias[key] = min(inertia, inertias.get(key) or inertia)
     return inertias

@@ -26,7 +26,7 @@ from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, load_default, read_document, read_entries
-from jointfmu.quantity import find_problem, flat_fields, quantity_field
+from jointfmu.quantity import find_problem, flatten_fields, quantity_field
 
 from .arm import read_arm
 from .system_joint import PARAMETER_FILE_KEYS, load_joint_file
@@ -37,7 +37,7 @@ _EXPERIMENT_ENTRIES = {
     "stop_time": quantity_field("s", "end time of the simulation", gt=0.0),
     "interval": quantity_field("s", "time between two points of the result", gt=0.0),
 }
-_RESERVED_KEYS = ("schema", "name", "description", "connect", "experiment", "arm")
+_NON_COMPONENT_KEYS = ("schema", "name", "description", "connect", "experiment", "arm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +190,7 @@ def _make_system(path: Path, document: Mapping[str, Any]) -> System:
     for name, item in _EXPERIMENT_ENTRIES.items():
         if text := find_problem(name, experiment.get(name), item):
             raise ValueError(f"experiment.{text}")
-    sections = {key: value for key, value in document.items() if key not in _RESERVED_KEYS}
+    sections = {key: value for key, value in document.items() if key not in _NON_COMPONENT_KEYS}
     connections = _check_connections(document.get("connect", []))
     arm = None
     if "arm" in document:
@@ -246,8 +246,8 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
                 raise ValueError(
                     f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
                 )
-        file, declared, inputs = None, dict(flat_fields(PARTNERS[model].parameters)), {}
-        needed = getattr(PARTNERS[model].parameters, "inertia_name", None)
+        file, declared, inputs = None, dict(flatten_fields(PARTNERS[model].parameter_class)), {}
+        needed = getattr(PARTNERS[model].parameter_class, "inertia_name", None)
         if needed and needed not in section:
             missing = declared[needed].metadata
             raise ValueError(
@@ -257,7 +257,9 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
         joint = MODELS[model].joint
         joint_parameters = load_joint_file(path.parent, name, joint, section)
         file = joint_parameters or load_default(joint)
-        declared = {key: item for key, item in flat_fields(type(file.values)) if key in file.values_by_name}
+        declared = {
+            key: item for key, item in flatten_fields(type(file.values)) if key in file.values_by_name
+        }
         inputs = {v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in MODELS[model].inputs}
         declared |= inputs
     try:
@@ -282,5 +284,5 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
 def _variable_fields(model: str, file: ParameterFile | None) -> dict[str, Any]:
     """{parameter: dataclass field} of the FMU variables of a model."""
     if file is None:
-        return dict(flat_fields(PARTNERS[model].parameters))
+        return dict(flatten_fields(PARTNERS[model].parameter_class))
     return MODELS[model].with_parameters(file.joint, file.values).parameter_fields()

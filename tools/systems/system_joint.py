@@ -33,25 +33,27 @@ def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, A
     return load_parameter_file(folder / entries["parameters"], joint) if entries else None
 
 
-def _load_catalogue_item(name: str, joint: str, item: str) -> ParameterFile:
+def _load_catalogue_item(name: str, joint: str, catalogue_item_name: str) -> ParameterFile:
     """Load a catalogue item for the section `name`, as `jointfmu new` does; raises ValueError."""
     tool_module = load_tool_module(KINDS[joint], "new")
     if tool_module is None or "catalogue" not in {
         option.name for option in tool_module.NEW_JOINT_COMMAND.options
     }:
-        raise ValueError(f"{name}.catalogue = {item!r}, expected none of a {joint}: it has no catalogue")
+        raise ValueError(
+            f"{name}.catalogue = {catalogue_item_name!r}, expected none of a {joint}: it has no catalogue"
+        )
     try:
-        return _make_catalogue_file(joint, item)
+        return _make_catalogue_file(joint, catalogue_item_name)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
 
 
 @cache
-def _make_catalogue_file(joint: str, item: str) -> ParameterFile:
+def _make_catalogue_file(joint: str, catalogue_item_name: str) -> ParameterFile:
     """Make the parameter file of a catalogue item; cached, as an arm needs it twice (first for its ratio)."""
     tool_module = load_tool_module(KINDS[joint], "new")
     assert tool_module is not None
     options = {option.name: None for option in tool_module.NEW_JOINT_COMMAND.options}
-    file = tool_module.NEW_JOINT_COMMAND.make_joint(options | {"catalogue": item}).file
+    file = tool_module.NEW_JOINT_COMMAND.make_joint(options | {"catalogue": catalogue_item_name}).file
     assert isinstance(file, ParameterFile)
     return file

@@ -155,25 +155,26 @@ def _parse_end(system: System, end_text: str) -> ConnectionEnd:
     )
 
 
-def _check_end_compatibility(first: ConnectionEnd, second: ConnectionEnd) -> None:
+def _check_end_compatibility(first_end: ConnectionEnd, second_end: ConnectionEnd) -> None:
     """Raise ValueError if two ends are incompatible."""
-    prefix = f"{first.label} and {second.label} do not fit"
-    if second.component is None:
-        if not first.is_joint:
+    prefix = f"{first_end.label} and {second_end.label} do not fit"
+    if second_end.component is None:
+        if not first_end.is_joint:
             raise ValueError(f'{prefix}; allowed on "{GROUND}" are flanges of joints')
-    elif first.is_load:
+    elif first_end.is_load:
         expected_members = (
-            {second.flow_member}
-            if second.is_body
-            else {*second.variables_by_member} - ({second.flow_member} if second.flange else set())
+            {second_end.flow_member}
+            if second_end.is_body
+            else {*second_end.variables_by_member}
+            - ({second_end.flow_member} if second_end.flange else set())
         )
-        if second.is_load or {*first.variables_by_member} != expected_members:
+        if second_end.is_load or {*first_end.variables_by_member} != expected_members:
             raise ValueError(
                 f"{prefix}; allowed are a force or torque on a body's flange, an angle on a joint's flange"
             )
-    elif first.is_joint == second.is_joint:
+    elif first_end.is_joint == second_end.is_joint:
         raise ValueError(f"{prefix}; allowed is a joint's flange on a body's")
-    elif first.variables_by_member.keys() != second.variables_by_member.keys():
+    elif first_end.variables_by_member.keys() != second_end.variables_by_member.keys():
         raise ValueError(f"{prefix}; allowed are two rotational or two translational flanges")
 
 

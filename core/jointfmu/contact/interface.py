@@ -43,7 +43,7 @@ class InterfaceLaw(Protocol):
     def hardness(self) -> Number:
         """Hardness of the softer body [Pa]."""
 
-    def spots(self) -> SpotDistribution:
+    def spot_distribution(self) -> SpotDistribution:
         """Contact spots: size distribution; load, stiffness and area of a spot as functions of its size."""
 
     def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
@@ -123,7 +123,7 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
     return _solve_log_area(spots, np.broadcast_to(load, shape))
 
 
-def get_checked_distribution(law: InterfaceLaw) -> SpotDistribution:
+def get_checked_spot_distribution(law: InterfaceLaw) -> SpotDistribution:
     """Size distribution of the contact spots of a law, after a check of its range.
 
     Raises ValueError if its reference area or its load over- or underflows (D near 1).
@@ -136,7 +136,7 @@ def _check_distribution_loads(law: InterfaceLaw) -> tuple[SpotDistribution, list
     ends = (MIN_LOG_AREA, 0.0, MAX_LOG_AREA)
     with np.errstate(all="ignore"):
         try:
-            spots = law.spots()
+            spots = law.spot_distribution()
         except (OverflowError, ZeroDivisionError):
             raise ValueError(_NOT_REPRESENTABLE_TEXT.format("inf")) from None
         logs = [spots.log_sum_over_spots("load", u) for u in ends]
@@ -178,7 +178,7 @@ def evaluate_at_log_area(law: InterfaceLaw, largest_log_area: Number) -> dict[st
     state = law.contact_quantities(np.where(empty, MIN_LOG_AREA, largest_log_area))
     zero = np.where(empty, 0.0, 1.0)
     state = {name: value if name in RATIO_QUANTITIES else zero * value for name, value in state.items()}
-    spots = law.spots()
+    spots = law.spot_distribution()
     spot = (
         spots.reference_area * np.exp(largest_log_area) if spots.has_spot_area else np.nan * largest_log_area
     )
@@ -201,7 +201,7 @@ def evaluate_at_largest_spot(law: InterfaceLaw, spot_area: ArrayLike) -> dict[st
     the representable range.
     """
     a = np.asarray(spot_area, dtype=np.float64)
-    spots = get_checked_distribution(law)
+    spots = get_checked_spot_distribution(law)
     if not spots.has_spot_area:
         raise ValueError("the law has no largest spot; state a pressure instead")
     bad = ~(np.isfinite(a) & (a > 0.0))
@@ -224,10 +224,10 @@ def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, direction: str = "no
 
     The derivative is exact: (dK/du)/(dF/du) from the same integrals.
     """
-    spots = law.spots()
+    spots = law.spot_distribution()
     u = solve_largest_spot(law, pressure)
     k = spots.sum_over_spots(direction, u) / law.A_0
-    return k, spots.sum_derivative(direction, u) / spots.sum_derivative("load", u)
+    return k, spots.sum_over_spots_derivative(direction, u) / spots.sum_over_spots_derivative("load", u)
 
 
 def find_validity_violations(

@@ -72,10 +72,10 @@ class RegimeTerm(Protocol):
     def upper_log_area(self) -> Number:
         """Log-area [1] at which the regime ends; None: infinity."""
 
-    def spot_value(self, log_area: Number) -> Number:
+    def evaluate_spot(self, log_area: Number) -> Number:
         """Quantity of a single spot at its log-area t; zero outside the regime."""
 
-    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
+    def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         """Integral of the quantity of a spot times exp(-m t) over the regime, for log-areas t <= u.
 
         size_exponent, largest_log_area : m and u
@@ -94,14 +94,14 @@ class PowerTerm:
     lower_log_area: Number = None
     upper_log_area: Number = None
 
-    def spot_value(self, log_area: Number) -> Number:
+    def evaluate_spot(self, log_area: Number) -> Number:
         return (
             regime_indicator(log_area, self.lower_log_area, self.upper_log_area)
             * self.coefficient
             * np.exp(self.exponent * log_area)
         )
 
-    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
+    def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         lower = clip_regime_bound(self.lower_log_area, largest_log_area)
         upper = clip_regime_bound(self.upper_log_area, largest_log_area, value_if_infinite=largest_log_area)
         return self.coefficient * exp_integral(self.exponent - size_exponent, lower, upper)
@@ -118,13 +118,13 @@ class SmoothTerm:
     lower_log_area: Number
     upper_log_area: Number
 
-    def spot_value(self, log_area: Number) -> Number:
+    def evaluate_spot(self, log_area: Number) -> Number:
         inside = np.minimum(np.maximum(log_area, self.lower_log_area), self.upper_log_area)
         return regime_indicator(log_area, self.lower_log_area, self.upper_log_area) * self.spot_function(
             inside
         )
 
-    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
+    def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         def integrand(t: Number) -> Number:
             return self.spot_function(np.maximum(t, self.lower_log_area)) * np.exp(-size_exponent * t)
 
@@ -158,7 +158,7 @@ class SlipTerm:
     lower_log_area: Number
     upper_log_area: Number
 
-    def spot_value(self, log_area: Number) -> Number:
+    def evaluate_spot(self, log_area: Number) -> Number:
         stick = np.maximum(1.0 - self.slip_coefficient * np.exp(-self.slip_exponent * log_area), 0.0)
         return (
             regime_indicator(log_area, self.lower_log_area, self.upper_log_area)
@@ -167,7 +167,7 @@ class SlipTerm:
             * stick ** (1.0 / 3.0)
         )
 
-    def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
+    def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         onset = np.log(self.slip_coefficient) / self.slip_exponent
         lower = np.maximum(
             clip_regime_bound(self.lower_log_area, largest_log_area),
@@ -230,9 +230,9 @@ class SpotDistribution:
             * self._integrate_spots(quantity, largest_log_area)
         )
 
-    def sum_derivative(self, quantity: str, largest_log_area: Number) -> Number:
+    def sum_over_spots_derivative(self, quantity: str, largest_log_area: Number) -> Number:
         """Derivative of `sum_over_spots` by the log-area u of the largest spot: m Q + m w q(a_L)."""
-        largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
+        largest = sum(term.evaluate_spot(largest_log_area) for term in self.regime_terms[quantity])
         return (
             self.size_exponent * self.sum_over_spots(quantity, largest_log_area)
             + self.size_exponent * self.size_prefactor * largest
@@ -264,7 +264,7 @@ class SpotDistribution:
     def log_sum_over_spots(self, quantity: str, largest_log_area: Number) -> tuple[Number, Number]:
         """Logarithm ln Q(u) of the sum over all spots, and its derivative with respect to u."""
         integral = self._integrate_spots(quantity, largest_log_area)
-        largest = sum(term.spot_value(largest_log_area) for term in self.regime_terms[quantity])
+        largest = sum(term.evaluate_spot(largest_log_area) for term in self.regime_terms[quantity])
         growth = largest * np.exp(-self.size_exponent * largest_log_area) / integral
         return np.log(
             self.size_exponent * self.size_prefactor * integral
@@ -272,5 +272,6 @@ class SpotDistribution:
 
     def _integrate_spots(self, quantity: str, largest_log_area: Number) -> Number:
         return sum(
-            term.integral(self.size_exponent, largest_log_area) for term in self.regime_terms[quantity]
+            term.integrate_over_spots(self.size_exponent, largest_log_area)
+            for term in self.regime_terms[quantity]
         )

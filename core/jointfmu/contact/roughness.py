@@ -21,22 +21,25 @@ RQ_OVER_RA = (pi / 2.0) ** 0.5
 """R_q/R_a [1] of a Gaussian surface, 1.25."""
 
 
-MAX_HEIGHT = 1e-4
+MAX_ROUGHNESS_HEIGHT = 1e-4
 """Largest accepted height of a surface [m]: cast and flame-cut faces have 50 um."""
 
 
-def _height_field(doc: str) -> Any:
+def _declare_height(doc: str) -> Any:
     return quantity_field(
-        "m", f"{doc}, measured over the longest wavelength that machining leaves", gt=0.0, le=MAX_HEIGHT
+        "m",
+        f"{doc}, measured over the longest wavelength that machining leaves",
+        gt=0.0,
+        le=MAX_ROUGHNESS_HEIGHT,
     )
 
 
 HEIGHT_FIELDS: dict[str, Field[Any]] = {
-    "Ra1": _height_field("arithmetic mean height of the first surface"),
-    "Ra2": _height_field("arithmetic mean height of the second surface"),
-    "Rq1": _height_field("rms height of the first surface"),
-    "Rq2": _height_field("rms height of the second surface"),
-    "h": _height_field("combined rms height of both surfaces"),
+    "Ra1": _declare_height("arithmetic mean height of the first surface"),
+    "Ra2": _declare_height("arithmetic mean height of the second surface"),
+    "Rq1": _declare_height("rms height of the first surface"),
+    "Rq2": _declare_height("rms height of the second surface"),
+    "h": _declare_height("combined rms height of both surfaces"),
 }
 """{name: field} of the heights that a parameter file may state."""
 

@@ -18,14 +18,14 @@ from .writing import check_writable, is_stream, write_text
 
 PROGRAM_MARK = "written by jointfmu"
 """Text in a comment in the first lines of all text files that the program writes."""
-_MARK_PATTERN = re.compile(
+_PROGRAM_MARK_PATTERN = re.compile(
     rb'(written|generated) by jointfmu|(generationTool|content)="jointfmu', re.IGNORECASE
 )
-_MARK_SEARCH_SIZE = 65536
+_PROGRAM_MARK_SEARCH_SIZE = 65536
 """Number of bytes [1] at the start of a file in which the mark is searched."""
-_DESCRIPTION_NAME_PATTERN = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
+_ARCHIVE_DESCRIPTION_NAME_PATTERN = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
 _CHECKSUM_PATTERN = re.compile(rf"# {PROGRAM_MARK}; checksum ([0-9a-f]{{8}})\n")
-_FOREIGN_ENDING_PATTERN = re.compile(
+_FOREIGN_FILE_ENDING_PATTERN = re.compile(
     r"\.(7z|bat|c|cpp|dll|docx|dylib|exe|frd|gz|h|ipynb|jpg|json|jsonl|m|mat|md|npy|npz|odb|pdf"
     r"|ps1|py|pyi|rst|sh|so|ssd|ssv|tar|vtk|xls|xlsx|yaml|yml|zip)"
 )
@@ -35,16 +35,16 @@ _FOREIGN_ENDING_PATTERN = re.compile(
 def _has_program_mark(path: Path) -> bool:
     """Whether the head of a file, or of the description in an FMU or SSP archive, contains PROGRAM_MARK."""
     with path.open("rb") as file:
-        head = file.read(_MARK_SEARCH_SIZE)
+        head = file.read(_PROGRAM_MARK_SEARCH_SIZE)
     if head.startswith(b"PK"):
         try:
             with zipfile.ZipFile(path) as archive:
-                member = next(filter(_DESCRIPTION_NAME_PATTERN.fullmatch, archive.namelist()))
+                member = next(filter(_ARCHIVE_DESCRIPTION_NAME_PATTERN.fullmatch, archive.namelist()))
                 with archive.open(member) as text:
-                    head = text.read(_MARK_SEARCH_SIZE)
+                    head = text.read(_PROGRAM_MARK_SEARCH_SIZE)
         except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, StopIteration):
             return False
-    return _MARK_PATTERN.search(head) is not None
+    return _PROGRAM_MARK_PATTERN.search(head) is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +65,10 @@ def _is_unedited(path: Path) -> bool:
     """Whether a parameter file is unchanged since the program wrote it; an edited file is the user's."""
     text = path.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
     match = _CHECKSUM_PATTERN.match(text)
-    return match is not None and match[1] == _checksum(text[match.end() :])
+    return match is not None and match[1] == _compute_checksum(text[match.end() :])
 
 
-def _checksum(text: str) -> str:
+def _compute_checksum(text: str) -> str:
     return f"{zlib.crc32(text.encode()):08x}"
 
 
@@ -81,7 +81,7 @@ EXCHANGE_FILE = FileKind(
 )
 MESH_FILE = FileKind("mesh", (".vtu",))
 OUTPUT_FOLDER = FileKind("folder", ())
-_PROGRAM_ENDINGS = {
+_PROGRAM_FILE_ENDINGS = {
     end
     for kind in (PARAMETER_FILE, HTML_FILE, PICTURE_FILE, ARCHIVE_FILE, EXCHANGE_FILE, MESH_FILE)
     for end in kind.endings
@@ -93,10 +93,10 @@ def write_parameter_text(path: str | Path, text: str) -> None:
 
     Raises ValueError as `write_text` does.
     """
-    write_text(path, f"# {PROGRAM_MARK}; checksum {_checksum(text)}\n{text}")
+    write_text(path, f"# {PROGRAM_MARK}; checksum {_compute_checksum(text)}\n{text}")
 
 
-def check_output(path: str | Path, file_kind: FileKind, force: bool = False) -> None:
+def check_output(path: str | Path, file_kind: FileKind, overwrite: bool = False) -> None:
     """Raise ValueError, which names the path, if a file of this kind may not or cannot be written there.
 
     Errors are a folder, the ending of another kind of file, a write-protected file, a location that cannot be
@@ -115,7 +115,7 @@ def check_output(path: str | Path, file_kind: FileKind, force: bool = False) -> 
         return
     target = Path(os.path.realpath(path))
     for ending in (path.suffix.lower(), target.suffix.lower()):
-        known = ending in _PROGRAM_ENDINGS or _FOREIGN_ENDING_PATTERN.fullmatch(ending)
+        known = ending in _PROGRAM_FILE_ENDINGS or _FOREIGN_FILE_ENDING_PATTERN.fullmatch(ending)
         if known and ending not in file_kind.endings:
             allowed = " or ".join(file_kind.endings)
             raise ValueError(f"{path}: {ending} is the suffix of another kind of file; expected {allowed}")
@@ -123,7 +123,7 @@ def check_output(path: str | Path, file_kind: FileKind, force: bool = False) -> 
         if target.exists():
             if not os.access(target, os.W_OK):
                 raise ValueError(f"{path}: is write-protected; expected another file")
-            if not force and target.stat().st_size and not file_kind.is_program_file(target):
+            if not overwrite and target.stat().st_size and not file_kind.is_program_file(target):
                 raise InputRefusal(
                     f"{path}: exists, and is not a {file_kind.name_in_messages} written by jointfmu, "
                     "or was edited; "
@@ -135,10 +135,10 @@ def check_output(path: str | Path, file_kind: FileKind, force: bool = False) -> 
     check_writable(path, target.parent)
 
 
-def check_outputs(paths: Iterable[Path], file_kind: FileKind, force: bool = False) -> None:
+def check_outputs(paths: Iterable[Path], file_kind: FileKind, overwrite: bool = False) -> None:
     """Apply `check_output` to several files of one kind."""
     for path in paths:
-        check_output(path, file_kind, force)
+        check_output(path, file_kind, overwrite)
 
 
 def is_same_file(path1: Path, path2: Path) -> bool:

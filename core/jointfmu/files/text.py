@@ -33,7 +33,7 @@ def replace_unprintable(text: str) -> str:
 
 def check_document(document: Mapping[str, object]) -> None:
     """Raise ValueError if `check_text` does not allow a key or a text of a TOML document."""
-    for name, key, value in _walk_items(document, ""):
+    for name, key, value in _iterate_document_items(document, ""):
         check_text(f"a key of {name or 'the file'}", key, MAX_NAME_LENGTH)
         if isinstance(value, str):
             full_name = f"{name}.{key}" if name else key
@@ -45,16 +45,16 @@ def format_toml_string(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _walk_items(document_value: object, table_name: str) -> Iterator[tuple[str, str, object]]:
+def _iterate_document_items(document_value: object, table_name: str) -> Iterator[tuple[str, str, object]]:
     """Yield (table name, key, value) of each item of a TOML document; items of a list have the list's key."""
     if isinstance(document_value, Mapping):
         for key, item in document_value.items():
             yield table_name, key, item
-            yield from _walk_items(item, f"{table_name}.{key}" if table_name else key)
+            yield from _iterate_document_items(item, f"{table_name}.{key}" if table_name else key)
     elif isinstance(document_value, list):
         head, _, key = table_name.rpartition(".")
         for item in document_value:
             if isinstance(item, str):
                 yield head, key, item
             elif isinstance(item, Mapping | list):
-                yield from _walk_items(item, table_name)
+                yield from _iterate_document_items(item, table_name)

@@ -22,7 +22,7 @@ class RoughSurface:
     direction: str | None = None
 
 
-def use_as_law(parameters: object) -> object:
+def use_parameters_as_law(parameters: object) -> object:
     """Return the parameter set: for a joint whose parameter set is itself the interface law."""
     return parameters
 
@@ -52,9 +52,9 @@ class JointKind:
 
     name: str
     package: str
-    default_stem: str
+    default_file_stem: str
     laws: Mapping[str, type[object]]
-    extract_law: Callable[[Any], Any] = use_as_law
+    extract_law: Callable[[Any], Any] = use_parameters_as_law
     models: Sequence[Model]
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
@@ -66,7 +66,7 @@ class JointKind:
         return self.name.replace("_", " ")
 
     @property
-    def parameters(self) -> type[object]:
+    def default_parameter_class(self) -> type[object]:
         """Class of the parameter set with the default law."""
         return next(iter(self.laws.values()))
 
@@ -103,9 +103,9 @@ class JointKind:
         A joint of another package has its files in the folder models/ of that package.
         """
         stem = (
-            self.default_stem
+            self.default_file_stem
             if law_name in (None, next(iter(self.laws)))
-            else f"{self.default_stem}_{law_name}"
+            else f"{self.default_file_stem}_{law_name}"
         )
         folder = files("jointfmu_models") / self.name if self.is_builtin else files(self.package) / "models"
         return Path(str(folder / f"{stem}.toml"))

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantity import Interval, Number, flat_fields
+from ..quantity import Interval, Number, flatten_fields
 
 VariableValues = Mapping[str, float]
 Outputs = Mapping[str, Number]
@@ -155,7 +155,7 @@ class Model:
     name: str
     joint: str
     doc: str
-    parameters: type[object]
+    parameter_class: type[object]
     tabulate: Callable[..., TabulatedJoint]
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]
@@ -187,7 +187,7 @@ class Model:
         """Displayed name: the alias, if there is one, else the name."""
         return self.alias or self.name
 
-    def is_rate(self, output_index: int) -> bool:
+    def is_state_derivative(self, output_index: int) -> bool:
         """Whether the output with this index is the time derivative of a state."""
         bodies = self.state_count // 2
         return bodies <= output_index < self.state_count + bodies
@@ -196,7 +196,7 @@ class Model:
         """{structured name: field} of the numbers and booleans that the FMU exposes as parameters."""
         return {
             name: item
-            for name, item in flat_fields(self.parameters)
+            for name, item in flatten_fields(self.parameter_class)
             if not any(name == h or name.startswith(f"{h}.") for h in self.fixed_parameters)
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
@@ -210,7 +210,7 @@ class Model:
             raise ValueError(
                 f"{self.name}: the parameter file is of a {joint_name!r}, expected a {self.joint!r}"
             )
-        model = replace(self, parameters=type(parameters))
+        model = replace(self, parameter_class=type(parameters))
         if self.make_variant:
             model = replace(self.make_variant(model, parameters), make_variant=None)
         return model

@@ -17,7 +17,7 @@ from ..contact.interface import (
     NEWTON_TOLERANCE,
     ONE_SIDED_OFFSET,
     InterfaceLaw,
-    get_checked_distribution,
+    get_checked_spot_distribution,
     solve_largest_spot,
 )
 from ..contact.powerlaw import SpotDistribution
@@ -199,7 +199,7 @@ def assemble_curve(curve_pieces: list[tuple[Array, Array, Array, Array]], data_e
     the spline is more accurate at their middle.
     """
     every_second = [tuple(column[::2] for column in piece) for piece in curve_pieces]
-    fine, coarse = _join_pieces(curve_pieces), _join_pieces(every_second)  # type: ignore[arg-type]
+    fine, coarse = _join_curve_pieces(curve_pieces), _join_curve_pieces(every_second)  # type: ignore[arg-type]
     nodes = fine.displacement
     points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
     worst = data_error
@@ -211,7 +211,7 @@ def assemble_curve(curve_pieces: list[tuple[Array, Array, Array, Array]], data_e
     )
 
 
-def refine_curve(tabulate_curve: Callable[[int], Curve], initial_steps: int) -> Curve:
+def refine_curve(tabulate_curve: Callable[[int], Curve], initial_step_count: int) -> Curve:
     """Refine a table until its error is at most MAX_ERROR.
 
     tabulate_curve : function, number of steps -> table
@@ -221,7 +221,7 @@ def refine_curve(tabulate_curve: Callable[[int], Curve], initial_steps: int) -> 
     """
     factor = 1
     while factor <= MAX_REFINEMENT:
-        curve = tabulate_curve(initial_steps * factor)
+        curve = tabulate_curve(initial_step_count * factor)
         factor *= 2
         if curve.load.size > MAX_TABLE_NODES:
             raise RuntimeError(
@@ -237,7 +237,7 @@ def refine_curve(tabulate_curve: Callable[[int], Curve], initial_steps: int) -> 
     )
 
 
-def _join_pieces(curve_pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
+def _join_curve_pieces(curve_pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
     x, y, s = (
         np.concatenate([piece[k][bool(i) :] for i, piece in enumerate(curve_pieces)]) for k in range(3)
     )
@@ -304,7 +304,7 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
     ValueError   : all spots are plastic (no stiffness) at every pressure up to the hardness
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
-    spots, area = get_checked_distribution(law), law.A_0
+    spots, area = get_checked_spot_distribution(law), law.A_0
     first = float(spots.stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO))
     last = float(solve_largest_spot(law, law.hardness))
     if not last > first:
@@ -343,7 +343,7 @@ def _tabulate_between_log_areas(
         increments = (
             half
             * (
-                spot_distribution.sum_derivative("load", inner)
+                spot_distribution.sum_over_spots_derivative("load", inner)
                 / spot_distribution.sum_over_spots("normal", inner)
             )
             @ GAUSS_RULE[1]
@@ -356,8 +356,8 @@ def _tabulate_between_log_areas(
         k = spot_distribution.sum_over_spots("normal", u) / nominal_area
         bend = (
             k
-            * spot_distribution.sum_derivative("normal", side)
-            / spot_distribution.sum_derivative("load", side)
+            * spot_distribution.sum_over_spots_derivative("normal", side)
+            / spot_distribution.sum_over_spots_derivative("load", side)
         )
         pieces.append((x, spot_distribution.sum_over_spots("load", u) / nominal_area, k, bend))
     _, p, k, bend = (float(column[0]) for column in pieces[0])

@@ -52,7 +52,7 @@ def yield_function(force: Vector, friction_limit: Number) -> Number:
     )
 
 
-def limit_function(force: Vector, friction_limit: Number) -> Number:
+def slip_limit_function(force: Vector, friction_limit: Number) -> Number:
     """Function of a force, positive at the friction limit: further motion in its direction causes slip.
 
     |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
@@ -185,7 +185,7 @@ def _return_map_2d(
         * np.maximum(1.0 - squared * (per_size * per_size), 0.0)
         * (HERMITE_RULE_FACTOR * per_limit)
     )
-    slip_stiffness = select(limit_function(predictor, limit) > 0.0, stiffness, 0.0)
+    slip_stiffness = select(slip_limit_function(predictor, limit) > 0.0, stiffness, 0.0)
     tangent = [
         stiffness - slip_stiffness * n[0] * n[0],
         -slip_stiffness * n[0] * n[1],

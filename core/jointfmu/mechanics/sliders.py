@@ -36,9 +36,9 @@ UNIFORM_DEVIATION = 1.0 / np.sqrt(12.0)
 """Standard deviation of a uniform distribution over its range [1]."""
 
 
-HEIGHTS_BELOW_REFERENCE, HEIGHTS_ABOVE_REFERENCE = 10, 7
+HEIGHTS_BELOW_REFERENCE, SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE = 10, 7
 """Number of slider heights below the reference approach, and between it and the end of the curve [1]."""
-FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW_REFERENCE + HEIGHTS_ABOVE_REFERENCE + 2)
+FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW_REFERENCE + SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE + 2)
 """Number of sliders of a foundation with the heights of `slider_heights` [1]."""
 MIN_REFERENCE_RATIO, MAX_REFERENCE_RATIO, DEFAULT_REFERENCE_RATIO = 1e-5, 0.1, 1e-3
 """Smallest and largest load at the reference approach, and load that replaces a smaller one, over the load at
@@ -54,7 +54,9 @@ def height_offsets(load: Array) -> Array:
     return np.asarray((rank_descending(load) * GOLDEN_RATIO_CONJUGATE + 0.5) % 1.0)
 
 
-def slider_heights(curve: Curve, stated_reference_approach: ArrayLike, height_offset: ArrayLike) -> Array:
+def slider_heights(
+    pressure_curve: Curve, stated_reference_approach: ArrayLike, height_offset: ArrayLike
+) -> Array:
     """Heights (..., n) [m] that separate the sliders of foundations near a reference approach.
 
     They are dense just below the reference approach, where the first springs slip, and near the first
@@ -68,18 +70,20 @@ def slider_heights(curve: Curve, stated_reference_approach: ArrayLike, height_of
     """
     reference_approach = np.asarray(stated_reference_approach, dtype=np.float64)
     offset_column = np.asarray(height_offset, dtype=np.float64)[..., None]
-    end = curve.end_point[1]
-    load = curve.derivatives(reference_approach, 0)[0]
+    end = pressure_curve.end_point[1]
+    load = pressure_curve.derivatives(reference_approach, 0)[0]
     touches = load > MIN_REFERENCE_RATIO * end
     load = np.where(touches, np.minimum(load, MAX_REFERENCE_RATIO * end), DEFAULT_REFERENCE_RATIO * end)[
         ..., None
     ]
     position_below = (np.arange(HEIGHTS_BELOW_REFERENCE)[::-1] + offset_column) / HEIGHTS_BELOW_REFERENCE
-    position_above = (np.arange(HEIGHTS_ABOVE_REFERENCE) + offset_column) / HEIGHTS_ABOVE_REFERENCE
+    position_above = (
+        np.arange(SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE) + offset_column
+    ) / SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE
     loads_below = load * (1.0 - position_below) ** 2 / (position_below**2 + (1.0 - position_below) ** 2)
     loads_above = load * np.exp(np.log(end / load) * position_above**2)
-    lowest, highest = (np.full_like(load, x) for x in curve.displacement[[0, -1]])
-    inner_heights = curve.inverse(np.concatenate([loads_below, load, loads_above], axis=-1))
+    lowest, highest = (np.full_like(load, x) for x in pressure_curve.displacement[[0, -1]])
+    inner_heights = pressure_curve.inverse(np.concatenate([loads_below, load, loads_above], axis=-1))
     inner_heights[..., HEIGHTS_BELOW_REFERENCE] = np.where(
         touches & (load[..., 0] < MAX_REFERENCE_RATIO * end),
         reference_approach,
@@ -158,7 +162,7 @@ class Foundation:
     The sliders are in the order of the heights, two per range: first the one that slips earlier.
     """
 
-    curve: Curve
+    pressure_curve: Curve
     stiffness_ratio: float
     friction_coefficient: float
     heights: Array
@@ -175,7 +179,7 @@ class Foundation:
     def stick_stiffness(self, approach: ArrayLike) -> Array:
         """Tangential stiffness (...) [Pa/m] in full stick at approaches (...) [m]."""
         slope_here, slope_at_first = (
-            self.curve.derivatives(x, 1)[1] for x in (approach, self.heights[..., 0])
+            self.pressure_curve.derivatives(x, 1)[1] for x in (approach, self.heights[..., 0])
         )
         return np.asarray(self.stiffness_ratio * np.maximum(slope_here - slope_at_first, 0.0))
 
@@ -237,8 +241,8 @@ class Foundation:
         upper = np.asarray(approach, dtype=np.float64)
         displacement = np.asarray(tangential_displacement, dtype=np.float64)
         lower = np.asarray(upper - displacement / (self.friction_coefficient / self.stiffness_ratio))
-        load, slipped_load = (self.curve.derivatives(x, 0)[0] for x in (upper, lower))
-        return load, slipped_load, self.curve.energy(upper) - self.curve.energy(lower)
+        load, slipped_load = (self.pressure_curve.derivatives(x, 0)[0] for x in (upper, lower))
+        return load, slipped_load, self.pressure_curve.energy(upper) - self.pressure_curve.energy(lower)
 
     def cycle_energies(self, approach: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
         """Energy loss of cycles with amplitudes (...) [m], and elastic energy at their ends (...) [J/m2].
@@ -248,7 +252,7 @@ class Foundation:
         upper_approach, a = np.asarray(approach, dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
         law = self.friction_coefficient, self.stiffness_ratio, a
         (load, *upper), (_, *lower) = (
-            self.curve.derivatives(x, 3)
+            self.pressure_curve.derivatives(x, 3)
             for x in (upper_approach, upper_approach - a / (self.friction_coefficient / self.stiffness_ratio))
         )
         general = cycle_energies(*law, *self.slipped_pressure(upper_approach, a))
@@ -258,19 +262,19 @@ class Foundation:
         return loss, stored
 
     @cached_property
-    def _height_loads(self) -> list[Array]:
+    def _pressure_at_heights(self) -> list[Array]:
         """Pressure [Pa] and stiffness [Pa/m] of the curve at the slider heights, cached."""
-        return self.curve.derivatives(self.heights, 1)
+        return self.pressure_curve.derivatives(self.heights, 1)
 
     def slider_properties(self, approach: ArrayLike) -> SliderProperties:
         """Stiffness, friction limit and slope of the sliders at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
         (low, p_low, k_low), (high, p_high, k_high) = (
-            [slider_stiffness[..., part] for slider_stiffness in (self.heights, *self._height_loads)]
+            [slider_stiffness[..., part] for slider_stiffness in (self.heights, *self._pressure_at_heights)]
             for part in (slice(-1), slice(1, None))
         )
         is_touching, is_full = delta >= low, delta >= high
-        p, k, slope = self.curve.derivatives(delta, 2)
+        p, k, slope = self.pressure_curve.derivatives(delta, 2)
         width = np.where(is_touching, np.where(is_full, high, delta) - low, 0.0)
         load = np.where(is_touching, np.where(is_full, p_high, p) - p_low - k_low * width, 0.0)
         springs = np.where(is_touching, np.where(is_full, k_high, k) - k_low, 0.0)

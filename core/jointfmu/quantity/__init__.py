@@ -17,7 +17,7 @@ from .parameter_set import (
     assemble_parameter_set,
     build_parameter_set,
     check_limits,
-    flat_fields,
+    flatten_fields,
     flatten_parameters,
     replace_values,
 )
@@ -38,7 +38,7 @@ __all__ = [
     "erf",
     "find_problem",
     "find_problems",
-    "flat_fields",
+    "flatten_fields",
     "flatten_parameters",
     "group_field",
     "quantity_field",

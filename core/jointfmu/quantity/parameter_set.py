@@ -41,7 +41,9 @@ class ParameterLimit:
 def check_limits(parameters: object, limits: Iterable[ParameterLimit]) -> None:
     """Raise ValueError for the first parameter of a set that lies outside one of the limits."""
     units = {
-        name: item.metadata["unit"] for name, item in flat_fields(type(parameters)) if "unit" in item.metadata
+        name: item.metadata["unit"]
+        for name, item in flatten_fields(type(parameters))
+        if "unit" in item.metadata
     }
     values = flatten_parameters(parameters)
     for limit in limits:
@@ -49,7 +51,7 @@ def check_limits(parameters: object, limits: Iterable[ParameterLimit]) -> None:
             raise ValueError(text)
 
 
-def flat_fields(
+def flatten_fields(
     cls: type[Any], prefix: str = "", parameter_names: Collection[str] | None = None
 ) -> Iterator[tuple[str, Field[Any]]]:
     """Structured names and fields of all numbers and choices of a parameter set class, groups included.
@@ -57,26 +59,26 @@ def flat_fields(
     parameter_names : parameter names that select one alternative of each group; None: all alternatives
     """
     if parameter_names is None:
-        yield from ((prefix + name, item) for name, item in _cached_flat_fields(cls))  # type: ignore[arg-type]
+        yield from ((prefix + name, item) for name, item in _cached_flattened_fields(cls))  # type: ignore[arg-type]
         return
     hints = _type_hints(cls)  # type: ignore[arg-type]
     for item in fields(cls):
         if "group" in item.metadata:
             sections = _group_sections(item, hints[item.name])
             section = _select_section(sections, prefix, parameter_names)
-            yield from flat_fields(sections[section], f"{prefix}{section}.", parameter_names)
+            yield from flatten_fields(sections[section], f"{prefix}{section}.", parameter_names)
         elif item.metadata:
             yield prefix + name_in_file(item), item
 
 
 @cache
-def _cached_flat_fields(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
-    """Result of `flat_fields` with all alternatives of each group, cached."""
+def _cached_flattened_fields(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
+    """Result of `flatten_fields` with all alternatives of each group, cached."""
     hints, found_fields = _type_hints(cls), list[tuple[str, Field[Any]]]()
     for item in fields(cls):
         if "group" in item.metadata:
             for name, inner in _group_sections(item, hints[item.name]).items():
-                found_fields += flat_fields(inner, f"{name}.")
+                found_fields += flatten_fields(inner, f"{name}.")
         elif item.metadata:
             found_fields.append((name_in_file(item), item))
     return tuple(found_fields)
@@ -102,7 +104,7 @@ def build_parameter_set(cls: type[ParameterSet], values: Mapping[str, object]) -
     Raises ValueError, one line, that names every unknown or missing name and every value that is not a number
     or lies outside its interval; also if names belong to two alternatives of a group.
     """
-    declared = dict(flat_fields(cls, parameter_names=values))
+    declared = dict(flatten_fields(cls, parameter_names=values))
     required = {name for name, item in declared.items() if item.default is MISSING}
     if texts := find_problems(values, declared, sorted(required - values.keys())):
         raise ValueError("; ".join(texts))
@@ -116,10 +118,10 @@ def replace_values(parameters: ParameterSet, new_values: Mapping[str, object]) -
     Raises ValueError as `build_parameter_set` does, and for names of a missing alternative.
     """
     values = flatten_parameters(parameters)
-    all_names = {name for name, _ in flat_fields(type(parameters))}
+    all_names = {name for name, _ in flatten_fields(type(parameters))}
     if foreign := [name for name in new_values if name in all_names and name not in values]:
         texts = [
-            f"{name} is not a parameter of a set that has [{_present_alternative(parameters, name)}]"
+            f"{name} is not a parameter of a set that has [{_find_present_section(parameters, name)}]"
             for name in foreign
         ]
         raise ValueError("; ".join([*texts, f"allowed are {', '.join(values)}"]))
@@ -183,13 +185,13 @@ def _section_name(group_field: Field[object], group_value: object) -> str:
     )
 
 
-def _present_alternative(parameters: Any, foreign_name: str) -> str:
+def _find_present_section(parameters: Any, name_in_missing_section: str) -> str:
     """Section of a parameter set that excludes a name, because the name belongs to another alternative."""
-    head, _, rest = foreign_name.partition(".")
+    head, _, rest = name_in_missing_section.partition(".")
     groups = [item for item in fields(parameters) if "group" in item.metadata]
     sections = {_section_name(item, getattr(parameters, item.name)): item for item in groups}
     if head in sections:
-        return f"{head}.{_present_alternative(getattr(parameters, sections[head].name), rest)}"
+        return f"{head}.{_find_present_section(getattr(parameters, sections[head].name), rest)}"
     return next(name for name, item in sections.items() if head in item.metadata["alternatives"])
 
 

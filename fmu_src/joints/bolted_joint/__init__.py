@@ -10,17 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS, MemberModes
+from jointfmu.joints.bolted_joint.bodies import MODAL_DISPLACEMENT_DECIMALS, MemberModes
 from jointfmu.joints.bolted_joint.bolts import bolt_force_per_moment, bolt_positions
 from jointfmu.joints.bolted_joint.contact import MAX_PATCHES_PER_POINT, TRANSFER_DECIMALS, force_transfer
 from jointfmu.joints.bolted_joint.joint import MAX_POINTS, contact_points, find_friction_patches
 from jointfmu.joints.bolted_joint.law import MAX_MODES, AnyBoltedJoint, ElasticBodies
-from jointfmu.joints.bolted_joint.outputs import cycle_sums
-from jointfmu.mechanics.footprint.distribution import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
+from jointfmu.joints.bolted_joint.outputs import sum_cycle_energies
+from jointfmu.mechanics.footprint.distribution import (
+    BOLT_POSITION_MEAN_NAMES,
+    MAX_PATCHES,
+    PressureDistribution,
+)
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
 from jointfmu.quantity import Array, flatten_parameters
 
-from ...joint_parts import FmuParts, RampPanel, chart, native_loader
+from ...joint_parts import FmuParts, RampPanel, chart, make_native_definition_loader
 from ...joint_parts.data import DataConversion, DataTable
 from ...joint_parts.terminals import make_rotation_flange, make_translation_flange
 
@@ -38,7 +42,7 @@ def _convert_parameters(joint: AnyBoltedJoint) -> Mapping[str, object]:
         for name, value in flatten_parameters(joint).items()
         if not name.startswith(_REPLACED_SECTIONS)
     }
-    spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))
+    spread = dict(zip(BOLT_POSITION_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))
     points: dict[str, object] = {
         f"field.{name}": value for name, value in (_ONE_POINT_FIELD | spread).items()
     }
@@ -110,7 +114,10 @@ def _pressure_transfer_table(force_shares: Any) -> Any:
 
 def _encode_modal_rows(modal_rows: Any) -> Any:
     """Modal displacements in units of the last decimal, padded with zeros to MAX_MODES modes."""
-    return np.pad(np.round(modal_rows * 10.0**MODE_DECIMALS), ((0, 0), (0, MAX_MODES - modal_rows.shape[1])))
+    return np.pad(
+        np.round(modal_rows * 10.0**MODAL_DISPLACEMENT_DECIMALS),
+        ((0, 0), (0, MAX_MODES - modal_rows.shape[1])),
+    )
 
 
 def _distribution_rows(distribution: PressureDistribution) -> Any:
@@ -132,7 +139,7 @@ LOOP_AMPLITUDE_RATIOS = (0.06, 0.12, 0.22, 0.4)
 _CURVE_POINT_COUNT = 13
 
 
-def _draw_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
+def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
     """Charts of friction loops with several amplitudes, and of their loss factor over the amplitude.
 
     ramp_end_preload : preload at the end of the load ramp [N]
@@ -160,7 +167,7 @@ def _draw_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
     u = LOOP_AMPLITUDE_RATIOS[-1] * slips * np.linspace(0.0, 1.0, _CURVE_POINT_COUNT)
     lines.append(chart.Series("first shear", u * 1e6, virgin_force(u) / 1e3, dashed=True))
     size = slips * np.geomspace(0.01, 2.0, _CURVE_POINT_COUNT)
-    sums = [cycle_sums(foundation, share, approach, np.full(approach.size, a)) for a in size]
+    sums = [sum_cycle_energies(foundation, share, approach, np.full(approach.size, a)) for a in size]
     loss = [s["loop_work"] / (2.0 * np.pi * s["loop_energy"]) for s in sums]
     over = chart.Series("eta_loop", size * 1e6, loss)
     return [
@@ -176,10 +183,12 @@ _ROTATION_FLANGES = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_loader(__name__),
-    data=DataConversion(_convert_parameters, make_tables=_make_tables),
-    drawings={"BoltedJoint": {"loops": _draw_loops}},
-    panels={"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))},
+    native=make_native_definition_loader(__name__),
+    data_conversion=DataConversion(_convert_parameters, make_tables=_make_tables),
+    chart_drawings={"BoltedJoint": {"loops": _draw_friction_loops}},
+    ramp_panels={
+        "BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))
+    },
     terminals={
         "BoltedJoint": (
             *(make_translation_flange(*row) for row in _TRANSLATION_FLANGES),

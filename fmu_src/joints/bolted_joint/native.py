@@ -34,14 +34,16 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     function_graph.add_function("joint_constants", doc, [], [*constants, joint.n_bolts])
     _add_preload_functions(function_graph)
     _add_shear_functions(function_graph)
-    sums = dict(zip(outputs.SUM_NAMES, make_symbols("sum", len(outputs.SUM_NAMES)), strict=True))
+    sums = dict(
+        zip(outputs.CONTACT_SUM_NAMES, make_symbols("sum", len(outputs.CONTACT_SUM_NAMES)), strict=True)
+    )
     displacement, rotation, rates = make_symbols("s", 3), make_symbols("t", 3), make_symbols("v", 6)
     p_max = ca.SX.sym("p_max")
     out = outputs.joint_outputs(joint, sums, displacement, rotation, rates, p_max)
     doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
     y = [out[o.name] for o in model.outputs if o.name in out]  # bolt forces follow from the modes
     x = [*sums.values(), *displacement, *rotation, *rates, p_max]
-    function_graph.add_with_derivative("outputs", doc, x, y)
+    function_graph.add_function_with_derivative("outputs", doc, x, y)
 
 
 def _add_preload_functions(function_graph: FunctionGraph) -> None:
@@ -49,16 +51,16 @@ def _add_preload_functions(function_graph: FunctionGraph) -> None:
     equal, tilt, mean, by_moment = make_symbols("node", 4)
     preload, moment = make_symbols("v", 2)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
-    function_graph.add_with_derivative(
+    function_graph.add_function_with_derivative(
         "bolt_pressures", doc, [preload, moment], law.bolt_pressures(function_graph.joint, preload, moment)
     )
     doc = "preload -> preload after embedding"
-    function_graph.add_with_derivative(
+    function_graph.add_function_with_derivative(
         "working_preload", doc, [preload], [law.working_preload(function_graph.joint, preload)]
     )
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
     pressure = law.superposed_pressure(equal, tilt, mean, by_moment)
-    function_graph.add_with_derivative(
+    function_graph.add_function_with_derivative(
         "shaped_pressure", doc, [equal, tilt, mean, by_moment], [pressure], constant_count=2
     )
 
@@ -71,7 +73,7 @@ def _add_shear_functions(function_graph: FunctionGraph) -> None:
         "added pressure and stiffness"
     )
     y = contact.elastic_shear(x[0], function_graph.joint.shear_stiffness_ratio(), x[1:5], x[5], x[6])
-    function_graph.add_with_derivative("elastic_shear", doc, x, y)
+    function_graph.add_function_with_derivative("elastic_shear", doc, x, y)
     add_slider_functions(function_graph)
     _add_cycle_functions(function_graph)
     _add_stick_function(function_graph)
@@ -79,7 +81,9 @@ def _add_shear_functions(function_graph: FunctionGraph) -> None:
     doc = "load, stiffness, its slope, excess of the approach -> stiffness, its slope, limits of both sliders"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.partial_contact(load, stiffness, bend, width, ratio, friction)
-    function_graph.add_with_derivative("partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
+    function_graph.add_function_with_derivative(
+        "partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2
+    )
     small, first, slope, last, then, change, rise = make_symbols("x", 7)
     doc = (
         "whether small, stiffness and its slope at both ends, change of the approach, integral of the "
@@ -87,7 +91,7 @@ def _add_shear_functions(function_graph: FunctionGraph) -> None:
     )
     kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
     x = [small, first, slope, last, then, change, rise]
-    function_graph.add_with_derivative("retention_and_stiffness", doc, x, kept, constant_count=1)
+    function_graph.add_function_with_derivative("retention_and_stiffness", doc, x, kept, constant_count=1)
     across, slip = make_symbols("x", 2)
     force, moved, shift, ends, middle = (make_symbols(name, 2) for name in "qfukm")
     doc = (
@@ -96,7 +100,7 @@ def _add_shear_functions(function_graph: FunctionGraph) -> None:
     )
     loss = sliders.varying_stiffness_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    function_graph.add_with_derivative("varying_stiffness_loss", doc, x, [loss], constant_count=3)
+    function_graph.add_function_with_derivative("varying_stiffness_loss", doc, x, [loss], constant_count=3)
 
 
 def _add_stick_function(function_graph: FunctionGraph) -> None:
@@ -104,26 +108,30 @@ def _add_stick_function(function_graph: FunctionGraph) -> None:
     stiff, now, falls = make_symbols("x", 3)
     doc = "whether the load decreases, stiffness at both ends -> fraction retained, secant stiffness"
     y = sliders.stick_retention(stiff, now, falls)
-    function_graph.add_with_derivative("stick_retention", doc, [falls, stiff, now], y, constant_count=1)
+    function_graph.add_function_with_derivative(
+        "stick_retention", doc, [falls, stiff, now], y, constant_count=1
+    )
 
 
 def _add_cycle_functions(function_graph: FunctionGraph) -> None:
     """Add the functions of energy loss and elastic energy of a cycle at constant load."""
     x = make_symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, load, load at the slipped height, integral between -> loss, elastic energy"
-    function_graph.add_with_derivative("cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2)
+    function_graph.add_function_with_derivative(
+        "cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2
+    )
     (mu, ratio, size), now, then = make_symbols("x", 3), make_symbols("n", 3), make_symbols("t", 3)
     doc = "mu, K_T/K_N, amplitude, three derivatives of the load at both heights -> loss, elastic energy"
     y = sliders.small_cycle_energies(mu, ratio, size, now, then)
-    function_graph.add_with_derivative(
+    function_graph.add_function_with_derivative(
         "small_cycle_energies", doc, [mu, ratio, size, *now, *then], y, constant_count=2
     )
 
 
 def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
     """Constants for the C code of the bolted joint."""
-    counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUM_NAMES)} | {
-        "N_SUMS": len(outputs.SUM_NAMES)
+    counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.CONTACT_SUM_NAMES)} | {
+        "N_SUMS": len(outputs.CONTACT_SUM_NAMES)
     }
     columns = ("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS")
     counts |= {name: k for k, name in enumerate(columns)}
@@ -138,7 +146,10 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
     )
     numbers = {name: float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
-    counts |= {"N_BELOW": sliders.HEIGHTS_BELOW_REFERENCE, "N_ABOVE": sliders.HEIGHTS_ABOVE_REFERENCE}
+    counts |= {
+        "N_BELOW": sliders.HEIGHTS_BELOW_REFERENCE,
+        "N_ABOVE": sliders.SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE,
+    }
     counts |= {"UNKNOWN": friction.NO_HISTORY, "FULL_STICK": friction.FULL_STICK}
     counts |= {"SLIP_1D": friction.SLIP_1D, "SLIP_2D": friction.SLIP_2D}
     counts |= {
@@ -149,7 +160,7 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
     }
     counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])
     numbers["MODE_DIGITS"], numbers["TRANSFER_SCALE"] = (
-        10.0**bodies.MODE_DECIMALS,
+        10.0**bodies.MODAL_DISPLACEMENT_DECIMALS,
         10.0**contact.TRANSFER_DECIMALS,
     )
     numbers |= {

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ...joint_parts import FmuParts, RampPanel, native_loader
+from ...joint_parts import FmuParts, RampPanel, make_native_definition_loader
 from ...joint_parts.terminals import TRANSLATIONAL_FLANGE_CLASS, Terminal
 
 _FLANGE_DOC = "one flank pressed on the other, along the normal"
@@ -10,8 +10,8 @@ _FLANGE_MEMBERS = {"s": ("s_rel", "signal"), "f": ("f", "inflow")}
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_loader(__name__),
-    panels={"GearContact": (RampPanel("f", ("s_rel",)), RampPanel("f", ("K_N",)))},
+    native=make_native_definition_loader(__name__),
+    ramp_panels={"GearContact": (RampPanel("f", ("s_rel",)), RampPanel("f", ("K_N",)))},
     terminals={
         "GearContact": (Terminal("flange", TRANSLATIONAL_FLANGE_CLASS, "a", _FLANGE_DOC, _FLANGE_MEMBERS),)
     },

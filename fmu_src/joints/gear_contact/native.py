@@ -15,9 +15,9 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     joint = function_graph.joint
     f, approach, stiffness, area, elastic = make_symbols("x", 5)
     pressure = np.maximum(f, 0.0) / joint.A_0
-    function_graph.add_with_derivative("curve_argument", "inputs -> pressure", [f], [pressure])
+    function_graph.add_function_with_derivative("curve_argument", "inputs -> pressure", [f], [pressure])
     x = [f, approach, stiffness]
-    if isinstance(joint, spring.RoughGearContact):
+    if isinstance(joint, spring.RoughGearContactParameters):
         add_law_functions(function_graph, joint, ("normal",), lambda spots, u: [])
         area, elastic = joint.real_area(pressure)
     else:
@@ -26,7 +26,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     out = spring.contact_outputs(joint, f, approach, stiffness, area, elastic)
     add_closing_function(function_graph)
     doc = "inputs, approach, stiffness of the curve, areas if the law sums them over spots -> outputs"
-    function_graph.add_with_derivative("outputs", doc, x, [out[o.name] for o in model.outputs])
+    function_graph.add_function_with_derivative("outputs", doc, x, [out[o.name] for o in model.outputs])
 
 
 NATIVE_PART = NativeDefinition(_add_functions, APPROACH_FILES)

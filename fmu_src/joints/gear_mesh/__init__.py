@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from ...joint_parts import FmuParts, RampPanel, native_loader
+from ...joint_parts import FmuParts, RampPanel, make_native_definition_loader
 from ...joint_parts.terminals import make_shaft_flange
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_loader(__name__),
-    panels={"GearMesh": (RampPanel("phi1", ("f",)), RampPanel("s_rel", ("K",)))},
+    native=make_native_definition_loader(__name__),
+    ramp_panels={"GearMesh": (RampPanel("phi1", ("f",)), RampPanel("s_rel", ("K",)))},
     terminals={"GearMesh": (make_shaft_flange(1, "a", "wheel 1"), make_shaft_flange(2, "b", "wheel 2"))},
 )

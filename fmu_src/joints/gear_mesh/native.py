@@ -20,14 +20,14 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     function_graph.add_function("combine_in_series", doc, flanks, spring.combine_in_series(mesh, *flanks))
     motion = [ca.SX.sym(v.name) for v in model.inputs]
     argument = np.abs(spring.deflection(mesh, motion))
-    function_graph.add_with_derivative(
+    function_graph.add_function_with_derivative(
         "curve_argument", "inputs -> argument of the curve", motion, [argument]
     )
     closing, load, stiffness, energy = make_symbols("pair", 4)
     out = spring.mesh_outputs(mesh, motion, load, stiffness, energy, closing)
     doc = "deflection at the end of the closing, inputs, load, K, energy of a tooth pair -> outputs"
     x = [closing, *motion, load, stiffness, energy]
-    function_graph.add_with_derivative(
+    function_graph.add_function_with_derivative(
         "outputs", doc, x, [out[o.name] for o in model.outputs], constant_count=1
     )
 

@@ -7,22 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.prescribed_midline import (
     MAX_TABLE_POINTS,
-    MeasuredDrive,
+    MeasuredDriveParameters,
     SplineNode,
-    TableDrive,
+    TableDriveParameters,
 )
 from jointfmu.quantity import Number, flatten_parameters, quantity_field
 
-from ...joint_parts import FmuParts, RampPanel, native_loader
+from ...joint_parts import FmuParts, RampPanel, make_native_definition_loader
 from ...joint_parts.data import EMPTY_TABLES, DataConversion, DataTable
 from ...joint_parts.terminals import ROTATIONAL_FLANGE_CLASS, Terminal, make_shaft_flange
 
 
 @dataclass(frozen=True, kw_only=True)
-class MidlineDrive(MeasuredDrive):
+class MidlineDriveParameters(MeasuredDriveParameters):
     """Harmonic drive with a measured midline (torque against wind-up) whose nodes are data."""
 
     end_torque: float = quantity_field("N.m", "torque at the last point", gt=0.0)
@@ -38,30 +38,32 @@ class MidlineDrive(MeasuredDrive):
         """Twice the largest stiffness of the midline [N.m/rad]."""
         return self.max_stiffness
 
-    def make_nodes(self) -> list[SplineNode]:
+    def make_midline_nodes(self) -> list[SplineNode]:
         """Empty list: the nodes are read from the data block at run time."""
         return []
 
 
-def _find_code_class(drive: Drive) -> type[Drive]:
+def _find_code_parameter_class(drive: DriveParameters) -> type[DriveParameters]:
     """Class of the parameter set with which the C code of a drive is generated."""
-    return MidlineDrive if isinstance(drive, TableDrive) else type(drive)
+    return MidlineDriveParameters if isinstance(drive, TableDriveParameters) else type(drive)
 
 
-def _convert_parameters(drive: Drive) -> Mapping[str, Any]:
+def _convert_parameters(drive: DriveParameters) -> Mapping[str, Any]:
     """{name: value} of the parameter set with which the C code of a drive is generated."""
     values = flatten_parameters(drive)
-    if not isinstance(drive, TableDrive):
+    if not isinstance(drive, TableDriveParameters):
         return values
     midline = {"end_torque": drive.max_table_torque, "max_stiffness": drive.K_FTS}
     return {name: value for name, value in values.items() if not name.startswith("table.")} | midline
 
 
-def _make_tables(drive: Drive) -> Mapping[str, DataTable]:
+def _make_tables(drive: DriveParameters) -> Mapping[str, DataTable]:
     """{"midline": nodes of a measured midline}; empty for other drives."""
-    if not isinstance(drive, TableDrive):
+    if not isinstance(drive, TableDriveParameters):
         return EMPTY_TABLES
-    return {"midline": DataTable(np.array(drive.make_nodes(), dtype=np.float64), MAX_TABLE_POINTS + 1)}
+    return {
+        "midline": DataTable(np.array(drive.make_midline_nodes(), dtype=np.float64), MAX_TABLE_POINTS + 1)
+    }
 
 
 _STIFFNESS_PANEL = RampPanel("tau", ("K_WTS", "K_TS"))
@@ -69,9 +71,9 @@ _LOCKED_FLANGE_MEMBERS = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_loader(__name__),
-    data=DataConversion(_convert_parameters, _find_code_class, _make_tables),
-    panels={
+    native=make_native_definition_loader(__name__),
+    data_conversion=DataConversion(_convert_parameters, _find_code_parameter_class, _make_tables),
+    ramp_panels={
         "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS_PANEL),
         "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS_PANEL),
     },

@@ -4,8 +4,12 @@ import casadi as ca
 
 from jointfmu.joints.harmonic_drive import friction, hysteresis, spring
 from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS, error_amplitudes, kinematic_error
-from jointfmu.joints.harmonic_drive.law import ContactPairDrive, stiffness_with_play
-from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, MeasuredDrive, SplineNode
+from jointfmu.joints.harmonic_drive.law import ContactPairDriveParameters, stiffness_with_play
+from jointfmu.joints.harmonic_drive.prescribed_midline import (
+    CatalogueDriveParameters,
+    MeasuredDriveParameters,
+    SplineNode,
+)
 from jointfmu.joints.model import Model
 
 from ...joint_parts.graph import FunctionGraph, Symbols, make_symbols
@@ -25,12 +29,12 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     """Add the functions that the C code of the harmonic drive calls."""
     drive = function_graph.joint
     add_slider_functions(function_graph)
-    if isinstance(drive, CatalogueDrive):
+    if isinstance(drive, CatalogueDriveParameters):
         doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after the node"
         function_graph.add_function(
-            "midline_nodes", doc, [], [number for node in drive.make_nodes() for number in node]
+            "midline_nodes", doc, [], [number for node in drive.make_midline_nodes() for number in node]
         )
-    elif isinstance(drive, ContactPairDrive):
+    elif isinstance(drive, ContactPairDriveParameters):
         (torque,) = make_symbols("x", 1)
         doc = "torque -> K_WTS, its derivative by the torque"
         function_graph.add_function("stiffness_with_play", doc, [torque], stiffness_with_play(drive, torque))
@@ -68,13 +72,15 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         friction_arguments = [*motion[:2], *torque_limits]
         out = spring.motion_outputs(drive, motion, temperature, state, dry_friction_torque)
     doc = "inputs, kinematic error -> argument of the curve"
-    function_graph.add_with_derivative("curve_argument", doc, [*inputs, state.phi_error], [curve_argument])
+    function_graph.add_function_with_derivative(
+        "curve_argument", doc, [*inputs, state.phi_error], [curve_argument]
+    )
     function_graph.add_function(
         "sticking_stiffness", "-> stiffness of the friction sliders while all stick", [], [stick_stiffness]
     )
     doc = "inputs, torques of midline and hysteresis, d(error)/d(phi1) -> phi1, w1, friction limits"
     x = [*inputs, state.midline_torque, state.hysteresis_torque, state.phi_error_slope]
-    function_graph.add_with_derivative("friction_arguments", doc, x, friction_arguments)
+    function_graph.add_function_with_derivative("friction_arguments", doc, x, friction_arguments)
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]
     doc = (
@@ -92,7 +98,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         ),
         *(state.phi_error, state.phi_error_slope, dry_friction_torque),
     ]
-    function_graph.add_with_derivative("outputs", doc, x, y)
+    function_graph.add_function_with_derivative("outputs", doc, x, y)
 
 
 def _is_torque_input(model: Model) -> bool:
@@ -120,7 +126,7 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
     sliders |= define_array("LIMIT_SHARES", "N_LIMIT_SHARES", friction.SLIDER_LIMIT_SHARES)
     constants = define_constants(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES) | CDefinitions(counts) | sliders
     constants |= define_quadrature("DRIVE_GAUSS", spring.GAUSS_RULE)
-    if isinstance(function_graph.joint, MeasuredDrive):
+    if isinstance(function_graph.joint, MeasuredDriveParameters):
         return constants | CDefinitions({}, {"MIDLINE_IS_DATA": 1})
     nodes = sum(
         len(f.result_expressions) for f in function_graph.functions if f.name == "midline_nodes"

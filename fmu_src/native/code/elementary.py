@@ -11,7 +11,7 @@ TABLE_INTERVALS = 32
 """Number of intervals in the tables of exponential and logarithm [1]."""
 LOG_TABLE_START_BITS = 0x3FE6AAAA00000000
 """Bit pattern of the double at which the table of the logarithm begins; 1 lies inside an interval."""
-_BITS_OF_ONE = 0x3FF0000000000000
+_BIT_PATTERN_OF_ONE = 0x3FF0000000000000
 LOG_MANTISSA_BITS = 47
 """Mantissa bits below the interval index: 52 - log2(TABLE_INTERVALS)."""
 _DECIMAL_DIGITS = 60
@@ -37,9 +37,9 @@ def make_tables_header() -> str:
             "QUARTERS_PER_RADIAN": float(1 / quarter),
         }
         arrays = {
-            "QUARTER_TURN[4]": [[value] for value in _split_number(quarter)],
+            "QUARTER_TURN[4]": [[value] for value in _split_into_short_doubles(quarter)],
             f"EXP_TABLE[{TABLE_INTERVALS}][2]": [
-                _split_in_two((k * per_place).exp()) for k in range(TABLE_INTERVALS)
+                _split_into_double_and_error((k * per_place).exp()) for k in range(TABLE_INTERVALS)
             ],
             f"LOG_TABLE[{TABLE_INTERVALS}][3]": list(_make_log_rows()),
             f"EXPM1_SERIES[{_EXPM1_TERM_COUNT}]": [[1 / factorial(n + 2)] for n in range(_EXPM1_TERM_COUNT)],
@@ -84,13 +84,13 @@ def _round_to_bits(value: Decimal, fraction_bits: int) -> float:
     return float((value * 2**fraction_bits).to_integral_value()) * 2.0**-fraction_bits
 
 
-def _split_in_two(value: Decimal) -> list[float]:
+def _split_into_double_and_error(value: Decimal) -> list[float]:
     """Split a number into the nearest double and the relative error of that double."""
     high = float(value)
     return [high, float(value / Decimal(high) - 1)]
 
 
-def _split_number(value: Decimal) -> Iterator[float]:
+def _split_into_short_doubles(value: Decimal) -> Iterator[float]:
     """Split a number into three doubles of 33 bits, whose products with 20 bits are exact, and the rest."""
     for bits in (32, 65, 98):
         yield (leading := _round_to_bits(value, bits))
@@ -106,7 +106,7 @@ def _make_log_rows() -> Iterator[list[float]]:
     for interval in range(TABLE_INTERVALS):
         begin, end = (LOG_TABLE_START_BITS + (k << LOG_MANTISSA_BITS) for k in (interval, interval + 1))
         middle = 0.5 * (_double_from_bits(begin) + _double_from_bits(end))
-        inverse = 1.0 if begin <= _BITS_OF_ONE < end else round(2.0**16 / middle) * 2.0**-16
+        inverse = 1.0 if begin <= _BIT_PATTERN_OF_ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
         high = _round_to_bits(log, 42)
         yield [inverse, high, float(log - Decimal(high))]

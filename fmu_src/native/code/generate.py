@@ -46,7 +46,7 @@ def generate_code(model: Model, parameters: ParameterFile, parameter_split: Para
     """{file name: text} of all C sources but data.c, the same for all parameter files of one structure."""
     native = load_native_definition(model)
     files = _read_handwritten_files(model, native)
-    files["law.h"], files["law.c"] = _generate_law(model, parameter_split, native)
+    files["law.h"], files["law.c"] = _generate_law_sources(model, parameter_split, native)
     files |= {
         "variables.c": format_variables_c(model),
         "model.h": _format_model_header(model, parameters.values, native.history_layout.size),
@@ -57,11 +57,16 @@ def generate_code(model: Model, parameters: ParameterFile, parameter_split: Para
     return dict(sorted((files | {"data.h": make_placeholder(model, parameter_split).make_header()}).items()))
 
 
-def _generate_law(
+def _generate_law_sources(
     model: Model, parameter_split: ParameterSplit, native_definition: NativeDefinition
 ) -> tuple[str, str]:
     """Texts of law.h and law.c, generated once for all parameter files of one structure."""
-    key = model.name, model.parameters, parameter_split.parameter_class, parameter_split.structure_key
+    key = (
+        model.name,
+        model.parameter_class,
+        parameter_split.parameter_class,
+        parameter_split.code_structure_key,
+    )
     if key not in _cached_law_texts:
         _cached_law_texts[key] = format_law(
             build_graph(
@@ -73,7 +78,7 @@ def _generate_law(
     return _cached_law_texts[key]
 
 
-def read_token(source_texts: Mapping[str, str]) -> str:
+def read_instantiation_token(source_texts: Mapping[str, str]) -> str:
     """GUID or instantiation token in the file data.c of C sources."""
     line = next(line for line in source_texts["data.c"].splitlines() if ".token = " in line)
     return line.split('"')[1]

@@ -15,7 +15,7 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.progress import track_progress
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flatten_fields
 
 from ...partners import PARTNERS
 from ...partners import load_partner_parameters as partner_parameters
@@ -55,7 +55,7 @@ def list_code_structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
     for law in KINDS[model.joint].laws:
         file = load_default(model.joint, law)
         law_model = model.with_parameters(file.joint, file.values)
-        for choices in _list_choices(law_model, file):
+        for choices in _list_choice_combinations(law_model, file):
             try:
                 chosen = file.with_values(choices, "user", "compiled ahead")
             except ValueError:  # the choice needs parameters that the file does not have
@@ -63,12 +63,12 @@ def list_code_structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
             yield law_model, chosen
 
 
-def _list_choices(model: Model, parameter_file: ParameterFile) -> Iterator[Mapping[str, object]]:
+def _list_choice_combinations(model: Model, parameter_file: ParameterFile) -> Iterator[Mapping[str, object]]:
     """Yield all combinations {name: value} of the choice parameters on which the C code depends."""
     code = split_parameters(model, parameter_file).code_values
     allowed = {
         name: item.metadata["allowed"]
-        for name, item in flat_fields(type(parameter_file.values))
+        for name, item in flatten_fields(type(parameter_file.values))
         if name in code and "allowed" in item.metadata
     }
     for values in product(*allowed.values()):

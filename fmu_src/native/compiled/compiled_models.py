@@ -41,7 +41,7 @@ MAX_CACHED_FILES = 200
 _MODEL_FILE_SUFFIX, _RESULT_FILE_SUFFIX = ".tar.xz", ".kept.xz"
 _COMPILER_PACKAGES = ("casadi", "ziglang")
 _SOURCE_SUFFIXES = (".py", ".c", ".h")
-_MEMBER_PATTERN = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
+_MEMBER_NAME_PATTERN = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
 """Pattern of member names in the file of a compiled model: C files, and libraries as FMI version/platform."""
 
 
@@ -169,9 +169,9 @@ def compile_model(
 
 def compiled_model_name(model: Model, parameter_split: ParameterSplit) -> str:
     """File name of a compiled model, with a digest of structure and sources."""
-    law = model.parameters
+    law = model.parameter_class
     text = (
-        f"{model.name} {law.__module__}.{law.__qualname__} {parameter_split.structure_key} "
+        f"{model.name} {law.__module__}.{law.__qualname__} {parameter_split.code_structure_key} "
         f"{_digest_sources(model)}"
     )
     return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_MODEL_FILE_SUFFIX}"
@@ -242,7 +242,7 @@ def unpack_model(content: bytes) -> CompiledModel:
     with tarfile.open(fileobj=io.BytesIO(lzma.decompress(content))) as archive:
         for info in archive:
             folder, _, name = info.name.partition("/")
-            if not _MEMBER_PATTERN.fullmatch(info.name):
+            if not _MEMBER_NAME_PATTERN.fullmatch(info.name):
                 raise ValueError(f"no part: it has a member {info.name!r}")
             stream = archive.extractfile(info)
             member = stream.read() if stream else b""

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
-from jointfmu.joints.bolted_joint.law import BoltedJoint, preload_pressure
+from jointfmu.joints.bolted_joint.law import BoltedJointParameters, preload_pressure
 from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.mechanics.footprint.bolts import PressureDistribution
 from jointfmu.parameters import load_default
@@ -36,7 +36,7 @@ each_load = pytest.mark.parametrize(("preload", "moment"), LOADS)
 
 
 def changed(**values):
-    return build_parameter_set(BoltedJoint, flatten_parameters(JOINT) | values)
+    return build_parameter_set(BoltedJointParameters, flatten_parameters(JOINT) | values)
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import pytest
 from clients import needs
 from conftest import Fmu, here_alone, refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.common.shown import list_entries
+from jointfmu_tools.common.shown import list_parameter_file_entries
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.inputs.drawing import vdi2230
 from jointfmu_tools.inputs.drawing.tables import (
@@ -42,7 +42,7 @@ def interface_alone(monkeypatch):
     """The finite elements of the complete joint take seconds; test_bolted_plate.py looks at them."""
     monkeypatch.setattr(
         plate_finite_elements,
-        "compute_facts",
+        "compute_joint_or_warning",
         lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
     )
 
@@ -686,7 +686,7 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     assert facts["loss_factor_high"] < facts["loss_factor"] < facts["loss_factor_low"]
     bare = replace(file, values=replace(file.values, embedding=0.0))  # embedding takes of the preload once
     np.testing.assert_allclose(friction_results(file, 30e3)[1], friction_results(bare, left)[1], rtol=1e-9)
-    (mu,) = (each for each in list_entries(file) if each.name == "mu")
+    (mu,) = (each for each in list_parameter_file_entries(file) if each.name == "mu")
     assert mu.source.startswith(f"{low:g} to {high:g}; ")
     study = state_problem(file, {}, 30e3, 3)
     assert [(each.name, each.support) for each in study.uncertain_parameters] == [("mu", (low, high))]

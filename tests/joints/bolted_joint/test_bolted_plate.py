@@ -22,7 +22,7 @@ from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import STIFFNESS_UNITS, Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
-from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, find_contradictions, preload_pressure
+from jointfmu.joints.bolted_joint.law import RoughBoltedJointParameters, find_contradictions, preload_pressure
 from jointfmu.mechanics.footprint.plate import BoltedPlate, equivalent_bolt_rows, plate_cells, pressure_decay
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
@@ -57,7 +57,7 @@ def joint(pattern, **changes):
         "n_bolts": float(len(pattern.x)), "row_bolts": row_bolts, "row_distance": row_distance,
         "pattern": pattern,
     }  # fmt: skip
-    return RoughBoltedJoint(**values | changes)
+    return RoughBoltedJointParameters(**values | changes)
 
 
 @pytest.mark.parametrize("name", LAYOUTS)

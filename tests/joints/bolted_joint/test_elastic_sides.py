@@ -648,7 +648,7 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
         out, past = at(joint.spring, x, *STILL[1:], memory=past, preload=15e3)
         rows.append((x, -out["f_x"]))
     motion, force = np.transpose(rows)
-    law, facts = loop.first_loading(joint.file.values, 15e3)
+    law, facts = loop.make_shear_loop_law(joint.file.values, 15e3)
     loops = branches.cut_branches([("", motion, force)])
     off = loop._masing_deviation(joint.file.values, 15e3, loops, law)
     for found, low, high in ((loops, 3e-3, 1e-2), (replace(loops, force=loops.force - off), 0.0, 2e-3)):
@@ -662,7 +662,7 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
 
     noisy = np.stack([motion, force + 30.0 * noise.standard_normal(force.size)], axis=1)
     np.savetxt(path, noisy, delimiter=",", header="displacement [m], force [N]", comments="")
-    monkeypatch.setattr(loop, "_ELASTIC_TABLE_STEPS", 12)
+    monkeypatch.setattr(loop, "_ELASTIC_FIRST_LOADING_STEPS", 12)
     monkeypatch.setattr(loop, "START_VALUES", {})
     start = joint.file.with_values({"h": 1.6e-6, "mu": 0.17}, "user", "test")
     found = loop.fit(path, start, preload=15e3)

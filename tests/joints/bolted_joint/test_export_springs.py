@@ -14,7 +14,7 @@ from jointfmu_tools.exchange.export import ansys, keywords, tables
 from jointfmu_tools.exchange.export.mesh import NodePairs, read_node_pairs
 from jointfmu_tools.exchange.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
 from jointfmu_tools.joints.bolted_joint.export import (
-    TOTAL_OUTPUTS,
+    TOTAL_STIFFNESS_AND_DAMPING_NAMES,
     springs_of_joint,
     springs_on_mesh,
     springs_under_pressure,
@@ -59,7 +59,7 @@ def test_pairs_add_up_to_the_joint(joint, preload, moment):
     state = joint.evaluate(preload, moment, REST, REST)
     # sums of a thousand terms: round-off
     for name, column in zip(
-        TOTAL_OUTPUTS,
+        TOTAL_STIFFNESS_AND_DAMPING_NAMES,
         (springs.K_t, springs.K_t, springs.K_n, springs.C_t, springs.C_t, springs.C_n),
         strict=True,
     ):
@@ -68,7 +68,7 @@ def test_pairs_add_up_to_the_joint(joint, preload, moment):
     about = (springs.K_n @ y**2, springs.K_n @ x**2, springs.K_t @ (x**2 + y**2))
     assert about == pytest.approx([state[n] for n in ("K_rx", "K_ry", "K_rz")], rel=1e-12)
     assert springs.area @ springs.pressure == pytest.approx(8.0 * preload, rel=1e-12)
-    assert springs.stiffness_correction == 1.0
+    assert springs.stiffness_correction_factor == 1.0
 
 
 def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
@@ -84,7 +84,7 @@ def test_open_pairs_are_left_out(joint):
     moment = 0.9 * 15e3 * 3 * joint.joint.row_distance * 1.5  # one row gives way
     springs = springs_of_joint(joint, 15e3, moment)
     p = preload_pressure(joint.joint, joint.points, 15e3, moment)
-    assert springs.open_pairs == np.sum(p == 0.0) > 0
+    assert springs.open_pair_count == np.sum(p == 0.0) > 0
     assert len(springs.node_labels) == np.sum(p > 0.0)
     assert springs.K_n.sum() == pytest.approx(joint.evaluate(15e3, moment, REST, REST)["K_zz"], rel=1e-12)
 
@@ -103,7 +103,7 @@ def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
     mesh = NodePairs("own.csv", found.node_labels, joint.points.position, area, None)
     same = springs_on_mesh(joint, mesh, 15e3, 4500.0)
     np.testing.assert_allclose(same.K_n, found.K_n, rtol=1e-9)  # the triangulation's round-off
-    assert same.stiffness_correction == pytest.approx(1.0, rel=1e-9)
+    assert same.stiffness_correction_factor == pytest.approx(1.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("nodes", [(25, 35), (49, 69), (97, 137)])
@@ -118,7 +118,7 @@ def test_a_mesh_has_the_joints_sums(joint, nodes):
     x, y = springs.position.T
     assert springs.K_n @ y**2 == pytest.approx(state["K_rx"], rel=0.05)
     assert springs.K_n @ x**2 == pytest.approx(state["K_ry"], rel=0.05)
-    assert springs.stiffness_correction == pytest.approx(1.0, abs=0.05)
+    assert springs.stiffness_correction_factor == pytest.approx(1.0, abs=0.05)
 
 
 def test_stated_pressures_give_the_law_at_them(joint):
@@ -127,7 +127,7 @@ def test_stated_pressures_give_the_law_at_them(joint):
     p = 1e6 * (1.0 + 5.0 * place[:, 1] ** 2 / 0.17**2)
     p[:7] = 0.0
     springs = springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
-    assert springs.open_pairs == 7
+    assert springs.open_pair_count == 7
     np.testing.assert_allclose(springs.pressure, p[7:], rtol=1e-12)
     k = joint.curve.derivatives(joint.curve.inverse(p[7:]), 1)[1]
     np.testing.assert_allclose(springs.K_n, area[7:] * k, rtol=1e-12)
@@ -218,7 +218,9 @@ def test_ansys_is_read_by_mapdl_archive(found, tmp_path, normal):
     path = tmp_path / "springs.cdb"
     path.write_text(
         ansys.format_springs(
-            found, Placement(MM, normal, first_number=1, first_set_number=1), ["first line\nand second"]
+            found,
+            Placement(MM, normal, first_free_number=1, first_free_set_number=1),
+            ["first line\nand second"],
         )
     )
     archive = mapdl_archive.Archive(path, parse_vtk=False)
@@ -265,7 +267,7 @@ def symmetric(upper):
 def test_the_order_of_the_constants_is_the_references():
     # "if a simple spring of stiffness K in the nodal x direction is desired, the input constants would be
     # C1=C58=K and C7=-K" (ANSYS element reference, MATRIX27)
-    constants = ansys.upper_triangle(np.array([3.0, 0.0, 0.0]))
+    constants = ansys.compute_upper_triangle(np.array([3.0, 0.0, 0.0]))
     assert {i + 1: v for i, v in enumerate(constants) if v} == {1: 3.0, 58: 3.0, 7: -3.0}
 
 
@@ -273,7 +275,9 @@ def test_the_order_of_the_constants_is_the_references():
 def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
     deck = tmp_path / "springs.inp"
     step = "*STEP\n*STATIC\n*END STEP\n"
-    text = keywords.format_springs(found, Placement(MM, "z", first_number=1), ["about"], has_dashpots=True)
+    text = keywords.format_springs(
+        found, Placement(MM, "z", first_free_number=1), ["about"], has_dashpots=True
+    )
     deck.write_text(text + step)
     done = subprocess.run(
         [sys.executable, "-m", "abq2ccx", deck, "-o", tmp_path / "out.inp", "--strict"],
@@ -288,7 +292,7 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
         axis = "XYZ".index(name.split("_")[1][1])
         assert dofs in (None, (axis + 1, axis + 1))  # a converted dashpot has an axis of its own
         sums[keyword][axis] += value * len(elements[name])
-    whole = [found.joint_totals[n] / 1e3 for n in TOTAL_OUTPUTS]
+    whole = [found.joint_totals[n] / 1e3 for n in TOTAL_STIFFNESS_AND_DAMPING_NAMES]
     np.testing.assert_allclose(sums["SPRING"] + sums["DASHPOT"], whole, rtol=DIGITS)
 
 
@@ -299,7 +303,7 @@ def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
 
     deck = tmp_path / "springs.inp"
     text = keywords.format_springs(
-        found, Placement(MM, "z", first_number=1), ["about"], has_dashpots=dashpots
+        found, Placement(MM, "z", first_free_number=1), ["about"], has_dashpots=dashpots
     )
     names = set(re.findall(r"^\*ELEMENT, TYPE=(\w+)", text, re.MULTILINE))
     assert names == ({"SPRING2", "DASHPOT2"} if dashpots else {"SPRING2"})
@@ -344,7 +348,7 @@ def deck_cards(text):
 
 def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
     text = keywords.format_springs(
-        found, Placement(MM, "x", first_number=5000, has_own_nodes=False), [], has_dashpots=False
+        found, Placement(MM, "x", first_free_number=5000, has_own_nodes=False), [], has_dashpots=False
     )
     elements, values = deck_cards(text)
     assert "*NODE" not in text

@@ -14,7 +14,7 @@ from natives import Host, close, jacobian
 from scipy.integrate import quad
 
 from jointfmu.contact.interface import evaluate_at_pressure
-from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
+from jointfmu.joints.gear_contact.spring import GearContactParameters, GearContactSpring
 from jointfmu.mechanics.curve import CLOSING_AREA_RATIO, MAX_ERROR
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
@@ -28,7 +28,7 @@ CONTACT = load_default("gear_contact").values
 
 
 def changed(**values):
-    return build_parameter_set(GearContact, flatten_parameters(CONTACT) | values)
+    return build_parameter_set(GearContactParameters, flatten_parameters(CONTACT) | values)
 
 
 SETS = {
@@ -58,7 +58,7 @@ def test_approach_is_the_integral_of_df_over_K(spring):
         f = np.exp(t)
         return f / float(evaluate_at_pressure(spring.joint, f / A_0)["K_N"])
 
-    spots = spring.joint.spots()
+    spots = spring.joint.spot_distribution()
     breaks = [
         float(spots.sum_over_spots("load", u))
         for u in spots.sorted_regime_end_log_areas
@@ -125,7 +125,7 @@ def test_real_area_and_its_elastic_part(spring):
     out = spring.evaluate(f)
     law = evaluate_at_pressure(spring.joint, f / spring.joint.A_0)
     np.testing.assert_allclose(out["A_r"], law["A_r"], rtol=4 * EPS)
-    m, spots = spring.joint.spots().size_exponent, spring.joint.spots()
+    m, spots = spring.joint.spot_distribution().size_exponent, spring.joint.spot_distribution()
     largest = law["largest_spot"]
     # exp and log of areas over tens of decades lose 1e-14
     np.testing.assert_allclose(out["A_r"], spring.joint.lambda_ * m / (1 - m) * largest, rtol=1e-12)
@@ -136,7 +136,8 @@ def test_real_area_and_its_elastic_part(spring):
 
 def test_zeta_is_the_exponent():
     """m = sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022, and the table's end."""
-    assert CONTACT.spots().size_exponent == pytest.approx(np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4, rel=1e-15)
+    exponent = np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4
+    assert CONTACT.spot_distribution().size_exponent == pytest.approx(exponent, rel=1e-15)
     assert SPRINGS["default"].max_force == pytest.approx(2.8 * 235e6 * 1e-4, rel=1e-12)  # H A_0
 
 
@@ -144,7 +145,7 @@ def test_zeta_is_the_exponent():
 def test_the_closing_is_short(spring):
     """It ends where the largest spot is CLOSING_AREA_RATIO times the largest plastic one."""
     force, _ = closing_end(spring)
-    spots = spring.joint.spots()
+    spots = spring.joint.spot_distribution()
     largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
     plastic = spots.reference_area * np.exp(spots.stiffness_onset_log_area)
     assert largest == pytest.approx(CLOSING_AREA_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep

@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from test_gear_mesh_spring import MESH, each, motion
 
 from jointfmu.contact.interface import evaluate_at_pressure
-from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs_in_contact
+from jointfmu.joints.gear_contact.spring import GearContactParameters, GearContactSpring
+from jointfmu.joints.gear_mesh.spring import GearMeshParameters, GearMeshSpring, pairs_in_contact
 from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
 from jointfmu.parameters import load_default
 from jointfmu.quantity import build_parameter_set, flatten_parameters, replace_values
@@ -138,7 +138,7 @@ def contact_of(mesh):
     """The flanks of one pair alone."""
     names = flatten_parameters(load_default("gear_contact").values)
     return GearContactSpring.tabulate(
-        build_parameter_set(GearContact, {name: flatten_parameters(mesh)[name] for name in names})
+        build_parameter_set(GearContactParameters, {name: flatten_parameters(mesh)[name] for name in names})
     )
 
 
@@ -152,7 +152,7 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
     def per_log(t):
         return np.exp(t) / float(evaluate_at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
 
-    spots = mesh.spots()
+    spots = mesh.spot_distribution()
     breaks = [
         float(spots.sum_over_spots("load", u))
         for u in spots.sorted_regime_end_log_areas
@@ -227,7 +227,7 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
     own = {"K_tooth": float(teeth * law.A_0 * k)}
     try:
         spring = GearMeshSpring.tabulate(
-            build_parameter_set(GearMesh, flatten_parameters(MESH) | flatten_parameters(law) | own)
+            build_parameter_set(GearMeshParameters, flatten_parameters(MESH) | flatten_parameters(law) | own)
         )
     except RuntimeError as error:  # only teeth much softer than their flanks need too many nodes
         assert "nodes" in str(error)  # noqa: PT017

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch
+from jointfmu.joints.gear_mesh.spring import GearMeshParameters, GearMeshSpring, base_pitch
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity import replace_values
 
@@ -338,7 +338,7 @@ def test_parameter_file_round_trip(tmp_path):
     path = tmp_path / "mesh.toml"
     path.write_text(format_parameter_file(file))
     again = load_parameter_file(path, "gear_mesh")
-    assert isinstance(again.values, GearMesh)
+    assert isinstance(again.values, GearMeshParameters)
     assert again.values == file.values
     assert (again.name, dict(again.sources)["K_tooth"]) == (file.name, file.sources["K_tooth"])
 

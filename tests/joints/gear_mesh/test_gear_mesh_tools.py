@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.exchange.export.exports import require_content
+from jointfmu_tools.exchange.export.exports import require_export
 from jointfmu_tools.joints.gear_mesh.new import InvoluteGearPair
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 from jointfmu_tools.studies.uncertainty.runs import evaluate_runs
 from test_modelica import EXACT, move, simulate, top
 
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch, pairs_in_contact
+from jointfmu.joints.gear_mesh.spring import GearMeshParameters, GearMeshSpring, base_pitch, pairs_in_contact
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
@@ -170,7 +170,7 @@ MESH = load_default("gear_mesh").values
 
 
 def test_force_over_deflection_is_the_mean_over_the_mesh_cycle():
-    table = require_content("gear_mesh", "curve").compute_table(MESH, None, 1e-3)
+    table = require_export("gear_mesh", "curve").compute_table(MESH, None, 1e-3)
     spring = GearMeshSpring.tabulate(MESH)
     s, f, K = table.rows.T
     load, stiffness = spring.curve.derivatives(np.abs(s), 1)
@@ -185,8 +185,8 @@ def test_force_over_deflection_is_the_mean_over_the_mesh_cycle():
 
 def test_the_contact_is_that_of_the_flanks():
     """The same surfaces as the gear contact's default."""
-    mesh, _ = require_content("gear_mesh", "contact")(MESH)
-    flanks, _ = require_content("gear_contact", "contact")(load_default("gear_contact").values)
+    mesh, _ = require_export("gear_mesh", "contact")(MESH)
+    flanks, _ = require_export("gear_contact", "contact")(load_default("gear_contact").values)
     np.testing.assert_array_equal(mesh.load, flanks.load)
 
 
@@ -280,7 +280,7 @@ def test_samples_are_those_of_the_python_law(name, s_rel):
             continue
         accepted += 1
         values = {k: v for k, v in settings.items() if k != "phi1"}
-        mesh = build_parameter_set(GearMesh, {**joint.values_by_name, **values})
+        mesh = build_parameter_set(GearMeshParameters, {**joint.values_by_name, **values})
         spring, angle = GearMeshSpring.tabulate(mesh), entry["columns"]["phi1"]
         exact = spring.evaluate(angle, 0.0, 0.5 * mesh.backlash / mesh.r_b2, 0.0)
         for output in ("K", "f"):
@@ -295,7 +295,7 @@ def test_bands():
     """The teeth are the softer part: they decide the band."""
     task = state_problem(load_default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 0)[0])
-    assert found.refusals.count == 0
+    assert found.refused_samples.count == 0
     low, high = found.quantiles["K"][[0, -1], -1]
     nominal = found.nominal["K"][-1]
     assert low < 0.95 * nominal < 1.05 * nominal < high

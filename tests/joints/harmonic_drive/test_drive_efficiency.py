@@ -17,14 +17,14 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
     open_fmu_test_rig,
 )
 from jointfmu_tools.joints.harmonic_drive.friction import (
-    CATALOGUE_SPEED,
+    CATALOGUE_MOTOR_SPEED,
     PublishedFriction,
     rated_efficiency,
     scale_friction,
 )
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from jointfmu_tools.joints.harmonic_drive.report import compare_with_catalogue
-from jointfmu_tools.pages.report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET
+from jointfmu_tools.pages.report.figure import ROLE_INDEPENDENT, ROLE_PARAMETER_SOURCE, ROLE_PREDICTED
 from jointfmu_tools.pages.report.joint import write_joint_report
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 from oracles.drive_friction import (
@@ -136,13 +136,13 @@ SCATTER = 0.03
 READ = 0.005
 """Of a factor read from a catalogue's curve [1]; two readings of such a curve differ by up to 0.013."""
 TEXT = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_efficiency.csv"
-CURVES = list(csv.DictReader(TEXT.read_text(encoding="utf-8").splitlines()))
+UNCERTAINTY_CURVES = list(csv.DictReader(TEXT.read_text(encoding="utf-8").splitlines()))
 
 
 def of(drive, column):
     return [
         (float(r["rpm"] or 0.0), float(r["share"]), float(r[column]))
-        for r in CURVES
+        for r in UNCERTAINTY_CURVES
         if r["drive"] == drive and r[column]
     ]
 
@@ -172,7 +172,9 @@ def test_efficiency_over_load_is_the_published_curve():
     assert len(factors) == 10
     drive = turned(50.0, 172.0, **fixed_by(full, full * factors[0.5], 0.5, 172.0, 50.0, 2000.0))
     for share, factor in factors.items():
-        assert drive.efficiency(CATALOGUE_SPEED, share * 172.0) / full == pytest.approx(factor, abs=READ)
+        assert drive.efficiency(CATALOGUE_MOTOR_SPEED, share * 172.0) / full == pytest.approx(
+            factor, abs=READ
+        )
     guess = np.interp(0.2, [0.0, 0.5, 1.0], [0.0, factors[0.5], 1.0])
     assert abs(guess - factors[0.2]) > 30.0 * READ
 
@@ -181,7 +183,9 @@ def test_another_reading_of_such_a_curve_is_one_too():
     factors = {share: k for _, share, k in of("M2", "factor")}
     drive = turned(50.0, 96.0, **fixed_by(0.65, 0.65 * factors[0.5], 0.5, 96.0, 50.0, 2000.0))
     for share, factor in factors.items():
-        assert drive.efficiency(CATALOGUE_SPEED, share * 96.0) / 0.65 == pytest.approx(factor, abs=2.0 * READ)
+        assert drive.efficiency(CATALOGUE_MOTOR_SPEED, share * 96.0) / 0.65 == pytest.approx(
+            factor, abs=2.0 * READ
+        )
 
 
 @pytest.mark.parametrize(("drive", "rated"), [("ATRIAS", 172.0), ("M2", 96.0)])
@@ -206,7 +210,7 @@ def test_part_load_of_worked_examples_from_the_efficiency_at_rated_torque(drive)
     ((_, _, full),) = of(drive, "efficiency")
     ((_, share, factor),) = of(drive, "factor")
     found = turned(100.0, 40.0, load_loss=0.05, friction_coulomb=(1.0 / full - 1.05) * 0.4)
-    missed = abs(found.efficiency(CATALOGUE_SPEED, share * 40.0) / full - factor)
+    missed = abs(found.efficiency(CATALOGUE_MOTOR_SPEED, share * 40.0) / full - factor)
     assert missed < 0.08
     assert missed < 1.0 - factor
 
@@ -230,7 +234,7 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     roles = {name: row.role for name, row in rows.items()}
     turned = ("starting_torque", "running_torque", "efficiency", "back_driving_torque")
     set_by_it = (*turned, "wind-up at T1, 3.9 N m")
-    assert all(roles[name] == ROLE_SET for name in set_by_it)
+    assert all(roles[name] == ROLE_PARAMETER_SOURCE for name in set_by_it)
     assert roles["lost_motion"] == ROLE_PREDICTED
     assert roles["hysteresis_loss"] == ROLE_INDEPENDENT
     assert all(rows[name].computed == pytest.approx(rows[name].published, rel=1e-6) for name in turned)
@@ -314,7 +318,7 @@ def test_drag_and_temperature(tmp_path, capsys):
     found = rated_efficiency(file.values, 318.15)
     assert f"efficiency         {found:.4g}  at rated torque and 2000 rev/min, at 45 degrees C" in out
     warm = make_test_rig(SPRING, file)
-    assert warm.efficiency(CATALOGUE_SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
+    assert warm.efficiency(CATALOGUE_MOTOR_SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
     kelvin = made("CSG-25-100", temperature="318.15K")
     assert kelvin.inputs == file.inputs
     bare = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"motor_drag": "0.02", "ratio": "100"}

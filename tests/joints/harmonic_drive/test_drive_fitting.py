@@ -108,7 +108,7 @@ def test_a_row_beyond_the_law_is_said(capsys):
 @pytest.mark.slow
 def test_the_lines_stay_where_no_smooth_law_keeps_them():
     one = row(24000, 30000, 49000, 29, 108, rated=151.2)
-    found = catalogue.make_line_drive_from_row(one)
+    found = catalogue.make_drive_with_catalogue_law_from_row(one)
     assert "keeps the angle of K1 = 24000" in found.notes[0]
     assert "pair_angle_error" not in found.facts
     assert wind_up(found.parameters.values, np.array(151.2)) == pytest.approx(one.wind_up(151.2), rel=1e-12)
@@ -187,14 +187,14 @@ def test_law_is_the_exported_one():
     spring, law = HarmonicDriveSpring.tabulate(drive), hysteresis.make_law(drive)
     for u in (1e-6, 1e-4, 2e-3):
         moved = float(spring.hysteresis.advance(HISTORY_LAYOUT.virgin_history(), u).traction)
-        assert law.friction(np.array([u]))[0] == pytest.approx(moved, rel=1e-12)
+        assert law.friction_force(np.array([u]))[0] == pytest.approx(moved, rel=1e-12)
         assert law.elastic_spring.force(np.array([-u]))[0] == -spring.curve.derivatives(u, 0)[0]
 
 
 def test_energies_are_the_integrals_of_the_torques():
     law, u = measurements.drive_law(), np.linspace(0.0, 2e-3, 20001)
     for torque, energy in (
-        (law.friction(u), law.friction_work(u)),
+        (law.friction_force(u), law.friction_work(u)),
         (law.elastic_spring.force(u), law.elastic_spring.energy(u)),
     ):
         whole = np.concatenate([[0.0], np.cumsum(0.5 * (torque[1:] + torque[:-1])) * u[1]])
@@ -206,7 +206,7 @@ def test_branches_are_as_far_apart_as_stated():
     drive = measurements.file("harmonic_drive", measurements.DRIVE).values
     law = hysteresis.make_law(drive)
     u = np.linspace(0.0, 3e-3, 30001)
-    top = np.interp(drive.rated_torque, law.friction(u) + law.elastic_spring.force(u), u)
+    top = np.interp(drive.rated_torque, law.friction_force(u) + law.elastic_spring.force(u), u)
     down = np.linspace(top, -top, 40001)
     torque = drive.rated_torque + law.force_change(down, np.full(down.size, top))
     assert 2.0 * np.interp(0.0, torque[::-1], down[::-1]) == pytest.approx(drive.hysteresis_loss, rel=1e-4)
@@ -342,12 +342,12 @@ def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_the_modelica_record_is_the_midline(law):
-    from jointfmu_tools.exchange.modelica.records import to_curve
+    from jointfmu_tools.exchange.modelica.records import make_curve_of_table
     from jointfmu_tools.joints.harmonic_drive.modelica import MODELICA_COMPONENT
 
     file = load_default("harmonic_drive", law)
     (record,) = MODELICA_COMPONENT.make_records(file, [()])
-    exact, made = torque_curve(file.values), to_curve(record.table)
+    exact, made = torque_curve(file.values), make_curve_of_table(record.table)
     x = np.linspace(0.0, 1.2 * exact.end_point[0], 500)
     for a, b in zip(made.derivatives(x, 1), exact.derivatives(x, 1), strict=True):
         np.testing.assert_allclose(a, b, rtol=1e-7, atol=1e-12)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 from test_modelica import COMMITTED, EXACT, STAND_IN, move, simulate, top
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.friction import (
     FRICTION_SLIDERS,
     REFERENCE_TEMPERATURE,
@@ -93,7 +93,7 @@ def follow(law: HarmonicDriveSpring, motion: Callable[[float], tuple[float, ...]
 
 def test_a_record_has_the_packages_defaults():
     base = (COMMITTED / library.LIBRARY_NAME / "Data/HarmonicDrive.mo").read_text(encoding="utf-8")
-    own = {f.name: f.default for f in fields(Drive) if f.default is not MISSING}
+    own = {f.name: f.default for f in fields(DriveParameters) if f.default is not MISSING}
     found = {
         name: float(value)
         for name, value in re.findall(r"parameter \S+ (\w+)(?:\([^)]*\))?=(\S+) ", base)

@@ -82,13 +82,13 @@ def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
     assert found.facts["inertia"][0] == pytest.approx(whole, rel=0.02)
     assert found.facts["gravity_cos"][0] == pytest.approx(robot_log.GRAVITY, rel=0.02)
     assert abs(found.facts["gravity_sin"][0]) < 0.02 * robot_log.GRAVITY
-    assert [picture.axis_labels[0].split(" [")[0] for picture in found.pictures] == [
+    assert [picture.axis_labels[0].split(" [")[0] for picture in found.fit_plots] == [
         "speed of the joint",
         "time",
         "temperature",
         "torque at the joint",
     ]
-    assert {*hysteresis.LOG_PARAMETERS} < {*found.solution.values}
+    assert {*hysteresis.ROBOT_LOG_FITTED_PARAMETERS} < {*found.solution.values}
 
 
 def test_a_load_that_is_measured_gives_the_losses(tmp_path):

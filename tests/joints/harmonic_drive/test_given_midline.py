@@ -16,7 +16,11 @@ from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT, stiffness_exponent
-from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, MeasuredMidline, TableDrive
+from jointfmu.joints.harmonic_drive.prescribed_midline import (
+    CatalogueDriveParameters,
+    MeasuredMidline,
+    TableDriveParameters,
+)
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, replace_values
@@ -38,7 +42,7 @@ def lines(T, K1, K2, K3, T1, T2):
 
 def drive(**changes):
     values = {"ratio": 100.0, "d": 0.5, "rated_torque": 31.0, "max_torque": 124.0}
-    return CatalogueDrive(**CSG_17 | values | changes)
+    return CatalogueDriveParameters(**CSG_17 | values | changes)
 
 
 def named(name):
@@ -158,7 +162,9 @@ def test_hysteresis_of_a_drive_without_a_pair():
 
 def table(torque, angle, **changes):
     values = {"ratio": 100.0, "d": 0.5, "rated_torque": 31.0}
-    return TableDrive(table=MeasuredMidline(torque=tuple(torque), angle=tuple(angle)), **values | changes)
+    return TableDriveParameters(
+        table=MeasuredMidline(torque=tuple(torque), angle=tuple(angle)), **values | changes
+    )
 
 
 def random_table(rng, n):
@@ -227,7 +233,7 @@ def test_files_are_read_and_written(law, tmp_path):
     path.write_text(format_parameter_file(file), encoding="utf-8")
     assert load_parameter_file(path) == file
     assert file.law == law
-    assert judge_joint_stiffness(file).comparison is None  # there is no interface to judge
+    assert judge_joint_stiffness(file).stiffness_comparison is None  # there is no interface to judge
 
 
 @pytest.mark.parametrize("law", ["catalogue", "table"])
@@ -248,7 +254,7 @@ def test_a_file_without_an_interface_says_so(law, capsys):
 def test_uncertainty(law, given):
     task = state_problem(load_default("harmonic_drive", law), given, None, 33)
     points = propagate.sample_designs(task, 64, 5)[0]
-    assert propagate.compute_bands(task, points).refusals.count == 0
+    assert propagate.compute_bands(task, points).refused_samples.count == 0
     file = task.evaluator.file
     for settings in task.list_runs(points)[:4]:
         columns = task.evaluator.evaluate(settings)

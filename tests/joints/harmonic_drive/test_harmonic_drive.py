@@ -10,7 +10,12 @@ from scipy.integrate import quad
 from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws.hu2023 import critical_area
 from jointfmu.joints import KINDS
-from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
+from jointfmu.joints.harmonic_drive.law import (
+    HarmonicDriveParameters,
+    drive_stiffness,
+    pair_stiffness,
+    peak_pressure,
+)
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.parameters import load_default, load_parameter_file
@@ -27,7 +32,7 @@ DRIVE = load_default("harmonic_drive").values
 def drive(**values):
     """The default drive with other values; dots of structured names as double underscores."""
     changes = {name.replace("__", "."): value for name, value in values.items()}
-    return build_parameter_set(HarmonicDrive, flatten_parameters(DRIVE) | changes)
+    return build_parameter_set(HarmonicDriveParameters, flatten_parameters(DRIVE) | changes)
 
 
 SETS = {

@@ -19,7 +19,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
     open_fmu_test_rig,
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
-from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_SPEED, rated_efficiency
+from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_MOTOR_SPEED, rated_efficiency
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 
 from jointfmu.joints import MODELS
@@ -240,13 +240,13 @@ def test_a_printed_drive_has_its_friction(item):
     drive = make_test_rig(SPRING, file)
     back, start = printed["back_driving_torque"].value, printed["starting_torque"].value
     assert drive.starting_torque() == pytest.approx(start, rel=1e-9)
-    assert drive.motor_torque(CATALOGUE_SPEED, 0.0) == pytest.approx(
+    assert drive.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0) == pytest.approx(
         printed["running_torque"].value, rel=1e-9
     )
     found = drive.back_driving_torque(10.0 * back)
     if is_printed(item, "efficiency"):
         rated = printed["rated_torque"].value
-        assert drive.efficiency(CATALOGUE_SPEED, rated) == pytest.approx(
+        assert drive.efficiency(CATALOGUE_MOTOR_SPEED, rated) == pytest.approx(
             printed["efficiency"].value, rel=1e-9
         )
         assert rated_efficiency(file.values) == pytest.approx(printed["efficiency"].value, rel=1e-12)
@@ -271,10 +271,10 @@ def test_efficiency_at_rated_torque_is_predicted_without_it(name):
     file = made(name).with_values(friction_and_ratio(without), "user", "without efficiency")
     drive, rated = make_test_rig(SPRING, file), numbers["rated_torque"].value
     published = PRINTED[name].numbers["efficiency"].value
-    missed = drive.efficiency(CATALOGUE_SPEED, rated) - published
+    missed = drive.efficiency(CATALOGUE_MOTOR_SPEED, rated) - published
     assert 0.0 < missed < 2.0 * SCATTER
     guess = make_test_rig(SPRING, file.with_values({"load_loss": 0.0}, "user", "guess"))
-    assert missed < 0.7 * (guess.efficiency(CATALOGUE_SPEED, rated) - published)
+    assert missed < 0.7 * (guess.efficiency(CATALOGUE_MOTOR_SPEED, rated) - published)
 
 
 def test_the_fmu_has_the_friction_of_every_printed_drive(native):
@@ -290,8 +290,8 @@ def test_the_fmu_has_the_friction_of_every_printed_drive(native):
                 own.back_driving_torque(10.0 * back), rel=1e-3
             )
             rated = item.numbers["rated_torque"].value
-            assert drive.efficiency(CATALOGUE_SPEED, rated) == pytest.approx(
-                own.efficiency(CATALOGUE_SPEED, rated), rel=1e-6
+            assert drive.efficiency(CATALOGUE_MOTOR_SPEED, rated) == pytest.approx(
+                own.efficiency(CATALOGUE_MOTOR_SPEED, rated), rel=1e-6
             )
 
 
@@ -305,7 +305,7 @@ def test_what_is_stated_makes_the_friction(tmp_path):
     assert cli.main(["new", "harmonic-drive", *words]) == 0
     drive = load_parameter_file(path).values
     assert drive.friction_coulomb == pytest.approx(0.03)
-    assert drive.friction_viscous == pytest.approx(0.02 / CATALOGUE_SPEED)
+    assert drive.friction_viscous == pytest.approx(0.02 / CATALOGUE_MOTOR_SPEED)
     assert rated_efficiency(drive) == pytest.approx(0.7)
     other = made("RT1-H-17-100", starting_torque="0.04", back_driving_torque="5").values
     assert other.load_loss_back == pytest.approx(1.0 - 100.0 * 0.04 / 5.0)

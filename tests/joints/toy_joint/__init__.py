@@ -23,7 +23,7 @@ MODEL = Model(
     name="ToySpring",
     joint="toy",
     doc="Linear spring: motion in, force out",
-    parameters=LinearSpring,
+    parameter_class=LinearSpring,
     tabulate=lambda parameters: parameters,
     inputs=(Variable("s_rel", "m", "elongation", 1e-3),),
     outputs=(
@@ -37,5 +37,5 @@ MODEL = Model(
     linear_factors={"f": {"s_rel": "parameters"}},
 )
 KIND = JointKind(
-    name="toy", package=__name__, default_stem="spring", laws={"linear": LinearSpring}, models=(MODEL,)
+    name="toy", package=__name__, default_file_stem="spring", laws={"linear": LinearSpring}, models=(MODEL,)
 )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.joints.harmonic_drive.law import HarmonicDrive
+from jointfmu.joints.harmonic_drive.law import HarmonicDriveParameters
 from jointfmu.quantity import check_fields, quantity_field
 
 Array = NDArray[np.float64]
@@ -59,12 +59,12 @@ SIZE_14 = Rings(
 wall under the teeth (Hu 2023, section 2.3). docs/harmonic_drive_field.md says where each comes from."""
 
 
-def contact_length(drive: HarmonicDrive) -> float:
+def contact_length(drive: HarmonicDriveParameters) -> float:
     """Length [m] of the contact along the drive's axis."""
     return drive.A_0 / (2.0 * np.pi * drive.radius)
 
 
-def tooth_traction(drive: HarmonicDrive, rings: Rings, torque: float) -> Traction:
+def tooth_traction(drive: HarmonicDriveParameters, rings: Rings, torque: float) -> Traction:
     """Cosine-shaped tooth load on both zones, and the cup's uniform shear flow against it.
 
     Tangential q cos(pi (theta - centre)/(2 zone)), radial tan(pressure angle) times that, inward:
@@ -83,7 +83,7 @@ def tooth_traction(drive: HarmonicDrive, rings: Rings, torque: float) -> Tractio
     return traction
 
 
-def ball_stiffness(drive: HarmonicDrive, rings: Rings) -> float:
+def ball_stiffness(drive: HarmonicDriveParameters, rings: Rings) -> float:
     """Force over approach^(3/2) [N/m^1.5] of a ball between two flat races (Hertz, both contacts)."""
     modulus = drive.bearing.E / (1.0 - drive.bearing.nu**2) / 2.0
     return float(4.0 / 3.0 * modulus * np.sqrt(0.5 * rings.ball_diameter) / 2.0**1.5)

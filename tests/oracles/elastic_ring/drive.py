@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from jointfmu.contact.interface import evaluate_at_pressure
-from jointfmu.joints.harmonic_drive.law import HarmonicDrive
+from jointfmu.joints.harmonic_drive.law import HarmonicDriveParameters
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 
 from .contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
@@ -52,7 +52,11 @@ class Section:
 
 
 def section(
-    drive: HarmonicDrive, rings: Rings, height: float, traction: Traction, curve: Curve | None = None
+    drive: HarmonicDriveParameters,
+    rings: Rings,
+    height: float,
+    traction: Traction,
+    curve: Curve | None = None,
 ) -> Section:
     """Contact of the section at a height [m] from the cup's opening under a traction.
 
@@ -102,7 +106,9 @@ def section(
     return Section(theta, circle.weight, between.load(x), float(np.sum(push)), -float(push @ cam.slope(at)))
 
 
-def field(drive: HarmonicDrive, rings: Rings, traction: Traction) -> tuple[Footprint, list[Section]]:
+def field(
+    drive: HarmonicDriveParameters, rings: Rings, traction: Traction
+) -> tuple[Footprint, list[Section]]:
     """Nodes (n) of the whole contact under a traction, from six sections along it, and the sections."""
     curve = tabulate_approach(drive.law)
     z = HEIGHTS * contact_length(drive)
@@ -111,7 +117,7 @@ def field(drive: HarmonicDrive, rings: Rings, traction: Traction) -> tuple[Footp
 
 
 def footprint(
-    drive: HarmonicDrive, rings: Rings, sections: list[Section], z: Array, axial: Array
+    drive: HarmonicDriveParameters, rings: Rings, sections: list[Section], z: Array, axial: Array
 ) -> Footprint:
     """Nodes (n) of sections at heights z (k) [m] that stand for parts `axial` (k) [1] of the length."""
     theta = np.stack([s.theta for s in sections])
@@ -126,7 +132,7 @@ def footprint(
     )
 
 
-def oval(drive: HarmonicDrive, rings: Rings, theta: Array, height: Array) -> tuple[Array, Array]:
+def oval(drive: HarmonicDriveParameters, rings: Rings, theta: Array, height: Array) -> tuple[Array, Array]:
     """Positions [m] and unit normals (..., 3) on the elliptical cone, at angles and heights (...) [m]."""
     w = drive.radial_deformation * (1.0 - height / rings.cup_length)
     a, b = drive.radius + w, drive.radius - w
@@ -137,13 +143,13 @@ def oval(drive: HarmonicDrive, rings: Rings, theta: Array, height: Array) -> tup
     return position, np.stack([across * b * np.cos(theta), across * a * np.sin(theta), slope * flat], axis=-1)
 
 
-def torsional_stiffness(drive: HarmonicDrive, nodes: Footprint) -> float:
+def torsional_stiffness(drive: HarmonicDriveParameters, nodes: Footprint) -> float:
     """K_TS [N.m/rad] of nodes by Eq. 45 and the law, both corrected, without any scale."""
     state = evaluate_at_pressure(drive.law, nodes.pressure)
     return float(nodes.rotation(state["K_N"], state["K_T"], (0.0, 0.0, 1.0)))
 
 
-def ring_model_stiffness(drive: HarmonicDrive, rings: Rings, torque: float) -> float:
+def ring_model_stiffness(drive: HarmonicDriveParameters, rings: Rings, torque: float) -> float:
     """K_TS [N.m/rad] of the ring model at a torque [N.m], without any scale."""
     return torsional_stiffness(drive, field(drive, rings, tooth_traction(drive, rings, torque))[0])
 

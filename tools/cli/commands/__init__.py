@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...common import plots
-from ...common.options import Option, option_flag
+from ...common.options import Option, format_option_flag
 
 if TYPE_CHECKING:
     from ...pages.report.figure import Panel
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
     """Add an option that a joint defines to the parser of a command."""
     if option.is_flag:
-        parser.add_argument(option_flag(option.name), action="store_true", help=option.help_text)
+        parser.add_argument(format_option_flag(option.name), action="store_true", help=option.help_text)
         return
     parser.add_argument(
-        option_flag(option.name),
+        format_option_flag(option.name),
         nargs="+" if option.is_list else None,
         type=float if option.is_number else str,
         default=option.default,

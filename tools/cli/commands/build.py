@@ -85,7 +85,7 @@ def _run_build(args: argparse.Namespace) -> CommandResult:
         f"warning: {joint}: {text}" for joint, judgement in judgements.items() for text in judgement.warnings
     ]
     return CommandResult(
-        document={"built": [str(path) for path in built], "replaced": changed, "joints": judged},
+        json_document={"built": [str(path) for path in built], "replaced": changed, "joints": judged},
         lines=[*(f"built {path}" for path in built), *levels],
         notes=notes,
     )
@@ -129,7 +129,7 @@ def _find_changed_values(
     return changed
 
 
-def add_cache(command_parsers: SubParsers) -> None:
+def add_cache_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu cache` with its options."""
     cache = declare_command(
         command_parsers, "cache", _run_cache, "show or clear the cache of compiled FMU code"
@@ -145,7 +145,7 @@ def _run_cache(args: argparse.Namespace) -> CommandResult:
     files, size = cache.count_cached_files()
     folder = str(cache.cache_folder())
     return CommandResult(
-        document={"folder": folder, "files": files, "bytes": size},
+        json_document={"folder": folder, "files": files, "bytes": size},
         lines=[
             f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: "
             f"{cache.CACHE_ENVIRONMENT_VARIABLE})"

@@ -10,11 +10,16 @@ from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
-from ...common.judgement import Plausibility, assess_law, find_rms_height
-from ...common.options import option_flag, require_package
-from ...common.pressure import judge_joint_stiffness, nominal_pressure, warn_missing_members
+from ...common.judgement import Plausibility, assess_law_stiffness, find_rms_height
+from ...common.options import format_option_flag, require_package
+from ...common.pressure import find_nominal_pressure_model, judge_joint_stiffness, warn_missing_members
 from ...exchange.export import exports
-from ...exchange.export.exports import DEFAULT_LOAD_ERROR, EXPORT_CONTENTS, FORMAT_CONTENTS, ROBOT_FORMATS
+from ...exchange.export.exports import (
+    CONTENTS_BY_FORMAT,
+    DEFAULT_MAX_LOAD_ERROR,
+    EXPORT_CONTENTS,
+    ROBOT_FORMATS,
+)
 from ...exchange.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
 from ..command import CommandResult, SubParsers, declare_argument, declare_command, parse_joint_name
 from ..outputs import declare_output
@@ -22,9 +27,9 @@ from ..outputs import declare_output
 if TYPE_CHECKING:
     from ...exchange.export.writing import ExportedFile
 
-_FORMATS_WITH_FIRST_NUMBER = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
+_FORMATS_WITH_ELEMENT_NUMBERS = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
 """{argument: formats that need this first number together with --nodes}."""
-_FIRST_NUMBER_MEANINGS = {
+_FIRST_FREE_NUMBER_MEANINGS = {
     "first": "a number above all elements of your model",
     "first_set": "a number above all element types and sets of real constants of your model",
 }
@@ -36,8 +41,8 @@ _PRINTED_QUANTITY_UNITS = {"K_": "N/m", "C_": "N.s/m"}
 def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu export` with its options."""
     export = declare_command(command_parsers, "export", _run_export, "write a joint for another solver")
-    with_springs = exports.joints_with_content("springs")
-    forms = [*FORMAT_CONTENTS, *ROBOT_FORMATS]
+    with_springs = exports.find_joints_with_export("springs")
+    forms = [*CONTENTS_BY_FORMAT, *ROBOT_FORMATS]
     export.add_argument("form", choices=forms, metavar="FORMAT", help=f"one of {', '.join(forms)}")
     export.add_argument(
         "what",
@@ -57,7 +62,7 @@ def add_command(command_parsers: SubParsers) -> None:
         help=f"joint with its default parameters (default: {with_springs[0]})",
     )
     for name, texts in _working_point_meanings().items():
-        declare_argument(export, option_flag(name), float, "; ".join(texts))
+        declare_argument(export, format_option_flag(name), float, "; ".join(texts))
     text = "springs: your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a column "
     declare_argument(export, "--nodes", Path, text + "pressure [MPa] replaces the working point", "CSV")
     declare_argument(export, "--first", int, "springs: first free number for elements and nodes (default: 1)")
@@ -67,7 +72,7 @@ def add_command(command_parsers: SubParsers) -> None:
     export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
     text = f"units of the file (default: {SI_UNIT_SET.name})"
     export.add_argument("--units", choices=list(UNIT_SETS), default=SI_UNIT_SET.name, help=text)
-    text = f"tables: largest relative error of linear interpolation (default: {DEFAULT_LOAD_ERROR:g})"
+    text = f"tables: largest relative error of linear interpolation (default: {DEFAULT_MAX_LOAD_ERROR:g})"
     declare_argument(export, "--error", float, text, "E")
     text = f"{', '.join(ROBOT_FORMATS)}: largest torque of the fit [N.m] (default: rated torque)"
     declare_argument(export, "--torque", float, text, "T")
@@ -78,7 +83,7 @@ def _working_point_meanings() -> dict[str, list[str]]:
     """Meanings of all working-point quantities: {name: [meaning for each joint that has the quantity]}."""
     texts: dict[str, list[str]] = {}
     for joint, kind in KINDS.items():
-        for i, (name, text) in enumerate(exports.exports_of(joint).working_point.items()):
+        for i, (name, text) in enumerate(exports.load_exports(joint).working_point.items()):
             texts.setdefault(name, []).append(f"{kind.title}: {text}{' (default: 0)' if i else ''}")
     return texts
 
@@ -89,11 +94,11 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
     if args.what not in EXPORT_CONTENTS:
         choices = ", ".join(map(repr, EXPORT_CONTENTS))
         raise ValueError(f"argument WHAT: invalid choice: {args.what!r} (choose from {choices})")
-    _refuse_options(args, {"torque": f"{args.form}; it is for {', '.join(ROBOT_FORMATS)}"})
-    if args.what not in FORMAT_CONTENTS[args.form]:
+    _refuse_unused_options(args, {"torque": f"{args.form}; it is for {', '.join(ROBOT_FORMATS)}"})
+    if args.what not in CONTENTS_BY_FORMAT[args.form]:
         raise ValueError(
             f"{args.form} {args.what} cannot be written; {args.form} has "
-            f"{', '.join(FORMAT_CONTENTS[args.form])}"
+            f"{', '.join(CONTENTS_BY_FORMAT[args.form])}"
         )
     file = load_parameter_file(args.params) if args.params else load_default(args.joint)
     _check_options(args, file)
@@ -105,13 +110,15 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
         number = f"{value:.6g}" if isinstance(value, float) else value
         lines.append(f"  {name:<24}  {number} {_PRINTED_QUANTITY_UNITS.get(name[:2], '')}".rstrip())
     judgement = _judge_export(args, file).with_warnings([*written.warnings, *warn_missing_members(file)])
-    return CommandResult(document={**facts, **written.facts_by_name}, lines=lines, judgement=judgement)
+    return CommandResult(
+        json_document={**facts, **written.facts_by_name}, lines=lines, stiffness_judgement=judgement
+    )
 
 
 def _export_drive(args: argparse.Namespace) -> CommandResult:
     """Write a drive for a robot simulator; the output lists effects that the format cannot represent."""
     idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_point_meanings())
-    _refuse_options(args, dict.fromkeys(idle, args.form))
+    _refuse_unused_options(args, dict.fromkeys(idle, args.form))
     if args.units != SI_UNIT_SET.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI_UNIT_SET.name}")
     from ...api import load
@@ -122,14 +129,14 @@ def _export_drive(args: argparse.Namespace) -> CommandResult:
         text, lines, facts = format_drive(args.form, make_transmission(load(args.what).file), args.torque)
     write_text(args.out, text)
     return CommandResult(
-        document={"written": str(args.out), "format": args.form, **facts},
+        json_document={"written": str(args.out), "format": args.form, **facts},
         lines=[f"wrote {args.out}: {facts['drive']} for {args.form}", *(f"  {line}" for line in lines)],
     )
 
 
 def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Plausibility:
     """Judge the stiffness at the working point, at the pressures of `--nodes`, or else at a default load."""
-    nominal = nominal_pressure(KINDS[parameter_file.joint])
+    nominal = find_nominal_pressure_model(KINDS[parameter_file.joint])
     load = getattr(args, nominal.load_variable, None) if nominal else None
     if load is None and args.nodes:
         from ...exchange.export.mesh import read_node_pairs
@@ -137,7 +144,7 @@ def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Pl
         mesh = read_node_pairs(args.nodes)
         if mesh.pressure is not None:
             mean = float(mesh.pressure @ mesh.area / mesh.area.sum())
-            return assess_law(
+            return assess_law_stiffness(
                 KINDS[parameter_file.joint].extract_law(parameter_file.values),
                 [mean],
                 find_rms_height(parameter_file),
@@ -151,20 +158,21 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
     from ...exchange.export.mesh import read_node_pairs
 
     units = UNIT_SETS[args.units]
-    error = DEFAULT_LOAD_ERROR if args.error is None else args.error
+    error = DEFAULT_MAX_LOAD_ERROR if args.error is None else args.error
     if args.what == "contact":
         return writing.export_contact(args.form, parameter_file, units, error)
     state = _read_working_point(args, parameter_file.joint)
     if args.what == "curve":
         return writing.export_curve(args.form, parameter_file, state, units, error)
     mesh = read_node_pairs(args.nodes) if args.nodes else None
-    first, text = next(iter(exports.exports_of(parameter_file.joint).working_point.items()), ("", ""))
+    first, text = next(iter(exports.load_exports(parameter_file.joint).working_point.items()), ("", ""))
     if mesh is not None and mesh.pressure is not None and state is not None:
         raise ValueError(
-            f"{mesh.path} states the pressures; leave out {option_flag(first)}, or its column 'pressure'"
+            f"{mesh.path} states the pressures; leave out {format_option_flag(first)}, or its column "
+            "'pressure'"
         )
     if (mesh is None or mesh.pressure is None) and state is None and first:
-        raise ValueError(f"springs need {option_flag(first)}, {text}, or --nodes with a pressure")
+        raise ValueError(f"springs need {format_option_flag(first)}, {text}, or --nodes with a pressure")
     placing = Placement(
         units, args.normal or "z", args.first or 1, args.first_set or 1, has_own_nodes=mesh is None
     )
@@ -173,27 +181,27 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
 
 def _read_working_point(args: argparse.Namespace, joint_name: str) -> Any:
     """Working point of the joint from the options; None if no option states one."""
-    available = exports.exports_of(joint_name)
+    available = exports.load_exports(joint_name)
     values = {name: getattr(args, name) for name in available.working_point}
     if available.working_point_class is None or all(value is None for value in values.values()):
         return None
     return available.working_point_class(**{name: value or 0.0 for name, value in values.items()})
 
 
-def _refuse_options(args: argparse.Namespace, unused_options: Mapping[str, str]) -> None:
+def _refuse_unused_options(args: argparse.Namespace, unused_options: Mapping[str, str]) -> None:
     """Raise ValueError if the user sets an option that has no effect.
 
     unused_options : {option: format or content for which it has no meaning}
     """
     for name, what in unused_options.items():
         if getattr(args, name) is not None:
-            raise ValueError(f"{option_flag(name)} has no effect for {what}")
+            raise ValueError(f"{format_option_flag(name)} has no effect for {what}")
 
 
 def _check_working_point(args: argparse.Namespace, joint_name: str) -> None:
     """Raise ValueError if a working point is set but not used, or if a required one is missing."""
-    used = {} if args.what == "contact" else exports.exports_of(joint_name).working_point
-    _refuse_options(
+    used = {} if args.what == "contact" else exports.load_exports(joint_name).working_point
+    _refuse_unused_options(
         args,
         {
             name: f"the {args.what} of a {joint_name}"
@@ -204,14 +212,14 @@ def _check_working_point(args: argparse.Namespace, joint_name: str) -> None:
     stated = [name for name in used if getattr(args, name) is not None]
     first, text = next(iter(used.items()), ("", ""))
     if stated and first not in stated:
-        raise ValueError(f"{option_flag(stated[0])} needs {option_flag(first)}, {text}")
+        raise ValueError(f"{format_option_flag(stated[0])} needs {format_option_flag(first)}, {text}")
     if args.what == "curve" and first and not stated:
-        raise ValueError(f"the curve of a {joint_name} needs {option_flag(first)}, {text}")
+        raise ValueError(f"the curve of a {joint_name} needs {format_option_flag(first)}, {text}")
 
 
 def _check_options(args: argparse.Namespace, parameter_file: ParameterFile) -> None:
     """Check the options. Raises ValueError if one has no effect, is missing or is out of range."""
-    exports.require_content(parameter_file.joint, args.what)
+    exports.require_export(parameter_file.joint, args.what)
     _check_working_point(args, parameter_file.joint)
     if args.what == "springs":
         idle = {"error": "springs; it is for tables"}
@@ -219,12 +227,12 @@ def _check_options(args: argparse.Namespace, parameter_file: ParameterFile) -> N
         idle = dict.fromkeys(("nodes", "first", "normal"), f"a {args.what}; it is for springs")
     if args.form != "ansys":
         idle["first_set"] = f"{args.form}; it is for ansys"
-    _refuse_options(args, idle)
+    _refuse_unused_options(args, idle)
     for name, highest in (("first", 10_000_000), ("first_set", 100_000)):
-        value, option = getattr(args, name), option_flag(name)
+        value, option = getattr(args, name), format_option_flag(name)
         if value is not None and not 1 <= value <= highest:
             raise ValueError(f"{option} = {value} is outside [1, {highest}]")
-        if value is None and args.nodes is not None and args.form in _FORMATS_WITH_FIRST_NUMBER[name]:
-            raise ValueError(f"--nodes needs {option}, {_FIRST_NUMBER_MEANINGS[name]}")
+        if value is None and args.nodes is not None and args.form in _FORMATS_WITH_ELEMENT_NUMBERS[name]:
+            raise ValueError(f"--nodes needs {option}, {_FIRST_FREE_NUMBER_MEANINGS[name]}")
     if args.form == "modelica" and args.units != SI_UNIT_SET.name:
         raise ValueError(f"--units = {args.units}: a Modelica table is in {SI_UNIT_SET.name}")

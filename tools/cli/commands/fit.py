@@ -12,13 +12,13 @@ from jointfmu.progress import set_status_text
 
 from ...api.make import Fit
 from ...common import columns, plots
-from ...common.options import Option, option_flag
+from ...common.options import Option, format_option_flag
 from ...common.pressure import judge_joint_stiffness
 from ...inputs.drawing.reading import parse_number
 from ...inputs.fitting.outcome import format_deviation
 from ...inputs.fitting.procedure import Procedure, fit_procedures
 from ..command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
-from ..outputs import FORCE_HELP, declare_output
+from ..outputs import FORCE_OPTION_HELP, declare_output
 from . import declare_option
 
 
@@ -31,14 +31,14 @@ def add_command(command_parsers: SubParsers) -> None:
         _declare_procedure(ways, choices)
 
 
-def _declare_procedure(procedure_parsers: SubParsers, choices: Mapping[str, Procedure]) -> None:
+def _declare_procedure(procedure_parsers: SubParsers, procedure_by_joint: Mapping[str, Procedure]) -> None:
     """Declare one procedure with the options of all its joints.
 
     choices : {joint: its procedure of this name}
     """
-    first = next(iter(choices.values()))
-    text = "; ".join(procedure.description for procedure in choices.values())
-    sub = declare_command(procedure_parsers, first.name, partial(_run_fit, choices), f"fit {text}")
+    first = next(iter(procedure_by_joint.values()))
+    text = "; ".join(procedure.description for procedure in procedure_by_joint.values())
+    sub = declare_command(procedure_parsers, first.name, partial(_run_fit, procedure_by_joint), f"fit {text}")
     if first.takes_file:
         many = "+" if first.takes_several_files else None
         declare_argument(
@@ -46,11 +46,11 @@ def _declare_procedure(procedure_parsers: SubParsers, choices: Mapping[str, Proc
         )
     declare_argument(sub, "--params", Path, "parameter file to start from (TOML)")
     declare_argument(sub, "--free", str, "parameters to fit", nargs="+")
-    text = f"{FORCE_HELP}; write the parameter file even if the fit does not determine the joint"
+    text = f"{FORCE_OPTION_HELP}; write the parameter file even if the fit does not determine the joint"
     sub.add_argument("--force", action="store_true", help=text)
     declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
     declare_output(sub, "--plot", PICTURE_FILE, "draw data, law and residuals (.png, .svg)")
-    for option in {option.name: option for p in choices.values() for option in p.options}.values():
+    for option in {option.name: option for p in procedure_by_joint.values() for option in p.options}.values():
         declare_option(sub, option)
 
 
@@ -92,7 +92,7 @@ def _find_joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> s
         return next(iter(choices))
     from ...inputs.fitting.measurement import COLUMN_SYNONYMS
 
-    names = {*columns.read_names(args.file)}
+    names = {*columns.read_column_names(args.file)}
     joints = [
         j
         for j, procedure in choices.items()
@@ -111,7 +111,7 @@ def _find_joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> s
         for option in procedure.options:
             if option.name not in options and getattr(args, option.name) != option.default:
                 raise ValueError(
-                    f"{args.file}: is of a {joints[0]}; {option_flag(option.name)} is allowed with "
+                    f"{args.file}: is of a {joints[0]}; {format_option_flag(option.name)} is allowed with "
                     f"a {other} only"
                 )
     return joints[0]
@@ -135,7 +135,7 @@ def _write_fit(args: argparse.Namespace, fit: Fit) -> CommandResult:
         lines.append(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{ends}{mark}")
     for name, (value, unit, text) in outcome.facts.items():
         lines.append(f"{name:24} {value:.4g} {unit}  {text}")
-    judgement, document = judge_joint_stiffness(outcome.parameters), outcome.document()
+    judgement, document = judge_joint_stiffness(outcome.parameters), outcome.to_json()
     notes = [f"note: {line}" for line in document["warnings"]]
     notes += [f"warning: {line}" for line in judgement.warnings]
     if doubt:
@@ -143,7 +143,7 @@ def _write_fit(args: argparse.Namespace, fit: Fit) -> CommandResult:
         notes.append(f"the fit does not determine the joint: {doubt}{unwritten}")
     document["warnings"] += judgement.warnings
     return CommandResult(
-        document=judgement.to_json() | document | {"doubt": doubt},
+        json_document=judgement.to_json() | document | {"doubt": doubt},
         lines=[*lines, *judgement.format_lines()],
         notes=notes,
         written_files=(None if doubt else args.out, args.plot),

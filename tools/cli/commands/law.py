@@ -11,14 +11,14 @@ from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pre
 from jointfmu.contact.laws import LAWS
 from jointfmu.quantity import flatten_parameters
 
-from ...common.judgement import assess_law
+from ...common.judgement import assess_law_stiffness
 from ...common.shown import align_columns
 from ...inputs.laws import (
     LAW_COLUMN_UNITS,
     LAW_COLUMNS,
     build_law_parameters,
+    find_surface_rms_height,
     joints_with_law,
-    known_surface_height,
     load_law_file,
 )
 from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_settings
@@ -48,14 +48,14 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
     names = [*LAW_COLUMNS, *(name for name in state if name not in LAW_COLUMNS)]
     count = len(args.pressure or args.largest_spot)
     rows = [{n: _finite_entry(state[n], i) if n in state else None for n in names} for i in range(count)]
-    h = known_surface_height(args.law, law, file, dict(args.settings))
-    judgement = assess_law(law, np.ravel(state["pressure"]).tolist(), h)
+    h = find_surface_rms_height(args.law, law, file, dict(args.settings))
+    judgement = assess_law_stiffness(law, np.ravel(state["pressure"]).tolist(), h)
     heads = [f"{name} [{LAW_COLUMN_UNITS[name]}]" for name in names]
     cells = [heads, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
     return CommandResult(
-        document={"law": args.law, "parameters": flatten_parameters(law), "rows": rows},
+        json_document={"law": args.law, "parameters": flatten_parameters(law), "rows": rows},
         lines=align_columns(cells, 0),
-        judgement=judgement,
+        stiffness_judgement=judgement,
     )
 
 

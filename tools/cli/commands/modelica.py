@@ -9,7 +9,7 @@ from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile, load_parameter_file
 
 from ...common.judgement import Plausibility
-from ...common.options import option_flag, require_package
+from ...common.options import format_option_flag, require_package
 from ...common.pressure import judge_joint_stiffness, warn_missing_members
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
@@ -23,9 +23,9 @@ def add_command(command_parsers: SubParsers) -> None:
     declare_argument(make, "--params", Path, "parameter file of one joint, in place of its default (TOML)")
     for name, kinds in _working_point_inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
-        text = "; ".join(f"{kind.title}: {_input_meaning(kind, name)}" for kind in kinds)
+        text = "; ".join(f"{kind.title}: {_describe_input(kind, name)}" for kind in kinds)
         text += "" if first else " (default: 0)"
-        declare_argument(make, option_flag(name), float, text, nargs="+" if first else None)
+        declare_argument(make, format_option_flag(name), float, text, nargs="+" if first else None)
     declare_output(make, "--out", OUTPUT_FOLDER, "folder to write", default=Path("dist"))
 
 
@@ -35,15 +35,15 @@ def _run_modelica(args: argparse.Namespace) -> CommandResult:
     with require_package("write the library"):
         from ...exchange.modelica import library
 
-        written = library.write_library(args.out, file, points, force=args.force)
+        written = library.write_library(args.out, file, points, overwrite=args.force)
     return CommandResult(
-        document={"written": [str(path) for path in written]},
+        json_document={"written": [str(path) for path in written]},
         lines=[f"wrote {args.out / library.LIBRARY_NAME}: {len(written)} files"],
-        judgement=_judge_working_points(file, points) if file else None,
+        stiffness_judgement=_judge_working_point_stiffness(file, points) if file else None,
     )
 
 
-def _judge_working_points(
+def _judge_working_point_stiffness(
     parameter_file: ParameterFile, working_points: dict[str, list[tuple[float, ...]]]
 ) -> Plausibility:
     """Judge the stiffness of the user's joint at its working points."""
@@ -59,21 +59,21 @@ def _working_point_inputs() -> dict[str, list[JointKind]]:
     return {name: [kind for kind in KINDS.values() if name in kind.working_point] for name in names}
 
 
-def _input_meaning(kind: JointKind, input_name: str) -> str:
-    variable = kind.variables[input_name]
+def _describe_input(joint_kind: JointKind, input_name: str) -> str:
+    variable = joint_kind.variables[input_name]
     return f"{variable.doc} [{variable.unit}]"
 
 
-def _read_working_points(kind: JointKind, args: argparse.Namespace) -> list[tuple[float, ...]]:
+def _read_working_points(joint_kind: JointKind, args: argparse.Namespace) -> list[tuple[float, ...]]:
     """Read the working points of a joint: one for each value of its first input.
 
     Each point has the same values of the other inputs; an input that is not set is zero. Raises ValueError
     if another input is set but not the first.
     """
-    first, *others = kind.working_point
+    first, *others = joint_kind.working_point
     stated = {name: getattr(args, name) for name in others if getattr(args, name) is not None}
     values: list[float] = getattr(args, first) or []
     if stated and not values:
-        needed = f"{option_flag(first)}, the {_input_meaning(kind, first)}"
-        raise ValueError(f"{option_flag(next(iter(stated)))} needs {needed}")
+        needed = f"{format_option_flag(first)}, the {_describe_input(joint_kind, first)}"
+        raise ValueError(f"{format_option_flag(next(iter(stated)))} needs {needed}")
     return [(value, *(stated.get(name, 0.0) for name in others)) for value in values]

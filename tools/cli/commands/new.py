@@ -18,10 +18,10 @@ from ...api.joint import Joint
 from ...api.make import make_from_drawing
 from ...common.joint_parts import load_tool_module
 from ...common.pressure import judge_joint_stiffness
-from ...common.shown import align_columns, fact_document, format_facts
+from ...common.shown import align_columns, facts_to_json, format_facts
 from ...inputs.catalogue import CatalogueColumn, CatalogueEntry
 from ...inputs.drawing.part import NewJointCommand
-from ...joints.harmonic_drive.catalogue import COLUMNS, list_drives
+from ...joints.harmonic_drive.catalogue import CATALOGUE_COLUMNS, list_drives
 from ..command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
 from ..outputs import declare_output
 from . import declare_option
@@ -63,7 +63,7 @@ def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> Comman
     judgement = judge_joint_stiffness(joint.file).with_warnings(joint.notes)
     end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
     return CommandResult(
-        document=_joint_document(joint)
+        json_document=_joint_to_json(joint)
         | judgement.to_json()
         | {"written": [str(args.out)] if args.out else []},
         lines=[*format_facts(joint.facts), *judgement.format_lines(), end],
@@ -71,14 +71,14 @@ def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> Comman
     )
 
 
-def _joint_document(joint: Joint) -> dict[str, object]:
+def _joint_to_json(joint: Joint) -> dict[str, object]:
     return {
         "joint": joint.file.joint,
         "law": joint.file.law,
         "name": joint.file.name,
         "parameters": joint.file.values_by_name,
         "inputs": joint.file.inputs,
-        "facts": fact_document(joint.facts),
+        "facts": facts_to_json(joint.facts),
     }
 
 
@@ -88,7 +88,7 @@ def _run_table(
     """Print a table: bolts, materials or finishes."""
     content = list(iterate_rows())
     cells = [[*content[0]], *([_format_cell(cell) for cell in row.values()] for row in content)]
-    return CommandResult(document=content, lines=align_columns(cells))
+    return CommandResult(json_document=content, lines=align_columns(cells))
 
 
 def _format_cell(value: object) -> str:
@@ -129,7 +129,7 @@ def _iterate_table_rows(
         yield {"name": row.name, **numbers, **also}
 
 
-def _iterate_bolt_rows() -> Iterator[dict[str, object]]:
+def _iterate_bolt_table_rows() -> Iterator[dict[str, object]]:
     from ...inputs.drawing.tables import property_class_strength, read_property_classes, read_threads
     from ...inputs.drawing.vdi2230 import assembly_preload, stress_area
 
@@ -154,12 +154,12 @@ def _iterate_bolt_rows() -> Iterator[dict[str, object]]:
 PRINTED_TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
     "materials": partial(_iterate_table_rows, "materials", _MATERIAL_COLUMNS, "{E.source}; H: {H.source}"),
     "finishes": partial(_iterate_table_rows, "finishes", _FINISH_COLUMNS, "{Ra_low.source}"),
-    "bolts": _iterate_bolt_rows,
+    "bolts": _iterate_bolt_table_rows,
 }
 """{name of a table: function that yields its rows}."""
 
 
-def add_catalogue(command_parsers: SubParsers) -> None:
+def add_catalogue_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu catalogue` with its options."""
     sub = declare_command(
         command_parsers, "catalogue", _run_catalogue, "list the bought joints that jointfmu new knows"
@@ -174,14 +174,15 @@ def _run_catalogue(args: argparse.Namespace) -> CommandResult:
     if not found:
         word = " ".join(args.words)
         raise ValueError(f"no drive in the catalogue has {word!r} in its name (jointfmu catalogue)")
-    lines = [f"{'harmonic-drive':13}  {'  '.join(map(_format_heading, COLUMNS))}"]
+    lines = [f"{'harmonic-drive':13}  {'  '.join(map(_format_heading, CATALOGUE_COLUMNS))}"]
     for item in found:
-        lines.append(
-            f"{item.name:13}  {'  '.join(_format_number(item, column) for column in COLUMNS)}".rstrip()
-        )
+        numbers = "  ".join(_format_number(item, column) for column in CATALOGUE_COLUMNS)
+        lines.append(f"{item.name:13}  {numbers}".rstrip())
     if any(number.kind == "estimate" for item in found for number in item.numbers.values()):
         lines.append("~ is an estimate, < an upper limit; --json has the source of each number")
-    return CommandResult(document=[_entry_document(COLUMNS, item) for item in found], lines=lines)
+    return CommandResult(
+        json_document=[_entry_to_json(CATALOGUE_COLUMNS, item) for item in found], lines=lines
+    )
 
 
 def _contains_words(words: Sequence[str], entry_name: str) -> bool:
@@ -205,7 +206,7 @@ def _format_number(entry: CatalogueEntry, column: CatalogueColumn) -> str:
     )
 
 
-def _entry_document(columns: Sequence[CatalogueColumn], entry: CatalogueEntry) -> dict[str, Any]:
+def _entry_to_json(columns: Sequence[CatalogueColumn], entry: CatalogueEntry) -> dict[str, Any]:
     """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
     units = {column.name: column.unit for column in columns}
     numbers = {name: number._asdict() | {"unit": units[name]} for name, number in entry.numbers.items()}

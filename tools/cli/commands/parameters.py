@@ -10,7 +10,7 @@ from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
 from jointfmu.contact.roughness import HEIGHT_FIELDS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
-from jointfmu.quantity import flat_fields, flatten_parameters
+from jointfmu.quantity import flatten_fields, flatten_parameters
 
 from ...common.shown import align_columns
 from ...inputs.laws import build_law_parameters, load_law_file
@@ -41,7 +41,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
         values = flatten_parameters(
             build_law_parameters(name, load_law_file(args.params, name) if args.params else None, {})
         )
-        fields = dict(flat_fields(LAWS[name], parameter_names=values))
+        fields = dict(flatten_fields(LAWS[name], parameter_names=values))
         if name == ROUGHNESS_LAW:
             fields |= {stated: field for stated, field in HEIGHT_FIELDS.items() if stated not in fields}
         head = {"name": name, "law": name}
@@ -52,11 +52,12 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
             known = MODELS[name].with_parameters(file.joint, file.values).parameter_fields()
             fields = {stated: field for stated, field in known.items() if stated in values}
         else:
-            fields = dict(flat_fields(type(file.values), parameter_names=values))
+            fields = dict(flatten_fields(type(file.values), parameter_names=values))
         head = {"name": name, "joint": file.joint, "law": file.law}
-    rows = [_parameter_document(stated, field, values.get(stated)) for stated, field in fields.items()]
+    rows = [_parameter_to_json(stated, field, values.get(stated)) for stated, field in fields.items()]
     return CommandResult(
-        document={**head, "parameters": rows}, lines=align_columns([_TABLE_HEAD, *map(_format_row, rows)])
+        json_document={**head, "parameters": rows},
+        lines=align_columns([_TABLE_HEAD, *map(_format_row, rows)]),
     )
 
 
@@ -72,7 +73,7 @@ def _load_joint_file(fmu_or_joint_name: str, args: argparse.Namespace) -> Parame
     return load_default(joint, args.law)
 
 
-def _parameter_document(parameter_name: str, parameter_field: Field[Any], value: Any) -> dict[str, Any]:
+def _parameter_to_json(parameter_name: str, parameter_field: Field[Any], value: Any) -> dict[str, Any]:
     """JSON object of one parameter: name, meaning, default, unit, lower and upper limit, allowed values."""
     meta = parameter_field.metadata
     row = {"name": parameter_name, "meaning": meta["doc"], "default": value}

@@ -15,7 +15,7 @@ from ...fem import require_fem_packages
 from ...joints.bolted_joint.frequencies import compare_natural_frequencies
 from ...run.proof import listing, report
 from ...run.proof.importers import IMPORTERS
-from ...run.proof.run import ExpectedContents, prove
+from ...run.proof.run import ExpectedFmuContents, prove
 from ...studies.published import validation
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
@@ -46,7 +46,7 @@ def _run_prove(args: argparse.Namespace) -> CommandResult:
     )
     listed = {"listing": [str(folder) for folder in folders]} if args.listing else {}
     return CommandResult(
-        document=report.build_document(proof) | listed,
+        json_document=report.proof_to_json(proof) | listed,
         lines=report.format_lines(proof),
         notes=["the listing is not written: not all experiments passed"]
         if args.listing and not folders
@@ -56,7 +56,7 @@ def _run_prove(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedContents:
+def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedFmuContents:
     """Compute start values and reference results from a parameter file, without building its FMU.
 
     Raises ValueError if the FMU does not have the inputs and outputs of an FMU of the file's joint.
@@ -73,12 +73,12 @@ def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedContents:
             described = model.with_parameters(file.joint, file.values)
             starts = {name: file.values_by_name[name] for name in described.parameter_fields()}
             starts |= {v.name: file.start_value(v.name) for v in described.inputs}
-            return ExpectedContents(str(path), starts, make_proof_files(described, file))
+            return ExpectedFmuContents(str(path), starts, make_proof_files(described, file))
     models = ", ".join(model.name for model in KINDS[file.joint].models)
     raise ValueError(f"{fmu}: does not have the variables of {models}, the FMUs of {path}")
 
 
-def add_validate(command_parsers: SubParsers) -> None:
+def add_validate_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu validate` with its options."""
     sub = declare_command(
         command_parsers, "validate", _run_validate, "compare computed results with all published numbers"
@@ -95,7 +95,7 @@ def _run_validate(args: argparse.Namespace) -> CommandResult:
     misses = validation.missed_points(rows)
     counts = asdict(validation.count_points(rows))
     return CommandResult(
-        document={"rows": [row.to_json() for row in rows], "counts": counts, "missed": len(misses)},
+        json_document={"rows": [row.to_json() for row in rows], "counts": counts, "missed": len(misses)},
         lines=[validation.format_table(rows), validation.format_summary(rows)],
         exit_status=int(bool(misses)),
     )

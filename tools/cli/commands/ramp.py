@@ -13,7 +13,7 @@ from jointfmu.files.outputs import PICTURE_FILE
 from jointfmu.files.writing import write_text
 
 from ...common import columns, plots
-from ...common.options import option_flag
+from ...common.options import format_option_flag
 from ...common.shown import align_columns
 from ...run.ramps import loops, ramp
 from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_settings
@@ -43,9 +43,11 @@ def add_command(command_parsers: SubParsers) -> None:
     drive.add_argument(
         "--shape", choices=loops.WAVEFORMS, help=f"cycles: shape over time (default: {loops.WAVEFORMS[0]})"
     )
-    declare_argument(drive, "--points", int, f"cycles: points per cycle (default: {loops.DEFAULT_POINTS})")
     declare_argument(
-        drive, "--cycles", int, f"cycles: number per amplitude (default: {loops.DEFAULT_CYCLES})"
+        drive, "--points", int, f"cycles: points per cycle (default: {loops.DEFAULT_POINTS_PER_CYCLE})"
+    )
+    declare_argument(
+        drive, "--cycles", int, f"cycles: number per amplitude (default: {loops.DEFAULT_CYCLE_COUNT})"
     )
     declare_argument(drive, "--output", str, "cycles: force or motion conjugate to the input")
     declare_argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
@@ -63,12 +65,12 @@ def _run_command(args: argparse.Namespace) -> CommandResult:
     )
     if args.loop and ramp_options:
         raise ValueError(
-            f"--loop and {option_flag(ramp_options[0])} are both given; state either --loop, or --to "
+            f"--loop and {format_option_flag(ramp_options[0])} are both given; state either --loop, or --to "
             "with --step"
         )
     if not args.loop and loop_options:
         raise ValueError(
-            f"{option_flag(loop_options[0])} is for load cycles; state --loop too, or leave it out"
+            f"{format_option_flag(loop_options[0])} is for load cycles; state --loop too, or leave it out"
         )
     if not args.loop and len(ramp_options) < len(RAMP_OPTIONS):
         raise ValueError("the load is missing; state --to with --step, or --loop")
@@ -91,9 +93,9 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
     columns = {name: column.tolist() for name, column in result.columns.items()}
     lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
     if not lines and not args.json:
-        lines = _format_points(result) if sys.stdout.isatty() else [result.format_csv()[:-1]]
+        lines = _format_ramp_points(result) if sys.stdout.isatty() else [result.format_csv()[:-1]]
     return CommandResult(
-        document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines
+        json_document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines
     )
 
 
@@ -113,7 +115,7 @@ def _select_columns(
     )
 
 
-def _format_points(ramp_result: ramp.RampResult) -> list[str]:
+def _format_ramp_points(ramp_result: ramp.RampResult) -> list[str]:
     """Format up to MAX_PRINTED_ROWS points of a ramp, first and last included, in display units."""
     count = next(iter(ramp_result.columns.values())).size
     indices = np.unique(np.linspace(0, count - 1, min(count, MAX_PRINTED_ROWS)).round().astype(int))
@@ -158,30 +160,36 @@ def _run_loops(args: argparse.Namespace) -> CommandResult:
         with plots.open_figure(args.plot, (11.4, 3.8)) as figure:
             _draw_loops(figure, found, swing)
     lines, written = found.format_table().splitlines(), (args.csv, args.plot)
-    return CommandResult(document=_loops_document(args.fmu, found), lines=lines, written_files=written)
+    return CommandResult(json_document=_loops_to_json(args.fmu, found), lines=lines, written_files=written)
 
 
-def _loops_document(fmu: Path, hysteresis: loops.HysteresisLoops) -> dict[str, object]:
+def _loops_to_json(fmu: Path, hysteresis_loops: loops.HysteresisLoops) -> dict[str, object]:
     """JSON object of load cycles. Forces act on the joint and are positive in the direction of motion."""
-    rows = hysteresis.compute_loop_results()
-    for row, loop in zip(rows, hysteresis.loops, strict=True):
+    rows = hysteresis_loops.compute_loop_results()
+    for row, loop in zip(rows, hysteresis_loops.loops, strict=True):
         row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.cycle_start}
-    names = {"motion": hysteresis.motion_name, "force": hysteresis.force_name, "sign": hysteresis.force_sign}
+    names = {
+        "motion": hysteresis_loops.motion_name,
+        "force": hysteresis_loops.force_name,
+        "sign": hysteresis_loops.force_sign,
+    }
     return {
         "fmu": str(fmu),
         **names,
-        "units": dict(zip(("motion", "force"), hysteresis.units, strict=True)),
+        "units": dict(zip(("motion", "force"), hysteresis_loops.units, strict=True)),
         "rows": rows,
     }
 
 
-def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, cyclic_path: loops.CyclicPath) -> None:
+def _draw_loops(
+    figure: "Figure", hysteresis_loops: loops.HysteresisLoops, cyclic_path: loops.CyclicPath
+) -> None:
     """Draw hysteresis loops with first loading and end points; energy loss and stiffness over amplitude."""
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
-    cycles = sorted(hysteresis.loops, key=lambda loop: loop.amplitudes[0])
+    cycles = sorted(hysteresis_loops.loops, key=lambda loop: loop.amplitudes[0])
     (motion, x_size), (force, y_size) = (
         plots.choose_unit(unit, np.concatenate([getattr(loop, name) for loop in cycles]))
-        for unit, name in zip(hysteresis.units, ("motion", "force"), strict=True)
+        for unit, name in zip(hysteresis_loops.units, ("motion", "force"), strict=True)
     )
     for loop in cycles:
         x, y = x_size * loop.motion[loop.cycle_start :], y_size * loop.force[loop.cycle_start :]
@@ -190,14 +198,16 @@ def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, cyclic_path
     left.plot(x_size * cycles[-1].motion[first], y_size * cycles[-1].force[first], "--", color=plots.RED)
     ends = np.array([(x_size * loop.motion[-1], y_size * loop.force[-1]) for loop in cycles])
     left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
-    left.set_xlabel(f"{hysteresis.motion_name} [{motion}]")
-    left.set_ylabel(f"{'-' if hysteresis.force_sign < 0.0 else ''}{hysteresis.force_name} [{force}]")
+    left.set_xlabel(f"{hysteresis_loops.motion_name} [{motion}]")
+    left.set_ylabel(
+        f"{'-' if hysteresis_loops.force_sign < 0.0 else ''}{hysteresis_loops.force_name} [{force}]"
+    )
     left.legend(loc="lower right")
     rows = [loop.compute_results() for loop in cycles]
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
     )
-    unit, size = plots.choose_unit(hysteresis.result_units["secant_stiffness"], stiffness)
+    unit, size = plots.choose_unit(hysteresis_loops.result_units["secant_stiffness"], stiffness)
     for axes, y, label in (
         (middle, loss, "energy loss per cycle [J]"),
         (right, size * stiffness, f"secant stiffness [{unit}]"),

@@ -27,4 +27,4 @@ def _run_report(args: argparse.Namespace) -> CommandResult:
     if out.suffix != ".html":
         raise ValueError(f"--out {out} has the suffix {out.suffix!r}, allowed is .html")
     joint.report(out, args.fmu, force=args.force)
-    return CommandResult(document={"report": str(out)}, written_files=[out])
+    return CommandResult(json_document={"report": str(out)}, written_files=[out])

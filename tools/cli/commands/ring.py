@@ -47,7 +47,7 @@ def _run_ring(args: argparse.Namespace) -> CommandResult:
         from ...systems import ringing
     example = ringing.find_vibrating_joint(load_system(args.system), args.joint)
     _check_arguments(args, example.inertia_unit)
-    for name in (example.fmu_name, example.test.body_model):
+    for name in (example.fmu_name, example.vibration_test.body_model):
         if not (args.fmus / f"{name}.fmu").is_file():
             raise ValueError(
                 f"--fmus {args.fmus}: has no {name}.fmu; `jointfmu system {args.system}` writes it"
@@ -64,14 +64,14 @@ def _run_ring(args: argparse.Namespace) -> CommandResult:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ...pages.report.systems import RESONANCE_SIZE, resonance_panels
+        from ...pages.report.systems import RESONANCE_FIGURE_SIZE, resonance_panels
 
-        save_panels(args.plot, resonance_panels(points, example, args.fmus), RESONANCE_SIZE)
+        save_panels(args.plot, resonance_panels(points, example, args.fmus), RESONANCE_FIGURE_SIZE)
     misses = [line for point in points for line in point.list_deviations]
     for line in misses:
         print(f"missed: {line}", file=sys.stderr)
     return CommandResult(
-        document={"system": args.system, "rows": rows, "missed": len(misses)},
+        json_document={"system": args.system, "rows": rows, "missed": len(misses)},
         lines=table.splitlines(),
         written_files=(args.csv, args.plot),
         exit_status=int(bool(misses)),
@@ -96,20 +96,20 @@ def _run_decays(args: argparse.Namespace, joint: Any) -> CommandResult:
         "damping_ratio": "1",
         "loop_damping_ratio": "1",
     }
-    values = [np.concatenate(column) for column in zip(*map(_decay_columns, points), strict=True)]
+    values = [np.concatenate(column) for column in zip(*map(_collect_decay_columns, points), strict=True)]
     table = columns.format_table(list(heads.items()), values, digits=6)
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ...pages.report.systems import DECAY_SIZE, decay_panels
+        from ...pages.report.systems import DECAY_FIGURE_SIZE, decay_panels
 
-        save_panels(args.plot, decay_panels(points, body), DECAY_SIZE)
+        save_panels(args.plot, decay_panels(points, body), DECAY_FIGURE_SIZE)
     rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
     document, written = {"system": args.system, "rows": rows}, (args.csv, args.plot)
-    return CommandResult(document=document, lines=table.splitlines(), written_files=written)
+    return CommandResult(json_document=document, lines=table.splitlines(), written_files=written)
 
 
-def _decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
+def _collect_decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
     """Columns of a free decay: load, amplitude, frequencies [Hz], damping ratios [1].
 
     Frequency and damping ratio are stated twice: measured in the simulated decay, and computed from the

@@ -55,11 +55,14 @@ def add_command(command_parsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> CommandResult:
     """Run the command `jointfmu robot`."""
-    names, angles = _parse_pairs(args.drive, "--drive", "NAME"), _parse_pairs(args.pose, "--pose", "ANGLE")
+    names, angles = (
+        _parse_joint_values(args.drive, "--drive", "NAME"),
+        _parse_joint_values(args.pose, "--pose", "ANGLE"),
+    )
     if not 0.0 <= args.payload <= MAX_PAYLOAD:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MAX_PAYLOAD:g}] kg")
     pictures = args.out / "frequencies.png", args.out / "payload.png"
-    plots.check_picture(pictures[0])
+    plots.check_picture_path(pictures[0])
     check_outputs(pictures, PICTURE_FILE, args.force)
     written = args.out / f"{args.robot.stem}_elastic.xml"
     models = [written, *([args.out / f"{args.robot.stem}_plugin.xml"] if args.plugin else [])]
@@ -91,14 +94,14 @@ def run(args: argparse.Namespace) -> CommandResult:
     model = spec.compile()
     pose, tip = elastic.joint_positions(model, angles), elastic.find_body(model, args.tip, axes)
     made = elastic.add_drives(spec, axes)
-    elastic.make_folders_absolute(made, args.robot)
+    elastic.make_mesh_folders_absolute(made, args.robot)
     made.compile()
     write_text(written, f"<!-- {PROGRAM_MARK} -->\n{made.to_xml()}")
-    grid, found = drawn.sweep_frequencies(model, axes, pose, args.payload, tip)
+    grid, found = drawn.compute_frequencies_over_grid(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
         pose = drawn.find_worst_pose(model, axes, pose, grid, args.payload, tip)
-    wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
+    wound, sunk = drawn.draw_deflection_over_payload(pictures[1], model, axes, pose, args.payload, tip)
     more = []
     with require_package("compile", "mujoco"):
         if args.plugin:
@@ -151,17 +154,20 @@ def run(args: argparse.Namespace) -> CommandResult:
         "longest_step": longest,
         "notes": notes,
     }
-    return CommandResult(document=facts, lines=_format_results(facts, model))
+    return CommandResult(json_document=facts, lines=_format_results(facts, model))
 
 
-def _write_robot_with_plugins(args: argparse.Namespace, spec: Any, axes: Any, drive_files: Any) -> list[Path]:
+def _write_robot_with_plugins(
+    args: argparse.Namespace, robot_spec: Any, axes: Any, drive_files: Any
+) -> list[Path]:
     """Write the robot with MuJoCo plugins, and compile the plugins; returns the paths."""
     from ...exchange.robots import elastic, plugin_robot
 
-    elastic.make_folders_absolute(spec, args.robot)
+    elastic.make_mesh_folders_absolute(robot_spec, args.robot)
     written = args.out / f"{args.robot.stem}_plugin.xml"
     write_text(
-        written, f"<!-- {PROGRAM_MARK} -->\n{plugin_robot.format_robot_with_plugins(spec, axes, drive_files)}"
+        written,
+        f"<!-- {PROGRAM_MARK} -->\n{plugin_robot.format_robot_with_plugins(robot_spec, axes, drive_files)}",
     )
     return [written, *plugin_robot.compile_plugins(drive_files, args.out).values()]
 
@@ -189,7 +195,7 @@ def _write_axes_system(
             args.robot.stem, model, axes, drive_files, pose, args.payload, tip_body_index
         ),
     )
-    return [written, *build_system(assemble_system(read_system(written)), args.out, force=args.force)]
+    return [written, *build_system(assemble_system(read_system(written)), args.out, overwrite=args.force)]
 
 
 def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
@@ -215,7 +221,7 @@ def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
     ]
 
 
-def _parse_pairs(words: Sequence[str], option_name: str, value_name: str) -> dict[str, str]:
+def _parse_joint_values(words: Sequence[str], option_name: str, value_name: str) -> dict[str, str]:
     """Parse JOINT=VALUE words into {joint: text}. Raises ValueError for a wrong word or a repeated joint."""
     pairs: dict[str, str] = {}
     for word in words:

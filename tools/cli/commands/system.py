@@ -56,9 +56,9 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
             from ...systems.fmu.build import build_system, fmu_paths
 
             check_outputs(fmu_paths(whole.make_model().title, args.out), ARCHIVE_FILE, args.force)
-        built = ssp.build_systems(args.out, [described], force=args.force)
+        built = ssp.build_systems(args.out, [described], overwrite=args.force)
         if whole:
-            built += build_system(whole, args.out, force=args.force)
+            built += build_system(whole, args.out, overwrite=args.force)
     write_text(written, model)
     paths = [*built, written]
     if args.csv or args.plot:
@@ -66,7 +66,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
         from ...systems import cosimulation
 
         try:
-            run = cosimulation.simulate(described, args.out / "fmi2")
+            run = cosimulation.simulate_system(described, args.out / "fmi2")
         except ValueError as error:
             text = f"experiment.interval = {described.interval:g} s may be too long"
             raise ValueError(f"{error}; {text}") from None
@@ -81,7 +81,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
     notes = [f"warning: {text}" for text in (_warn_long_step(described, *step),) if text]
     texts = [str(path) for path in paths]
     document = {"system": described.name, "built": texts, "longest_step": step[0], "notes": notes}
-    return CommandResult(document=document, lines=[f"built {path}" for path in texts], notes=notes)
+    return CommandResult(json_document=document, lines=[f"built {path}" for path in texts], notes=notes)
 
 
 def _warn_long_step(system: System, largest_step: float, joint_name: str) -> str:

@@ -13,7 +13,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...common import columns
-from ...common.options import option_flag
+from ...common.options import format_option_flag
 from ...common.pressure import judge_joint_stiffness
 from ..command import (
     CommandResult,
@@ -27,7 +27,7 @@ from ..command import (
 from ..outputs import declare_output
 
 if TYPE_CHECKING:
-    from ...studies.uncertainty.problem import Problem
+    from ...studies.uncertainty.problem import UncertaintyProblem
     from ...studies.uncertainty.runs import Execution, SampledOutputs
 
 DISTRIBUTIONS_HELP = (
@@ -39,9 +39,9 @@ DISTRIBUTIONS_HELP = (
 """Help text on the distributions of `--set`."""
 
 
-JOINT_SAMPLES, FMU_SAMPLES, RAMP_POINTS = 16384, 256, 201
+DEFAULT_JOINT_SAMPLE_COUNT, DEFAULT_FMU_SAMPLE_COUNT, DEFAULT_RAMP_POINT_COUNT = 16384, 256, 201
 """Default number of samples of a joint and of an FMU, and of points of a joint's ramp."""
-DEPRECATED_SWEEP = (
+SWEEP_DEPRECATION_NOTE = (
     "jointfmu sweep: deprecated, and removed in the next major version; use jointfmu uncertainty FMU"
 )
 
@@ -54,9 +54,11 @@ def add_command(command_parsers: SubParsers) -> None:
     joints = f"one of {', '.join(KINDS)}, or the path of an FMU"
     declare_argument(study, "subject", str, joints, "JOINT|FMU", nargs="?")
     declare_argument(study, "--params", Path, "parameter file of the joint (TOML)")
-    _declare_sampling(study, f"default: {JOINT_SAMPLES}; of an FMU: {FMU_SAMPLES}")
+    _declare_sampling(study, f"default: {DEFAULT_JOINT_SAMPLE_COUNT}; of an FMU: {DEFAULT_FMU_SAMPLE_COUNT}")
     declare_argument(study, "--to", float, "last value of the load ramp (SI)")
-    declare_argument(study, "--points", int, f"number of points of a joint's ramp (default: {RAMP_POINTS})")
+    declare_argument(
+        study, "--points", int, f"number of points of a joint's ramp (default: {DEFAULT_RAMP_POINT_COUNT})"
+    )
     declare_argument(study, "--input", str, "input of the FMU to vary")
     declare_argument(study, "--step", float, "step of the ramp of an FMU (SI)")
     declare_output(study, "--csv", columns.TABLE_FILE_KIND, "write the bands to a file")
@@ -76,27 +78,29 @@ def _declare_sampling(parser: Parser, defaults: str) -> None:
 
 def _declare_execution(parser: Parser, folder_help: str, **options: Any) -> None:
     """Declare the options for the folder of the runs, and where they are done."""
-    declare_output(parser, "--out", OUTPUT_FOLDER, folder_help, allow_force=False, **options)
+    declare_output(parser, "--out", OUTPUT_FOLDER, folder_help, allow_overwrite=False, **options)
     workers = parser.add_mutually_exclusive_group()
     declare_argument(workers, "--scheduler", str, "dask scheduler of a cluster, tls://HOST:PORT", "ADDRESS")
     declare_argument(workers, "--workers", int, "largest number of local processes (default: one per core)")
 
 
-def load_stated_file(joint_name: str | None, params: Path | None) -> ParameterFile:
+def load_parameter_file_option(joint_name: str | None, params: Path | None) -> ParameterFile:
     """Load the parameter file of `--params`, or the default of JOINT; ValueError if both are missing."""
     if params is None and joint_name is None:
         raise ValueError(f"JOINT or --params FILE is missing; JOINT is one of {', '.join(KINDS)}")
     return load_parameter_file(params, joint_name) if params else load_default(str(joint_name))
 
 
-def _is_fmu(subject: str | None) -> bool:
+def _is_fmu(joint_or_fmu: str | None) -> bool:
     """Whether the positional argument is the path of an FMU; ValueError if it is neither FMU nor joint."""
-    if subject is None or subject in KINDS:
+    if joint_or_fmu is None or joint_or_fmu in KINDS:
         return False
-    if subject.lower().endswith(".fmu") or Path(subject).exists():
+    if joint_or_fmu.lower().endswith(".fmu") or Path(joint_or_fmu).exists():
         return True
     allowed = f"{', '.join(KINDS)}, or the path of an FMU"
-    raise ValueError(f"unknown joint {subject!r}, allowed are {allowed}{suggest_word(subject, KINDS)}")
+    raise ValueError(
+        f"unknown joint {joint_or_fmu!r}, allowed are {allowed}{suggest_word(joint_or_fmu, KINDS)}"
+    )
 
 
 def _check_options(args: argparse.Namespace, is_fmu: bool) -> None:
@@ -104,9 +108,9 @@ def _check_options(args: argparse.Namespace, is_fmu: bool) -> None:
     subject = "an FMU" if is_fmu else "a joint"
     for name in ("params", "points") if is_fmu else ("input", "step"):
         if getattr(args, name) is not None:
-            raise ValueError(f"{option_flag(name)} does not apply to {subject}; leave it out")
+            raise ValueError(f"{format_option_flag(name)} does not apply to {subject}; leave it out")
     if missing := [name for name in ("input", "to", "step") if is_fmu and getattr(args, name) is None]:
-        raise ValueError(f"{option_flag(missing[0])} is missing, needed for {subject}")
+        raise ValueError(f"{format_option_flag(missing[0])} is missing, needed for {subject}")
 
 
 def _sample_count(args: argparse.Namespace, default: int) -> int:
@@ -117,7 +121,7 @@ def _sample_count(args: argparse.Namespace, default: int) -> int:
     return study.round_up_to_power_of_two(default if args.samples is None else args.samples)
 
 
-def _execution(args: argparse.Namespace) -> "Execution":
+def _make_execution(args: argparse.Namespace) -> "Execution":
     from ...studies.uncertainty.runs import Execution
 
     if args.workers is not None and args.workers < 1:
@@ -126,7 +130,9 @@ def _execution(args: argparse.Namespace) -> "Execution":
 
 
 @contextmanager
-def _study_folder(problem: "Problem", count: int, seed: int, out: Path | None) -> Iterator[None]:
+def _open_study_folder(
+    uncertainty_problem: "UncertaintyProblem", sample_count: int, seed: int, out: Path | None
+) -> Iterator[None]:
     """Context manager: claim the folder that keeps the runs of a study; without a folder do nothing."""
     from ...studies.uncertainty import journal
 
@@ -134,14 +140,14 @@ def _study_folder(problem: "Problem", count: int, seed: int, out: Path | None) -
         yield
         return
     try:
-        with journal.claimed_folder(out, problem.study_record(count, seed)):
+        with journal.open_claimed_folder(out, uncertainty_problem.study_record(sample_count, seed)):
             yield
     except KeyboardInterrupt:
         text = f"finished runs are kept in {out}, the same command resumes"
         raise KeyboardInterrupt(text) from None
 
 
-def _state_fmu(args: argparse.Namespace, fmu: Path) -> "Problem":
+def _state_study_of_fmu(args: argparse.Namespace, fmu: Path) -> "UncertaintyProblem":
     from ...studies.uncertainty import study
     from ...studies.uncertainty.sweep import state_fmu_problem
     from ...studies.uncertainty.worker import LoadRamp
@@ -157,22 +163,22 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
 
     is_fmu = _is_fmu(args.subject)
     _check_options(args, is_fmu)
-    execution = _execution(args)
-    count = _sample_count(args, FMU_SAMPLES if is_fmu else JOINT_SAMPLES)
+    execution = _make_execution(args)
+    count = _sample_count(args, DEFAULT_FMU_SAMPLE_COUNT if is_fmu else DEFAULT_JOINT_SAMPLE_COUNT)
     judgement = None
     if is_fmu:
-        task = _state_fmu(args, Path(args.subject))
+        task = _state_study_of_fmu(args, Path(args.subject))
         A = study.unit_cube_points(count, len(task.uncertain_parameters), args.seed)
     else:
-        file = load_stated_file(args.subject, args.params)
-        points = RAMP_POINTS if args.points is None else args.points
+        file = load_parameter_file_option(args.subject, args.params)
+        points = DEFAULT_RAMP_POINT_COUNT if args.points is None else args.points
         distributions = study.merge_settings(args.study, args.settings)
         task = problem.state_problem(file, distributions, args.to, points)
         A, B = propagate.sample_designs(task, count, args.seed)
         assert isinstance(task.evaluator, JointRamp)
-        judgement = judge_joint_stiffness(task.evaluator.file, report.table_loads(task))
+        judgement = judge_joint_stiffness(task.evaluator.file, report.select_table_loads(task))
     indices = None
-    with _study_folder(task, count, args.seed, args.out):
+    with _open_study_folder(task, count, args.seed, args.out):
         bands = propagate.compute_bands(task, A, execution)
         if not is_fmu and len(task.uncertain_parameters) > 1 and bands.has_scatter:
             rows = min(count, max(1024, count // 32))
@@ -185,30 +191,32 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     if args.csv:
         write_text(args.csv, report.format_bands_csv(task, bands))
     if args.plot:
-        report.draw_bands_and_indices(args.plot, bands, indices, f"{task.load.name} [{task.load.unit}]")
+        report.draw_bands_and_indices(
+            args.plot, bands, indices, f"{task.ramped_input.name} [{task.ramped_input.unit}]"
+        )
     document, lines = report.as_json(task, bands, indices), [report.format_table(task, bands, indices)]
     if args.out:
-        counts, line = _count_runs(bands.samples, args.out)
+        counts, line = _count_runs(bands.sampled_outputs, args.out)
         document |= counts
         lines.append(line)
-    return CommandResult(document=document, lines=lines, judgement=judgement)
+    return CommandResult(json_document=document, lines=lines, stiffness_judgement=judgement)
 
 
 def _count_runs(samples: "SampledOutputs", out: Path) -> tuple[dict[str, object], str]:
     """Numbers of the runs in a folder: as JSON object, and as a line."""
     count, failed = samples.accepted.size, len(samples.errors)
-    new = samples.new_runs
+    new = samples.new_run_count
     line = f"{count} runs in {out}: {new} now, {count - new} before, {failed} failed"
     return {"out": str(out), "runs": count, "now": new, "failed": failed}, line
 
 
-def add_sweep(command_parsers: SubParsers) -> None:
+def add_sweep_command(command_parsers: SubParsers) -> None:
     """Declare the deprecated command `jointfmu sweep` with its options."""
     text = "deprecated name of jointfmu uncertainty FMU --out FOLDER"
     many = declare_command(command_parsers, "sweep", _run_sweep, text)
     many.epilog = DISTRIBUTIONS_HELP
     declare_argument(many, "fmu", Path, "path of the FMU", "FMU")
-    _declare_sampling(many, f"default: {FMU_SAMPLES}")
+    _declare_sampling(many, f"default: {DEFAULT_FMU_SAMPLE_COUNT}")
     declare_argument(many, "--input", str, "input to vary", required=True)
     declare_argument(many, "--to", float, "last value of the ramp (SI)", required=True)
     declare_argument(many, "--step", float, "step of the ramp (SI)", required=True)
@@ -221,15 +229,15 @@ def _run_sweep(args: argparse.Namespace) -> CommandResult:
     from ...studies.uncertainty.runs import evaluate_runs
     from ...studies.uncertainty.sweep import format_runs_csv
 
-    execution = _execution(args)
-    count = _sample_count(args, FMU_SAMPLES)
-    task = _state_fmu(args, args.fmu)
+    execution = _make_execution(args)
+    count = _sample_count(args, DEFAULT_FMU_SAMPLE_COUNT)
+    task = _state_study_of_fmu(args, args.fmu)
     runs = task.list_runs(study.unit_cube_points(count, len(task.uncertain_parameters), args.seed))
-    with _study_folder(task, count, args.seed, args.out):
+    with _open_study_folder(task, count, args.seed, args.out):
         samples = evaluate_runs(task.evaluator, runs, task.units, task.loads.size, execution)
     if len(samples.errors) < count:
         write_text(args.out / journal.BANDS_FILE, format_runs_csv(args.out, task.variable_units))
-    print(DEPRECATED_SWEEP, file=sys.stderr)
+    print(SWEEP_DEPRECATION_NOTE, file=sys.stderr)
     document, line = _count_runs(samples, args.out)
     lines, failure = [line], None
     if samples.errors:
@@ -238,7 +246,7 @@ def _run_sweep(args: argparse.Namespace) -> CommandResult:
         values = ", ".join(f"{k} = {v}" for k, v in runs[first].items())
         lines.append(f"the first failed, run {first}: {values}: {error}")
     return CommandResult(
-        document={**document, "first_failure": failure},
+        json_document={**document, "first_failure": failure},
         lines=lines,
         exit_status=int(len(samples.errors) == count),
     )

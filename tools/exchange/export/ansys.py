@@ -11,7 +11,7 @@ import numpy as np
 
 from jointfmu.quantity import Array
 
-from .placing import Placement, Springs, comment_header
+from .placing import Placement, Springs, format_comment_header
 
 MATRIX27_TYPE_NUMBER, STIFFNESS_MATRIX_OPTION, DAMPING_MATRIX_OPTION = 27, 4, 5
 _UPPER_TRIANGLE_INDICES = np.triu_indices(12)
@@ -25,8 +25,8 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     All stiffness elements come first. Pairs that agree to nine digits, the precision of the format, share a
     set of real constants.
     """
-    first = placement.first_number
-    first_set = placement.first_set_number
+    first = placement.first_free_number
+    first_set = placement.first_free_set_number
     units = placement.units
     count = len(springs.node_labels)
     stiffness = placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m"))
@@ -34,12 +34,12 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
         units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
     )
     sets: dict[tuple[str, ...], int] = {}
-    reals = [_real_constant_set(sets, row, first_set) for row in (*stiffness, *damping)]
+    reals = [_number_real_constant_set(sets, row, first_set) for row in (*stiffness, *damping)]
     types = np.repeat([first_set, first_set + 1], count)
     pairs = np.vstack([springs.node_labels, springs.node_labels])
     rows = zip(types, reals, range(first, first + 2 * count), pairs, strict=True)
     lines = [
-        *comment_header(comment_lines, "!"),
+        *format_comment_header(comment_lines, "!"),
         "/PREP7",
         *(_format_nodes(springs, placement) if placement.has_own_nodes else []),
         *_format_element_type(first_set, STIFFNESS_MATRIX_OPTION),
@@ -53,7 +53,7 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     return "\n".join(lines) + "\n"
 
 
-def upper_triangle(spring_values: Array) -> Array:
+def compute_upper_triangle(spring_values: Array) -> Array:
     """Upper triangle C1 to C78 (78) of the matrix of three springs (3) along x, y, z between two nodes."""
     matrix = np.zeros((12, 12))
     axes = np.arange(3)
@@ -62,12 +62,12 @@ def upper_triangle(spring_values: Array) -> Array:
     return np.asarray(matrix[_UPPER_TRIANGLE_INDICES])
 
 
-def _real_constant_set(
-    numbers_by_values: dict[tuple[str, ...], int], spring_values: Array, first_set_number: int
+def _number_real_constant_set(
+    set_numbers_by_values: dict[tuple[str, ...], int], spring_values: Array, first_set_number: int
 ) -> int:
     """Return the number of the set of real constants of three springs (3). New values get a new set."""
-    return numbers_by_values.setdefault(
-        tuple(f"{v:.8E}" for v in spring_values), first_set_number + len(numbers_by_values)
+    return set_numbers_by_values.setdefault(
+        tuple(f"{v:.8E}" for v in spring_values), first_set_number + len(set_numbers_by_values)
     )
 
 
@@ -76,7 +76,7 @@ def _format_real_constants(numbers_by_values: dict[tuple[str, ...], int]) -> Ite
     yield ",".join(["RLBLOCK", *(f"{size:8d}" for size in sizes)])
     yield from ("(2i8,6g16.9)", "(7g16.9)")
     for values, number in numbers_by_values.items():
-        cells = [f"{v:16.8E}" for v in upper_triangle(np.array(values, dtype=np.float64))]
+        cells = [f"{v:16.8E}" for v in compute_upper_triangle(np.array(values, dtype=np.float64))]
         yield f"{number:8d}{len(cells):8d}" + "".join(cells[:6])
         yield from ("".join(cells[i : i + 7]) for i in range(6, len(cells), 7))
 

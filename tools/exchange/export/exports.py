@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Variable
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flatten_fields
 
 from ...common.joint_parts import load_tool_module
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .tables import LoadTable
 
 
-FORMAT_CONTENTS = {
+CONTENTS_BY_FORMAT = {
     "ansys": ("springs",),
     "calculix": ("springs", "contact"),
     "abaqus": ("springs", "contact"),
@@ -34,12 +34,12 @@ ROBOT_FORMATS = ("mjcf", "urdf")
 """Formats of robot simulators; a file has a drive."""
 EXPORT_CONTENTS = ("springs", "contact", "curve")
 """Contents that can be exported."""
-DEFAULT_LOAD_ERROR = 1e-3
+DEFAULT_MAX_LOAD_ERROR = 1e-3
 """Default for the largest relative error of the load [1] when a table is interpolated linearly."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LoadCurve:
+class LoadCurveExport:
     """Load over displacement of the complete joint.
 
     meaning       : content of the file in words
@@ -70,38 +70,38 @@ class Exports:
     working_point_class: type[object] | None = None
     springs: "Callable[[Any, Any, NodePairs | None, Placement], tuple[Springs, str]] | None" = None
     contact: "Callable[[Any], tuple[Curve, Sequence[str]]] | None" = None
-    curve: LoadCurve | None = None
+    curve: LoadCurveExport | None = None
     missing_reasons: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def working_point(self) -> dict[str, str]:
         """Quantities of the working point, the required one first: {name: meaning with unit}."""
-        declared = flat_fields(self.working_point_class) if self.working_point_class else ()
+        declared = flatten_fields(self.working_point_class) if self.working_point_class else ()
         return {name: f"{item.metadata['doc']} [{item.metadata['unit']}]" for name, item in declared}
 
 
-def exports_of(joint_name: str) -> Exports:
+def load_exports(joint_name: str) -> Exports:
     """Exports that a joint offers."""
     module = load_tool_module(KINDS[joint_name], "export")
     exports: Exports = module.EXPORTS if module else Exports()
     return exports
 
 
-def joints_with_content(content: str) -> list[str]:
+def find_joints_with_export(export_kind: str) -> list[str]:
     """Names of the joints that offer a content: springs, contact or curve."""
-    return [joint for joint in KINDS if getattr(exports_of(joint), content)]
+    return [joint for joint in KINDS if getattr(load_exports(joint), export_kind)]
 
 
-def require_content(joint_name: str, content: str) -> Any:
+def require_export(joint_name: str, export_kind: str) -> Any:
     """Return a joint's springs, contact or curve. Raises ValueError if the joint does not offer it."""
-    exports = exports_of(joint_name)
-    if content in exports.missing_reasons:
+    exports = load_exports(joint_name)
+    if export_kind in exports.missing_reasons:
         raise ValueError(
-            f"the {content} of a {joint_name} cannot be exported: {exports.missing_reasons[content]}"
+            f"the {export_kind} of a {joint_name} cannot be exported: {exports.missing_reasons[export_kind]}"
         )
-    if not getattr(exports, content):
+    if not getattr(exports, export_kind):
         raise ValueError(
-            f"{content} of a {joint_name} cannot be written; allowed is a "
-            f"{', '.join(joints_with_content(content))}"
+            f"{export_kind} of a {joint_name} cannot be written; allowed is a "
+            f"{', '.join(find_joints_with_export(export_kind))}"
         )
-    return getattr(exports, content)
+    return getattr(exports, export_kind)

@@ -6,7 +6,7 @@ import numpy as np
 
 from jointfmu.quantity.refusal import InputRefusal
 
-from .placing import Placement, Springs, UnitSet, comment_header
+from .placing import Placement, Springs, UnitSet, format_comment_header
 from .tables import LoadTable
 
 MAX_CALCULIX_ROWS = 200
@@ -27,7 +27,7 @@ def format_springs(
     """
     units = placement.units
     lines = [
-        *comment_header(comment_lines, "**"),
+        *format_comment_header(comment_lines, "**"),
         *(_format_nodes(springs, placement) if placement.has_own_nodes else []),
     ]
     elements = [
@@ -42,7 +42,7 @@ def format_springs(
             units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
         )
         elements.append(("DASHPOT", "C", values))
-    element = placement.first_number
+    element = placement.first_free_number
     for keyword, symbol, columns in elements:
         for axis in range(3):
             groups: dict[str, list[int]] = {}
@@ -85,7 +85,7 @@ def format_contact(
             f"the table has {len(rows)} rows, CalculiX holds {max_rows}; state a larger error", "error"
         )
     lines = [
-        *comment_header(comment_lines, "**"),
+        *format_comment_header(comment_lines, "**"),
         "*SURFACE INTERACTION, NAME=JOINT",
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR",
         *(f"{unit_set.convert(y, 'Pa'):.10E}, {unit_set.convert(s, 'm'):.10E}" for s, y in rows.tolist()),

@@ -86,11 +86,11 @@ def _check_values(
     node_labels: NDArray[np.int64],
     column_name: str,
     column_values: Array,
-    is_invalid: NDArray[np.bool_],
+    invalid_rows: NDArray[np.bool_],
     refusal_reason: str,
 ) -> None:
-    if np.any(is_invalid):
+    if np.any(invalid_rows):
         raise ValueError(
-            f"{table.path}: {column_name} = {column_values[is_invalid][0]:g} (SI) at node "
-            f"{node_labels[is_invalid][0, 0]}: {refusal_reason}"
+            f"{table.path}: {column_name} = {column_values[invalid_rows][0]:g} (SI) at node "
+            f"{node_labels[invalid_rows][0, 0]}: {refusal_reason}"
         )

@@ -64,9 +64,9 @@ class Springs:
     K_t: Array
     C_n: Array
     C_t: Array
-    joint_totals: dict[str, float]
-    stiffness_correction: float
-    open_pairs: int
+    total_stiffness_and_damping: dict[str, float]
+    stiffness_correction_factor: float
+    open_pair_count: int
 
 
 AXIS_ORDER = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
@@ -86,8 +86,8 @@ class Placement:
 
     units: UnitSet = SI_UNIT_SET
     normal_axis: str = "z"
-    first_number: int = 1
-    first_set_number: int = 1
+    first_free_number: int = 1
+    first_free_set_number: int = 1
     has_own_nodes: bool = True
 
     def model_coordinates(self, position: Array) -> Array:
@@ -103,7 +103,7 @@ class Placement:
         return placed
 
 
-def comment_header(lines: Sequence[str], comment_mark: str) -> list[str]:
+def format_comment_header(lines: Sequence[str], comment_mark: str) -> list[str]:
     """Format the comment at the head of a file in ASCII; each line starts with the comment mark."""
     plain = (" ".join(line.split()).encode("ascii", "replace").decode() for line in lines)
     return [

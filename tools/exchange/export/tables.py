@@ -11,18 +11,18 @@ from jointfmu.mechanics.curve import Curve
 from jointfmu.quantity import Array
 
 from ...common.columns import Column, format_rows, format_table
-from ..thinning import decimate
-from .placing import Placement, Springs, UnitSet, comment_header
+from ..thinning import decimate_table
+from .placing import Placement, Springs, UnitSet, format_comment_header
 
 MAX_STIFFNESS_ERROR = 0.01
 """Relative error of the stiffness [1] above which a warning is printed."""
-_POINTS_PER_SEGMENT = 64
+_SAMPLES_PER_SEGMENT = 64
 """Sample points per segment of a curve, at which errors are measured."""
-_MIN_POINTS = 10_000
+_MIN_CURVE_SAMPLES = 10_000
 """Smallest number of sample points of a whole curve, for curves with few segments."""
-_MIN_POINTS_WITH_STIFFNESS = 4 * _MIN_POINTS
+_MIN_STIFFNESS_CURVE_SAMPLES = 4 * _MIN_CURVE_SAMPLES
 """Smallest number of sample points if the stiffness error is limited too: some curves have short corners."""
-_MIN_POINTS_PER_LINE = 12
+_MIN_SAMPLES_PER_TABLE_LINE = 12
 """Smallest number of sample points on a line: the peak of a parabolic error is then found within 1 %."""
 
 
@@ -74,7 +74,7 @@ def tabulate_odd_curve(curve: Curve, max_error: float) -> LoadTable:
 
     The stiffness error is kept below MAX_STIFFNESS_ERROR, unless the curve has a jump of the stiffness.
     """
-    half = _sample_curve(curve, _MIN_POINTS_WITH_STIFFNESS)
+    half = _sample_curve(curve, _MIN_STIFFNESS_CURVE_SAMPLES)
     try:
         rows = decimate_curve(*half, max_error, stiffness_error=MAX_STIFFNESS_ERROR).rows
     except ValueError:
@@ -130,9 +130,9 @@ def decimate_curve(
         )
 
     stops = {*fixed_points, displacement.size - 1}
-    index = decimate(stops, lambda i, j: error_ratio(i, j) <= 1.0)
+    index = decimate_table(stops, lambda i, j: error_ratio(i, j) <= 1.0)
     between = np.diff(index)[~np.isin(index[1:], list(stops))]
-    if np.any(between < _MIN_POINTS_PER_LINE):
+    if np.any(between < _MIN_SAMPLES_PER_TABLE_LINE):
         raise ValueError(
             f"error = {max_error:g} is too small for a table; it would have {index.size} rows or more"
         )
@@ -163,10 +163,10 @@ def _interpolation_errors(
     )
 
 
-def _sample_curve(curve: Curve, min_points: int = _MIN_POINTS) -> tuple[Array, Array, Array]:
+def _sample_curve(curve: Curve, min_samples: int = _MIN_CURVE_SAMPLES) -> tuple[Array, Array, Array]:
     """Sample a curve at many points: displacement, load and stiffness."""
     nodes = curve.displacement
-    count = max(_POINTS_PER_SEGMENT, min_points // (nodes.size - 1))
+    count = max(_SAMPLES_PER_SEGMENT, min_samples // (nodes.size - 1))
     fraction = np.arange(count) / count
     x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * fraction).ravel(), nodes[-1])
     load, stiffness = curve.derivatives(x, 1)
@@ -226,7 +226,7 @@ def format_columns_csv(
     ]
     names = [(name, unit_set.symbol(unit)) for name, unit in column_heads]
     return format_table(
-        names, converted, digits=SIGNIFICANT_DIGITS, header_lines=comment_header(comment_lines, "#")
+        names, converted, digits=SIGNIFICANT_DIGITS, header_lines=format_comment_header(comment_lines, "#")
     )
 
 
@@ -239,7 +239,7 @@ def format_modelica_table(table_rows: Array, table_name: str, comment_lines: Seq
     return "\n".join(
         [
             "#1",
-            *comment_header(comment_lines, "#"),
+            *format_comment_header(comment_lines, "#"),
             f"double {table_name}({table_rows.shape[0]},{table_rows.shape[1]})",
             *body,
             "",

@@ -8,7 +8,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
 from . import ansys, keywords, tables
-from .exports import LoadCurve, require_content
+from .exports import LoadCurveExport, require_export
 from .mesh import NodePairs
 from .placing import Placement, Springs, UnitSet
 
@@ -61,7 +61,7 @@ def export_springs(
 
     Raises ValueError if the joint offers no springs, or they do not fit the node pairs.
     """
-    field, where = require_content(parameter_file.joint, "springs")(
+    field, where = require_export(parameter_file.joint, "springs")(
         parameter_file.values, working_point, node_pairs, placement
     )
     units = placement.units
@@ -95,7 +95,7 @@ def export_contact(
 
     Raises ValueError if the joint does not offer it.
     """
-    curve, more = require_content(parameter_file.joint, "contact")(parameter_file.values)
+    curve, more = require_export(parameter_file.joint, "contact")(parameter_file.values)
     table = tables.tabulate_law(curve, max_error)
     about = [
         "normal contact of the rough interface: pressure over overclosure from first touch",
@@ -123,7 +123,7 @@ def export_curve(
 
     Raises ValueError if the joint does not offer the curve, or if the working point is missing.
     """
-    load: LoadCurve = require_content(parameter_file.joint, "curve")
+    load: LoadCurveExport = require_export(parameter_file.joint, "curve")
     table = load.compute_table(parameter_file.values, working_point, max_error)
     heads = [(v.name, v.unit) for v in load.columns]
     about = [load.meaning, f"parameters: {parameter_file.name} ({parameter_file.joint})"]

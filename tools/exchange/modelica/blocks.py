@@ -12,12 +12,15 @@ from jointfmu.quantity.units import UNITS
 
 from .records import escape_string, format_number
 
-_ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
+_ROTATIONAL_PACKAGE, _TRANSLATIONAL_PACKAGE = (
+    "Modelica.Mechanics.Rotational",
+    "Modelica.Mechanics.Translational",
+)
 _ADAPTOR_MODELS = {  # (rotational, the FMU takes motion) -> adaptor
-    (True, True): f"{_ROTATIONAL}.Components.GeneralTorqueToAngleAdaptor",
-    (True, False): f"{_ROTATIONAL}.Components.GeneralAngleToTorqueAdaptor",
-    (False, True): f"{_TRANSLATIONAL}.Components.GeneralForceToPositionAdaptor",
-    (False, False): f"{_TRANSLATIONAL}.Components.GeneralPositionToForceAdaptor",
+    (True, True): f"{_ROTATIONAL_PACKAGE}.Components.GeneralTorqueToAngleAdaptor",
+    (True, False): f"{_ROTATIONAL_PACKAGE}.Components.GeneralAngleToTorqueAdaptor",
+    (False, True): f"{_TRANSLATIONAL_PACKAGE}.Components.GeneralForceToPositionAdaptor",
+    (False, False): f"{_TRANSLATIONAL_PACKAGE}.Components.GeneralPositionToForceAdaptor",
 }
 _FORCE_INPUT_NOTE = (
     "The flange follows the FMU's displacement, so give it a force that does not depend on an inertia "

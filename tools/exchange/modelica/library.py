@@ -18,7 +18,7 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load_default
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flatten_fields
 from jointfmu.quantity.smooth import SMOOTH_STEP_COEFFICIENTS
 from jointfmu.version import __version__
 
@@ -36,9 +36,9 @@ from .records import (
 from .systems import model_name, render_system_model
 
 LIBRARY_NAME = "JointStiffness"
-_PARTNER_COMPONENTS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
+_NON_JOINT_COMPONENTS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
 """Components of systems that are no joints: loads, profiles, weight."""
-_FUNCTION_NAMES = (
+_MODELICA_FUNCTION_NAMES = (
     "load",
     "stiffness",
     "bend",
@@ -82,7 +82,7 @@ def write_library(
     file: ParameterFile | None = None,
     working_points: WorkingPoints | None = None,
     *,
-    force: bool = False,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Write the library into a folder; returns the paths of its files.
 
@@ -90,7 +90,7 @@ def write_library(
     working_points : {joint: working points}, in place of the default working points
     force          : replace a library of this name that jointfmu did not write
     """
-    check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_FILE, force)
+    check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_FILE, overwrite)
     return write_files(folder / LIBRARY_NAME, render_library(file, working_points))
 
 
@@ -109,13 +109,13 @@ def render_library(
         "Examples": _render_examples(joints, shared),
         "Components": _render_components(joints)
         | _render_joint_independent_classes(
-            shared, "Components", _PARTNER_COMPONENTS, points=CONTROL_POINT_COUNT, comb=comb
+            shared, "Components", _NON_JOINT_COMPONENTS, points=CONTROL_POINT_COUNT, comb=comb
         ),
         "Wrappers": {name: model.render(wrapper_template_variables(fmu)) for name, fmu in MODELS.items()},
         "Interfaces": {name: block.render(interface_template_variables(fmu)) for name, fmu in MODELS.items()},
         "Data": _render_records(joints),
         "Functions": _render_joint_independent_classes(
-            shared, "Functions", _FUNCTION_NAMES, step=[round(a) for a in SMOOTH_STEP_COEFFICIENTS]
+            shared, "Functions", _MODELICA_FUNCTION_NAMES, step=[round(a) for a in SMOOTH_STEP_COEFFICIENTS]
         ),
     }
     notes = [escape_string(joint.component.package_note) for joint in joints if joint.component.package_note]
@@ -141,7 +141,7 @@ def _collect_joint(
     component: ModelicaComponent = modelica_module.MODELICA_COMPONENT
     is_given = file is not None and file.joint == joint_kind.name
     joint_file = file if file and is_given else load_default(joint_kind.name)
-    used_points = tuple(working_points or (*_start_working_point(joint_file), *component.working_points))
+    used_points = tuple(working_points or (*_read_start_working_point(joint_file), *component.working_points))
     found: Sequence[ModelicaRecord]
     if is_given:
         found = component.make_records(joint_file, used_points)
@@ -166,22 +166,22 @@ def _default_records(
     return tuple(component.make_records(load_default(joint), working_points))
 
 
-def _start_working_point(file: ParameterFile) -> list[WorkingPoint]:
+def _read_start_working_point(file: ParameterFile) -> list[WorkingPoint]:
     """Working point given by the start values of the inputs in a parameter file, as a list of one or none."""
     point = tuple(file.start_value(name) for name in KINDS[file.joint].working_point)
     return [point] if point and point[0] > 0.0 else []
 
 
-def _render_package_order(names: Mapping[str, object]) -> str:
+def _render_package_order(member_names: Mapping[str, object]) -> str:
     """Render the file package.order."""
-    return "\n".join(names) + "\n"
+    return "\n".join(member_names) + "\n"
 
 
 def _render_joint_independent_classes(
-    shared_templates: Environment, package: str, names: Sequence[str], **terms: object
+    shared_templates: Environment, package: str, class_names: Sequence[str], **terms: object
 ) -> dict[str, str]:
     """Render classes that do not depend on a joint: {class: text}."""
-    return {name: shared_templates.get_template(f"{package}/{name}.mo").render(terms) for name in names}
+    return {name: shared_templates.get_template(f"{package}/{name}.mo").render(terms) for name in class_names}
 
 
 def _render_components(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
@@ -257,7 +257,7 @@ def _parameter_meanings(joint_kind: JointKind) -> dict[str, str]:
     return {
         name: escape_string(item.metadata["doc"])
         for parameters in joint_kind.laws.values()
-        for name, item in flat_fields(parameters)
+        for name, item in flatten_fields(parameters)
         if "doc" in item.metadata
     }
 

@@ -17,7 +17,7 @@ from jointfmu.mechanics.curve import Curve
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..thinning import decimate
+from ..thinning import decimate_table
 
 PARAMETER_DIGITS, COMPUTED_DIGITS = 15, 10
 """Digits of numbers from a parameter file, and of computed numbers. More digits of computed numbers would
@@ -37,15 +37,15 @@ def format_matrix(rows: NDArray[np.float64]) -> str:
     return "[\n      " + ";\n      ".join(lines) + "]"
 
 
-def escape_string(content: str) -> str:
+def escape_string(text: str) -> str:
     """Escape a text for a Modelica string. A blank is added after a final backslash for simple parsers."""
-    content += " " * content.endswith("\\")
-    return content.replace("\\", "\\\\").replace('"', '\\"')
+    text += " " * text.endswith("\\")
+    return text.replace("\\", "\\\\").replace('"', '\\"')
 
 
-def escape_html(content: str) -> str:
+def escape_html(text: str) -> str:
     """Escape a plain text for the HTML of a documentation annotation, which is a Modelica string."""
-    return escape_string(escape(content, quote=False))
+    return escape_string(escape(text, quote=False))
 
 
 def make_identifier(name: str) -> str:
@@ -73,7 +73,7 @@ def template_environment(*folders: Path) -> Environment:
 
 TABLE_TOLERANCE = 1e-7
 """Largest relative error [1] of load and stiffness of a table, against the original curve."""
-_SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
+_ERROR_SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
 
 
 class InterpolationTable(NamedTuple):
@@ -87,7 +87,7 @@ class InterpolationTable(NamedTuple):
     max_error: float
 
 
-def to_curve(table: InterpolationTable) -> Curve:
+def make_curve_of_table(table: InterpolationTable) -> Curve:
     """Convert a table to a curve."""
     x, y, k, before, after = table.rows.T
     return Curve(x, y, k, after[:-1], before[1:])
@@ -118,7 +118,7 @@ def decimate_curve(
         accurate = _segment_error(curve, start_node, end_node, floor) <= TABLE_TOLERANCE
         return accurate and (segment_fits is None or segment_fits(start_node, end_node))
 
-    index = decimate(stops, is_reproduced_by_quintic)
+    index = decimate_table(stops, is_reproduced_by_quintic)
     worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
     before = np.concatenate([[curve.stiffness_slope_start[0]], curve.stiffness_slope_end[index[1:] - 1]])
     after = np.concatenate([curve.stiffness_slope_start[index[:-1]], [curve.stiffness_slope_end[-1]]])
@@ -140,7 +140,7 @@ def _segment_error(curve: Curve, start_node: int, end_node: int, min_reference: 
         curve.stiffness_slope_end[end_node - 1 : end_node],
     )
     x = curve.displacement[start_node : end_node + 1]
-    points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _SAMPLE_FRACTIONS).ravel()])
+    points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _ERROR_SAMPLE_FRACTIONS).ravel()])
     worst = 0.0
     for exact, approximate, reference in zip(
         curve.derivatives(points), quintic.derivatives(points), min_reference, strict=True

@@ -18,7 +18,7 @@ from .records import ModelicaComponent, ModelicaRecord, escape_html, escape_stri
 
 _MECHANICS_PACKAGE = "Modelica.Mechanics"
 _COMPONENT_PACKAGE = "JointStiffness.Components"
-_NOMINAL_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
+_NOMINAL_STATE_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
 _COLUMN_SPACING, _ROW_SPACING = 30, 30
 """Distances on the diagram: between columns of components, and between rows."""
@@ -170,7 +170,7 @@ def _format_numbers(values: Mapping[str, Any], names: Iterable[str] | None = Non
 
 
 def _format_state_modifications(*names: str) -> list[str]:
-    return [f"{name}(fixed=true, start=0, nominal={_NOMINAL_VALUES[name]})" for name in names]
+    return [f"{name}(fixed=true, start=0, nominal={_NOMINAL_STATE_VALUES[name]})" for name in names]
 
 
 DeclareFunction = Callable[..., None]

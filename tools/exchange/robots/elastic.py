@@ -12,7 +12,7 @@ from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity import Array
 
 from . import bristles
-from .mjcf import check_version
+from .mjcf import check_mujoco_version
 from .spring_fit import FittedSpring, fit_spring
 from .transmission import Transmission
 
@@ -22,7 +22,7 @@ MOTOR_BODY_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
 _MAX_JOINTS_PER_BODY = 6
 """Largest number of joints of a body in MuJoCo [1]."""
-_TORQUE_REVERSAL_RATIO = 1e-6
+_SMALL_TORQUE_REVERSAL_RATIO = 1e-6
 """Torque reversal over the rated torque [1], for the stiffness of small vibrations."""
 _MOTOR_BODY_MASS = 1e-12
 """Mass [kg] and inertia [kg.m2] of the bodies that carry the motors; the rotors are armatures."""
@@ -48,7 +48,7 @@ class ElasticAxis:
 
     def stiffness(self, torque: float) -> float:
         """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
-        reversal = float(np.copysign(_TORQUE_REVERSAL_RATIO * self.drive.rated_torque, torque))
+        reversal = float(np.copysign(_SMALL_TORQUE_REVERSAL_RATIO * self.drive.rated_torque, torque))
         before, after = self.drive.compute_wind_up([torque, torque - reversal])
         return reversal / float(before - after)
 
@@ -66,7 +66,7 @@ def read_robot(path: str | Path) -> Any:
     """Read a robot (MJCF or URDF) as an MjSpec of MuJoCo; raises ValueError if that fails."""
     import mujoco
 
-    check_version()
+    check_mujoco_version()
     check_regular_file(path, "a robot (MJCF or URDF)")
     try:
         spec = mujoco.MjSpec.from_file(str(path))
@@ -185,7 +185,7 @@ def _add_motor_body(robot_spec: Any, name: str) -> Any:
     return body
 
 
-def _add_motor(spec: Any, motor_body: Any, axis: ElasticAxis, rigid_model: Any) -> Any:
+def _add_motor(robot_spec: Any, motor_body: Any, axis: ElasticAxis, rigid_model: Any) -> Any:
     """Add the motor of an axis, whose coordinate is the motor angle [rad], and move the actuators to it.
 
     The force limit of the robot's joint is applied to each actuator, not to the motor joint as a whole, as
@@ -196,11 +196,11 @@ def _add_motor(spec: Any, motor_body: Any, axis: ElasticAxis, rigid_model: Any) 
     """
     import mujoco
 
-    joint, ratio, number = spec.joint(axis.joint), axis.drive.ratio, rigid_model.joint(axis.joint).id
+    joint, ratio, number = robot_spec.joint(axis.joint), axis.drive.ratio, rigid_model.joint(axis.joint).id
     motor = motor_body.add_joint(name=axis.joint + MOTOR_SUFFIX, type=mujoco.mjtJoint.mjJNT_SLIDE)
     motor.armature = axis.rotor_inertia / ratio**2
     joint.armature = 0.0
-    for actuator in spec.actuators:
+    for actuator in robot_spec.actuators:
         if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
             if rigid_model.jnt_actfrclimited[number] and actuator.gear[0]:
                 _limit_force(actuator, rigid_model.jnt_actfrcrange[number] / actuator.gear[0])
@@ -273,7 +273,7 @@ def find_body(model: Any, name: str | None, axes_with_drive: list[ElasticAxis]) 
     return end
 
 
-def make_folders_absolute(robot_spec: Any, path: Path) -> None:
+def make_mesh_folders_absolute(robot_spec: Any, path: Path) -> None:
     """Make the folders of meshes and textures absolute, so that the robot can be saved elsewhere."""
     for name in ("meshdir", "texturedir"):
         setattr(robot_spec, name, str((path.parent / getattr(robot_spec, name)).resolve()))

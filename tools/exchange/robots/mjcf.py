@@ -19,13 +19,13 @@ from .bristles import format_friction, presliding_angle
 from .spring_fit import FittedSpring, fit_spring
 from .transmission import RAMP_POINTS, Transmission, loop_area
 
-PRESCRIBED_ARMATURE = 1e12
+PRESCRIBED_MOTION_ARMATURE = 1e12
 """Armature [kg.m2] of hinges with prescribed motion, so large that no torque changes their speed."""
 LOOP_DURATION = 1e4
 """Duration [s] of a simulated loop: so slow that damping is negligible."""
 TIME_STEP = 0.002
 """Time step [s] of the written file, MuJoCo's default."""
-LINK_FREQUENCY = 60.0
+EXAMPLE_LINK_FREQUENCY = 60.0
 """Natural frequency [Hz] of the link in the written file, with locked motor; defines its inertia."""
 WIND_UP_TOLERANCE = 0.03
 """Relative tolerance [1] of the wind-up at the largest fit torque."""
@@ -47,14 +47,16 @@ class FitErrors:
 
     def format_lines(self, torque: float) -> Iterator[str]:
         """Texts that compare the errors with their tolerances."""
-        yield _format_verdict(f"wind-up at {torque:g} N.m", self.wind_up, WIND_UP_TOLERANCE)
+        yield _compare_with_tolerance(f"wind-up at {torque:g} N.m", self.wind_up, WIND_UP_TOLERANCE)
         if self.area is None:
             yield "loop: none, the drive has no hysteresis"
         else:
-            yield _format_verdict(f"area of the loop at {torque:g} N.m", self.area, LOOP_AREA_TOLERANCE)
+            yield _compare_with_tolerance(
+                f"area of the loop at {torque:g} N.m", self.area, LOOP_AREA_TOLERANCE
+            )
 
 
-def _format_verdict(quantity: str, relative_error: float, tolerance: float) -> str:
+def _compare_with_tolerance(quantity: str, relative_error: float, tolerance: float) -> str:
     """Text that compares a relative error [1] with its tolerance [1]."""
     verdict = "within" if abs(relative_error) <= tolerance else "MISSED:"
     return f"{quantity}: {100.0 * relative_error:+.2f} % of the FMU's, {verdict} {100.0 * tolerance:g} %"
@@ -108,7 +110,7 @@ damping="{drive.viscous_friction:.9g}"/>
 """
 
 
-def drive_torque(drive: Transmission, spring: FittedSpring, wind_up: Array) -> Array:
+def simulate_drive_torque(drive: Transmission, spring: FittedSpring, wind_up: Array) -> Array:
     """Simulate the torques (n) [N.m] of the drive in MuJoCo along prescribed wind-ups (n) [rad] from rest.
 
     Raises ImportError without mujoco, ValueError if MuJoCo has no yielding springs.
@@ -116,7 +118,7 @@ def drive_torque(drive: Transmission, spring: FittedSpring, wind_up: Array) -> A
     import mujoco
 
     time_step = LOOP_DURATION / len(wind_up)
-    text = _format_model(drive, spring, PRESCRIBED_ARMATURE, PRESCRIBED_ARMATURE)
+    text = _format_model(drive, spring, PRESCRIBED_MOTION_ARMATURE, PRESCRIBED_MOTION_ARMATURE)
     model = mujoco.MjModel.from_xml_string(text)
     model.opt.timestep, model.opt.gravity[:] = time_step, 0.0
     data, link = mujoco.MjData(model), model.joint("link").dofadr[0]
@@ -133,17 +135,17 @@ def drive_torque(drive: Transmission, spring: FittedSpring, wind_up: Array) -> A
 def compare_with_fmu(drive: Transmission, spring: FittedSpring) -> FitErrors:
     """Compare MuJoCo's drive with the FMU's law, along first loading to the largest fit torque and a loop."""
     torques, x = drive.compute_loop(spring.max_torque)
-    simulated = drive_torque(drive, spring, x)
+    simulated = simulate_drive_torque(drive, spring, x)
     fmu_area, mujoco_area = loop_area(x, torques), loop_area(x, simulated)
     ramp = 1.2 * x[: RAMP_POINTS + 1]
-    wind_up = np.interp(spring.max_torque, drive_torque(drive, spring, ramp), ramp)
+    wind_up = np.interp(spring.max_torque, simulate_drive_torque(drive, spring, ramp), ramp)
     return FitErrors(
         float(wind_up / x[RAMP_POINTS] - 1.0),
         mujoco_area / fmu_area - 1.0 if spring.yielding_springs else None,
     )
 
 
-def check_version() -> None:
+def check_mujoco_version() -> None:
     """Raise ValueError if MuJoCo has no yielding springs, ImportError if it is missing."""
     import mujoco
 
@@ -168,11 +170,11 @@ def format_mjcf(drive: Transmission, torque: float) -> tuple[str, FitErrors, lis
     """
     import mujoco
 
-    check_version()
+    check_mujoco_version()
     fitted = fit_spring(drive, torque)
     miss = compare_with_fmu(drive, fitted)
     stiffness = fitted.linear_stiffness + sum(k for k, _ in fitted.yielding_springs)
-    link = stiffness / (2.0 * np.pi * LINK_FREQUENCY) ** 2
+    link = stiffness / (2.0 * np.pi * EXAMPLE_LINK_FREQUENCY) ** 2
     motor = link / drive.ratio**2
     about = [
         f"{drive.name} as plain MJCF, written by jointfmu {__version__}; MuJoCo 4.0 or newer, no plugin",
@@ -182,7 +184,8 @@ def format_mjcf(drive: Transmission, torque: float) -> tuple[str, FitErrors, lis
         f"measured in MuJoCo {mujoco.__version__} beside the FMU, motor locked:",
         *(f"  {line}" for line in miss.format_lines(torque)),
         f"beyond {torque:g} N.m the cubic continues; the table of the FMU ends at {drive.max_torque:g} N.m",
-        f"the inertias are placeholders: the link has {LINK_FREQUENCY:g} Hz with locked motor, the motor is "
+        f"the inertias are placeholders: the link has {EXAMPLE_LINK_FREQUENCY:g} Hz with locked motor, "
+        "the motor is "
         "as large",
         *(_friction_comments(drive, motor) if drive.static_friction else ()),
         "not included:" if drive.omitted_effects else "all effects of the drive are included",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 ANGLES_PER_GRID_AXIS = 21
 """Number of angles per axis of the pose grid [1]."""
-PAYLOAD_COUNT = 11
+PAYLOAD_POINT_COUNT = 11
 """Number of payloads [1]."""
 FIGURE_SIZE = (9.0, 3.8)
 """Width and height of a figure [inch]."""
@@ -38,7 +38,7 @@ def list_angles(model: "MjModel", axis: ElasticAxis) -> Array:
     return np.linspace(low, high, ANGLES_PER_GRID_AXIS)
 
 
-def sweep_frequencies(
+def compute_frequencies_over_grid(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
 ) -> tuple[list[Array], Array]:
     """Angles [rad] of the grid axes, and natural frequencies (..., n) [Hz] at each pose of the grid.
@@ -104,11 +104,11 @@ def draw_frequencies(
             panel.set_ylabel(f"{names[1]} [deg]")
 
 
-def draw_payload(
+def draw_deflection_over_payload(
     path: Path, model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
 ) -> tuple[Array, float]:
     """Plot wind-ups and tip error against payload; returns their values (n) [rad] and [m] at full payload."""
-    loads = np.linspace(0.0, payload, PAYLOAD_COUNT)
+    loads = np.linspace(0.0, payload, PAYLOAD_POINT_COUNT)
     rows = [compute_weight_deflection(model, axes, pose, float(load), tip_body) for load in loads]
     with plots.open_figure(path, FIGURE_SIZE) as figure:
         wind_up_axes, error_axes = figure.subplots(1, 2)

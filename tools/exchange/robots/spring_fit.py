@@ -10,7 +10,7 @@ from jointfmu.quantity import Array
 
 from .transmission import LOOP_POINTS, RAMP_POINTS, Transmission, loop_area
 
-YIELD_RATIOS = np.geomspace(0.02, 0.4, 6)
+YIELD_WIND_UP_RATIOS = np.geomspace(0.02, 0.4, 6)
 """Candidate yield wind-ups of the springs over the largest wind-up of the fit [1].
 
 All springs yield within the range of the fit, so no spring adds hysteresis beyond it.
@@ -34,19 +34,20 @@ class FittedSpring:
     yielding_springs: tuple[tuple[float, float], ...]
     max_torque: float
 
-    def torque_at(self, wind_up: Array) -> Array:
+    def compute_torque(self, wind_up: Array) -> Array:
         """Torques (n) [N.m] along a history of wind-ups (n) [rad] that starts at rest."""
         elastic = self.linear_stiffness * wind_up + self.cubic_stiffness * wind_up**3
         return elastic + sum(
-            (k * slider_force(wind_up, y) for k, y in self.yielding_springs), np.zeros_like(wind_up)
+            (k * compute_unit_slider_torque(wind_up, y) for k, y in self.yielding_springs),
+            np.zeros_like(wind_up),
         )
 
     def solve_wind_up(self, torque: float) -> float:
         """Wind-up [rad] at a torque [N.m], for first loading from rest."""
         upper = 1.0
-        while self.torque_at(np.array([upper]))[0] < abs(torque):
+        while self.compute_torque(np.array([upper]))[0] < abs(torque):
             upper *= 2.0
-        size = brentq(lambda x: self.torque_at(np.array([x]))[0] - abs(torque), 0.0, upper, xtol=1e-15)
+        size = brentq(lambda x: self.compute_torque(np.array([x]))[0] - abs(torque), 0.0, upper, xtol=1e-15)
         return float(np.copysign(size, torque))
 
     def stiffness(self, torque: float) -> float:
@@ -59,7 +60,7 @@ class FittedSpring:
         )
 
 
-def slider_force(wind_up: Array, yield_wind_up: float) -> Array:
+def compute_unit_slider_torque(wind_up: Array, yield_wind_up: float) -> Array:
     """Force (n) of a yielding spring of stiffness 1 along a history of wind-ups (n) that starts at rest."""
     return Sliders(np.ones(1)).follow_increments(np.diff(wind_up, prepend=0.0), np.array([yield_wind_up]))
 
@@ -73,23 +74,23 @@ def fit_spring(drive: Transmission, max_torque: float) -> FittedSpring:
     torques, x = drive.compute_loop(max_torque)
     largest = float(np.max(np.abs(x)))
     has_hysteresis = abs(loop_area(x, torques)) > MIN_LOOP_AREA_RATIO * 4.0 * max_torque * largest
-    limits = (YIELD_RATIOS * largest).tolist() if has_hysteresis else []
+    limits = (YIELD_WIND_UP_RATIOS * largest).tolist() if has_hysteresis else []
     sliders: tuple[tuple[float, float], ...] = ()
     if has_hysteresis:
-        forces = [slider_force(x, y) for y in limits]
+        forces = [compute_unit_slider_torque(x, y) for y in limits]
         half_widths = np.stack([loop_half_width(x, force) for force in forces], axis=1)
         stiffnesses = nnls(half_widths, loop_half_width(x, torques))[0]
         sliders = tuple((k, y) for k, y in zip(stiffnesses.tolist(), limits, strict=True) if k > 0.0)
-    elastic = torques - sum((k * slider_force(x, y) for k, y in sliders), np.zeros_like(x))
+    elastic = torques - sum((k * compute_unit_slider_torque(x, y) for k, y in sliders), np.zeros_like(x))
     scaled = x / largest
     linear, cubic = (nnls(np.stack([scaled, scaled**3], axis=1), elastic)[0] / largest).tolist()
     return FittedSpring(linear, cubic / largest**2, sliders, max_torque)
 
 
-def loop_half_width(wind_up: Array, force: Array) -> Array:
+def loop_half_width(wind_up: Array, torque: Array) -> Array:
     """Half the distance (n) between the branches of a loop, at n wind-ups between its ends."""
     back = slice(RAMP_POINTS, RAMP_POINTS + LOOP_POINTS // 2 + 1)
     forth = slice(RAMP_POINTS + LOOP_POINTS // 2, None)
     x = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP_POINTS)
-    down = np.interp(x, wind_up[back][::-1], force[back][::-1])
-    return np.asarray(0.5 * (down - np.interp(x, wind_up[forth], force[forth])))
+    down = np.interp(x, wind_up[back][::-1], torque[back][::-1])
+    return np.asarray(0.5 * (down - np.interp(x, wind_up[forth], torque[forth])))

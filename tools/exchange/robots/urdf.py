@@ -11,7 +11,7 @@ from .transmission import Transmission, loop_area
 
 RATED_SPEED = 209.44
 """Motor speed [rad/s] at which catalogues state the rated torque: 2000 rpm."""
-SMALL_INERTIAL_ELEMENT = (
+NEGLIGIBLE_INERTIA_ELEMENT = (
     '<inertial><mass value="0.001"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>'
     "</inertial>"
 )
@@ -55,9 +55,9 @@ def _format_robot(drive: Transmission) -> str:
     """URDF element `robot` of a drive."""
     ratio, max_torque = abs(drive.ratio), drive.max_torque
     return f"""<robot name={quoteattr(drive.name)}>
-  <link name="base">{SMALL_INERTIAL_ELEMENT}</link>
-  <link name="output">{SMALL_INERTIAL_ELEMENT}</link>
-  <link name="rotor">{SMALL_INERTIAL_ELEMENT}</link>
+  <link name="base">{NEGLIGIBLE_INERTIA_ELEMENT}</link>
+  <link name="output">{NEGLIGIBLE_INERTIA_ELEMENT}</link>
+  <link name="rotor">{NEGLIGIBLE_INERTIA_ELEMENT}</link>
   <joint name="link" type="continuous">
     <parent link="base"/>
     <child link="output"/>

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 
-from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS
+from jointfmu.joints.bolted_joint.bodies import MODAL_DISPLACEMENT_DECIMALS
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import MAX_MODES, ElasticBodies
 from jointfmu.quantity import Array
@@ -21,9 +21,9 @@ from jointfmu.quantity import Array
 from ..whole_joint import COORDINATE_AXES, LinearJoint
 from .patch_work import (
     FrictionPoints,
-    LinearContact,
     PatchFit,
     ShearStates,
+    StickContactStiffness,
     compute_friction_work,
     evaluate_friction,
     patch_rotations,
@@ -39,7 +39,7 @@ MIN_SINGULAR_VALUE_RATIO = 1e-3
 OPENING_STATE_WEIGHT = 0.5
 """Weight of states with opening over the weight of states in shear alone [1], in the decomposition: the
 loss in partial slip needs more accurate modes."""
-STIFFNESS_DIGITS = 6
+MODAL_STIFFNESS_DIGITS = 6
 """Significant digits of the stiffness of a mode: more than for its displacements, fewer than those in which
 different processors agree."""
 MAX_DISPLACEMENT_CORRECTION = 10.0
@@ -112,7 +112,7 @@ def reduce_bodies(
             @ fields
         ),
     )
-    linear_contact = LinearContact(
+    linear_contact = StickContactStiffness(
         unit,
         stick_stiffness_matrix(
             evaluate_friction(law, unit, surface, tangential)[1], interface.quadrature_area
@@ -127,7 +127,7 @@ def reduce_bodies(
     largest, values = _normalise_modes(displacements)
     positions = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
     values |= {name: _to_tuple(coordinates) for name, coordinates in positions.items()}
-    modal_stiffness = tuple(float(f"{k:.{STIFFNESS_DIGITS}g}") for k in 1.0 / largest**2)
+    modal_stiffness = tuple(float(f"{k:.{MODAL_STIFFNESS_DIGITS}g}") for k in 1.0 / largest**2)
     return ElasticBodies(stiffness=modal_stiffness, **values)
 
 
@@ -142,7 +142,10 @@ def _normalise_modes(modal_displacements: dict[str, Array]) -> tuple[Array, dict
     Returns the largest displacement (k) of each mode, and the normalised rows as flat tuples.
     """
     largest = np.max(np.abs(np.concatenate(list(modal_displacements.values()))), axis=0)
-    rounded = {name: np.round(rows / largest, MODE_DECIMALS) for name, rows in modal_displacements.items()}
+    rounded = {
+        name: np.round(rows / largest, MODAL_DISPLACEMENT_DECIMALS)
+        for name, rows in modal_displacements.items()
+    }
     all_rows = np.concatenate(list(rounded.values()))
     first = np.argmax(np.abs(all_rows), axis=0)
     sign = np.sign(all_rows[first, np.arange(len(first))])

@@ -21,7 +21,7 @@ from jointfmu.mechanics.footprint.patch_reduction import SLIDER_CIRCLE_POINTS
 from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
-COMBINED_STATE_WEIGHT = np.sqrt(0.5)
+SHEAR_COMBINATION_WEIGHT = np.sqrt(0.5)
 """Weight of each of two states that are combined [1]."""
 REGULARISATION_WEIGHT = 0.1
 """Weight of the change of the patch displacements (regularisation) over the weight of the forces [1]."""
@@ -36,7 +36,7 @@ losses [1]. The stiffness error stays below 2e-4. A larger weight makes the vall
 for the steps."""
 MIN_DISPLACEMENT = 1e-15
 """Smallest tangential displacement in divisions [m]; also the smallest relative loss in scales [1]."""
-MIN_RELATIVE_SCALE = 0.03
+MIN_RELATIVE_DISPLACEMENT_SCALE = 0.03
 """Displacement of the patches by a mode over that by the most effective mode [1]: lower limit for scales."""
 
 
@@ -53,7 +53,7 @@ def shear_combinations(state_motions: Array) -> Array:
     identity = np.eye(len(state_motions))
     axes = [identity[single[state_motions[single][:, axis] != 0.0]] for axis in (0, 1, 5)]
     pairs = [(axes[i], axes[j], sign) for i, j in ((0, 1), (0, 2), (1, 2)) for sign in (1.0, -1.0)]
-    return np.concatenate([*axes, *(COMBINED_STATE_WEIGHT * (a + sign * b) for a, b, sign in pairs)])
+    return np.concatenate([*axes, *(SHEAR_COMBINATION_WEIGHT * (a + sign * b) for a, b, sign in pairs)])
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def _force_scale(forces: Array) -> Array:
     force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     lever_arm = np.max(moment) / np.max(force)
     force = np.hypot(force, moment / lever_arm)
-    modes = np.maximum(modes, MIN_RELATIVE_SCALE * np.max(modes / force) * force)
+    modes = np.maximum(modes, MIN_RELATIVE_DISPLACEMENT_SCALE * np.max(modes / force) * force)
     return np.stack([force, force, lever_arm * force, *[modes] * (forces.shape[1] - 3)], axis=1)
 
 
@@ -143,7 +143,7 @@ class MonotonicFriction:
         u, v = np.split(displacement, 2, axis=1)
         size = np.maximum(np.hypot(u, v), MIN_DISPLACEMENT)
         stick, tangent = (
-            friction_law.stiffness_ratio * friction_law.curve.derivatives(x, 1)[1]
+            friction_law.stiffness_ratio * friction_law.pressure_curve.derivatives(x, 1)[1]
             for x in (
                 approach,
                 approach - friction_law.stiffness_ratio / friction_law.friction_coefficient * size,
@@ -158,7 +158,7 @@ class MonotonicFriction:
 
 
 @dataclass(frozen=True)
-class LinearContact:
+class StickContactStiffness:
     """Tangential stiffness of the contact in the linear joint, where no point slips.
 
     unit_states       : w = 3 states of the linear joint, a unit motion along x, along y and about z
@@ -166,7 +166,7 @@ class LinearContact:
     joint_stiffness   : (w) [N/m, N.m] of the joint along each motion
     """
 
-    unit_states: ShearStates
+    unit_motion_states: ShearStates
     contact_stiffness: Array
     joint_stiffness: Array
 
@@ -194,7 +194,7 @@ class PatchFit:
     sliders: FrictionPoints
     rotation_displacement: Array
     target_work: FrictionWork
-    linear_contact: LinearContact
+    stick_contact_stiffness: StickContactStiffness
 
     def evaluate_sliders(
         self, shear_states: ShearStates, patch_displacement: Array
@@ -223,7 +223,7 @@ class PatchFit:
         weight = (
             REGULARISATION_WEIGHT
             * np.sqrt(len(self.target_work.cycle_loss) / patch_displacement.size)
-            / np.maximum(typical, MIN_RELATIVE_SCALE * typical.max())
+            / np.maximum(typical, MIN_RELATIVE_DISPLACEMENT_SCALE * typical.max())
         )
         weight = np.broadcast_to(weight, patch_displacement.shape)
         initial = patch_displacement
@@ -262,10 +262,13 @@ class PatchFit:
 
         Returns the errors, and the friction of the sliders in the linear joint.
         """
-        _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
+        _, friction = self.evaluate_sliders(
+            self.stick_contact_stiffness.unit_motion_states, patch_displacement
+        )
         error = (
-            stick_stiffness_matrix(friction, self.sliders.point_area) - self.linear_contact.contact_stiffness
-        ) / self.linear_contact.stiffness_scale
+            stick_stiffness_matrix(friction, self.sliders.point_area)
+            - self.stick_contact_stiffness.contact_stiffness
+        ) / self.stick_contact_stiffness.stiffness_scale
         return np.asarray(STIFFNESS_WEIGHT * error[np.triu_indices(len(error))]), friction
 
     def _stiffness_jacobian(self, patch_displacement: Array, friction: MonotonicFriction) -> Array:
@@ -281,8 +284,10 @@ class PatchFit:
         force = (
             force.reshape(len(force), 2, -1, len(patch_displacement) // 2).sum(axis=2).reshape(len(force), -1)
         )
-        half = np.einsum("im,jk->ijmk", force, self.linear_contact.unit_states.modal_coordinates)
-        slope = (half + half.swapaxes(0, 1)) / self.linear_contact.stiffness_scale[:, :, None, None]
+        half = np.einsum(
+            "im,jk->ijmk", force, self.stick_contact_stiffness.unit_motion_states.modal_coordinates
+        )
+        slope = (half + half.swapaxes(0, 1)) / self.stick_contact_stiffness.stiffness_scale[:, :, None, None]
         return np.asarray(
             STIFFNESS_WEIGHT * slope[np.triu_indices(len(slope))].reshape(-1, patch_displacement.size)
         )
@@ -318,7 +323,7 @@ class PatchFit:
         direction, halves = (u / size, v / size), np.split(displacement, 2)
         secant, tangent = friction.secant_stiffness, friction.tangent_stiffness
 
-        def patch_products(slider_stiffness: Array, slider_displacement: Array) -> Array:
+        def sum_products_over_sliders(slider_stiffness: Array, slider_displacement: Array) -> Array:
             """Slider stiffness (s states) times displacement (3 + k motions and modes), summed in each patch.
 
             Returns an array (s, 3 + k, m) for m patches.
@@ -329,7 +334,7 @@ class PatchFit:
             )
             return np.einsum("scm,cmh->shm", *factors)
 
-        def patch_sums(slider_values: Array) -> Array:
+        def sum_over_sliders(slider_values: Array) -> Array:
             """Values of the sliders in s states, summed over the sliders of each of m patches: (s, m)."""
             return slider_values.reshape(n_states, -1, count).sum(axis=1)
 
@@ -338,10 +343,10 @@ class PatchFit:
         for i, shift in enumerate((u, v)):
             for j in range(2):
                 slope = area * ((i == j) * secant + (tangent - secant) * direction[i] * direction[j])
-                forces[0, :, :, i] += patch_products(slope, halves[j])
-            forces[1, :, :, i] = patch_products(springs, halves[i])
-            patch_forces[:, :, i] = patch_sums(area * secant * shift), patch_sums(springs * shift)
-            loss[:, i] = patch_sums(area * friction.cycle_loss_derivative * direction[i])
+                forces[0, :, :, i] += sum_products_over_sliders(slope, halves[j])
+            forces[1, :, :, i] = sum_products_over_sliders(springs, halves[i])
+            patch_forces[:, :, i] = sum_over_sliders(area * secant * shift), sum_over_sliders(springs * shift)
+            loss[:, i] = sum_over_sliders(area * friction.cycle_loss_derivative * direction[i])
         force_derivative, mode = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
         force_derivative[:, :, 3 + mode, :, :, mode] += patch_forces
         derivatives = *force_derivative, loss[..., None] * amplitude[:, None, None]

@@ -187,7 +187,7 @@ class CellwiseJoint:
         """Pressure (n) [Pa] of the cells in the preloaded joint."""
         return self.reduced_joint.curve.derivatives(self.preload_approach, 0)[0]
 
-    def cell_forces(self, displacements: Array) -> tuple[Array, "CellTangent"]:
+    def cell_forces(self, displacements: Array) -> tuple[Array, "CellTangentStiffness"]:
         """Forces (3 n + b) [N] at displacements (3 n + b) [m] of cells and bolts, and their tangent.
 
         Forces are changes from the preloaded joint. The order is: opening (n), displacement along x (n),
@@ -214,7 +214,7 @@ class CellwiseJoint:
             [-area * (p - self._preload_pressure), area * secant * u, area * secant * v, pull]
         )
         diagonal = [area * k, area * (secant + softening * u * u), area * (secant + softening * v * v), bolt]
-        return force, CellTangent(np.concatenate(diagonal), area * softening * u * v)
+        return force, CellTangentStiffness(np.concatenate(diagonal), area * softening * u * v)
 
     def stiffness(self) -> Array:
         """Stiffness (6, 6) [N/m, N, N.m] of the preloaded joint."""
@@ -261,22 +261,22 @@ class CellwiseJoint:
 
 
 @dataclass(frozen=True, slots=True)
-class CellTangent:
+class CellTangentStiffness:
     """Symmetric tangent (3 n + b, 3 n + b) [N/m] of the forces on n cells and b bolts.
 
     diagonal : (3 n + b) [N/m]
     cross    : (n) [N/m] derivative of the force along x by the displacement along y of the same cell
     """
 
-    diagonal: Array
-    cross: Array
+    diagonal_stiffness: Array
+    tangential_coupling: Array
 
     def multiply(self, matrix: Array) -> Array:
         """Product with a matrix (3 n + b, k)."""
-        n = self.cross.size
-        product = self.diagonal[:, None] * matrix
-        product[n : 2 * n] += self.cross[:, None] * matrix[2 * n : 3 * n]
-        product[2 * n : 3 * n] += self.cross[:, None] * matrix[n : 2 * n]
+        n = self.tangential_coupling.size
+        product = self.diagonal_stiffness[:, None] * matrix
+        product[n : 2 * n] += self.tangential_coupling[:, None] * matrix[2 * n : 3 * n]
+        product[2 * n : 3 * n] += self.tangential_coupling[:, None] * matrix[n : 2 * n]
         return product
 
     def solve(self, compliance: Array, right_side: Array) -> Array:
@@ -285,11 +285,11 @@ class CellTangent:
         Both matrices are symmetric and positive semidefinite. With T = L L^T the symmetric system
         (I + L^T C L) y = L^T r gives x = r - C L y. Neither T nor C needs an inverse.
         """
-        n = self.cross.size
-        root = np.sqrt(np.maximum(self.diagonal, 0.0))
+        n = self.tangential_coupling.size
+        root = np.sqrt(np.maximum(self.diagonal_stiffness, 0.0))
         along_x = root[n : 2 * n]
-        below = np.divide(self.cross, along_x, out=np.zeros(n), where=along_x > 0.0)
-        root[2 * n : 3 * n] = np.sqrt(np.maximum(self.diagonal[2 * n : 3 * n] - below**2, 0.0))
+        below = np.divide(self.tangential_coupling, along_x, out=np.zeros(n), where=along_x > 0.0)
+        root[2 * n : 3 * n] = np.sqrt(np.maximum(self.diagonal_stiffness[2 * n : 3 * n] - below**2, 0.0))
 
         def multiply_root(matrix: Array) -> Array:
             """L^T times a matrix (3 n + b, ...)."""

@@ -11,7 +11,7 @@ import numpy as np
 from jointfmu.contact import roughness
 from jointfmu.quantity import Number
 
-from ...common.options import Option, option_flag
+from ...common.options import Option, format_option_flag
 from .. import fractal
 from ..catalogue import SourcedNumber
 from ..surfaces import form, reading
@@ -120,21 +120,21 @@ def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> Heigh
     for prefix, material in zip(("side1", "side2"), pair, strict=True):
         for name in ("E", "nu"):
             known = material.numbers[name]
-            parameter_sheet.add(
+            parameter_sheet.add_parameter(
                 f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}"
             )
     soft = min(pair, key=lambda material: material.numbers["H"].value)
     if options["hardness"] is None:
         known = soft.numbers["H"]
-        parameter_sheet.add("H", known.value, known.kind, f"{soft.title}: {known.source}")
+        parameter_sheet.add_parameter("H", known.value, known.kind, f"{soft.title}: {known.source}")
     else:
         parameter_sheet.add_drawing_number("H", parse_quantity("hardness", options["hardness"]))
     if options["mu"] is None:
-        parameter_sheet.add("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
-        parameter_sheet.set_range("mu", *DEFAULT_MU_LIMITS)
+        parameter_sheet.add_parameter("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
+        parameter_sheet.set_parameter_range("mu", *DEFAULT_MU_LIMITS)
     else:
         parameter_sheet.add_drawing_number("mu", parse_quantity("mu", options["mu"]))
-    parameter_sheet.add("traction_ratio", 0.1, "estimate", "vibration far below slip")
+    parameter_sheet.add_parameter("traction_ratio", 0.1, "estimate", "vibration far below slip")
     return _add_roughness(parameter_sheet, read_faces(options), options["longest_wave"])
 
 
@@ -148,12 +148,12 @@ def _add_roughness(
     )
     texts = "; ".join(f"side {i + 1}: {face.height_source}" for i, face in enumerate(faces))
     spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the ranges of the heights" if high > low else ""
-    parameter_sheet.add(
+    parameter_sheet.add_parameter(
         "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
     )
     if high > low and not any(face.is_from_finish for face in faces):
-        parameter_sheet.set_range("h", low, high)
-    parameter_sheet.add(
+        parameter_sheet.set_parameter_range("h", low, high)
+    parameter_sheet.add_parameter(
         "gamma", roughness.PERSSON_GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)"
     )
     longest = max((face.longest_wave for face in faces), key=lambda known: known.value)
@@ -165,7 +165,7 @@ def _add_roughness(
     parameter_sheet.add_sourced_number("hurst", rough.hurst_exponent)
     slopes = [face.rms_slope for face in faces]
     value = float(roughness.combine_heights(*(known.value for known in slopes)))
-    parameter_sheet.add(
+    parameter_sheet.add_parameter(
         "slope", value, "estimate", "both sides together; " + "; ".join({known.source for known in slopes})
     )
     _add_fractal_parameters(parameter_sheet)
@@ -179,11 +179,11 @@ def _add_roughness(
 
 def _add_fractal_parameters(parameter_sheet: ParameterSheet) -> None:
     """Add D and G of profiles of an isotropic surface with the same rms height, for laws that need them."""
-    h, wave, hurst = (parameter_sheet.value_of(name) for name in ("h", "longest_wave", "hurst"))
+    h, wave, hurst = (parameter_sheet.get_value(name) for name in ("h", "longest_wave", "hurst"))
     D, text = 2.0 - hurst, f"rms height {h:.3g} m of all waves up to {wave:g} m"
-    parameter_sheet.add("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
-    parameter_sheet.add("surface.G", fractal_roughness(D, h, wave), "derived", text)
-    parameter_sheet.add("surface.gamma", DEFAULT_FREQUENCY_RATIO, "estimate", "the usual value")
+    parameter_sheet.add_parameter("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
+    parameter_sheet.add_parameter("surface.G", fractal_roughness(D, h, wave), "derived", text)
+    parameter_sheet.add_parameter("surface.gamma", DEFAULT_FREQUENCY_RATIO, "estimate", "the usual value")
 
 
 def fractal_roughness(D: float, h: float, longest_wave: float) -> float:
@@ -208,7 +208,7 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
     finishes = expand_to_sides("finish", options["finish"])
     if len(heights) > 1:
         raise ValueError(
-            f"{' and '.join(map(option_flag, heights))} are given together; state the roughness once"
+            f"{' and '.join(map(format_option_flag, heights))} are given together; state the roughness once"
         )
     if heights == ["surface"] and finishes:
         raise ValueError("--surface and --finish are both given; state one of them: a scan has its own slope")

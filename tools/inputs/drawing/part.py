@@ -10,7 +10,7 @@ from typing import Any
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import build_parameter_set, flat_fields
+from jointfmu.quantity import build_parameter_set, flatten_fields
 
 from ...common.options import Option
 from ..catalogue import SourcedNumber
@@ -67,32 +67,34 @@ class ParameterSheet:
     ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
     roughness: dict[str, tuple[float, str, str]] = field(default_factory=dict)
 
-    def add(self, parameter_name: str, value: Any, kind: str, source: str) -> None:
+    def add_parameter(self, parameter_name: str, value: Any, kind: str, source: str) -> None:
         """Add a parameter; with the prefix `inputs.`, the start value of an input."""
         if parameter_name.startswith("inputs."):
             self.inputs[parameter_name.removeprefix("inputs.")] = value
         self.entries[parameter_name] = (value, kind, source)
 
-    def set_range(self, parameter_name: str, low: float, high: float) -> None:
+    def set_parameter_range(self, parameter_name: str, low: float, high: float) -> None:
         """Set the lower and upper limit that the source of a parameter states."""
         self.ranges[parameter_name] = (low, high)
 
     def add_drawing_value(self, parameter_name: str, value: object) -> None:
         """Add a parameter that the user states on the drawing."""
-        self.add(parameter_name, value, "user", "stated on the drawing")
+        self.add_parameter(parameter_name, value, "user", "stated on the drawing")
 
     def add_drawing_number(self, parameter_name: str, number: StatedNumber) -> None:
         """Add a number that the user states on the drawing, with its range if the user states one."""
         text = f"stated on the drawing: {number.low:g} to {number.high:g}, taken as the middle"
-        self.add(parameter_name, number.value, "user", text if number.is_range else "stated on the drawing")
+        self.add_parameter(
+            parameter_name, number.value, "user", text if number.is_range else "stated on the drawing"
+        )
         if number.is_range:
-            self.set_range(parameter_name, number.low, number.high)
+            self.set_parameter_range(parameter_name, number.low, number.high)
 
     def add_sourced_number(self, parameter_name: str, number: SourcedNumber) -> None:
         """Add a parameter with the value and source of a tabulated number."""
-        self.add(parameter_name, number.value, number.kind, number.source)
+        self.add_parameter(parameter_name, number.value, number.kind, number.source)
 
-    def value_of(self, parameter_name: str) -> Any:
+    def get_value(self, parameter_name: str) -> Any:
         return self.entries[parameter_name][0]
 
     def build_file(self, parameter_set_name: str) -> ParameterFile:
@@ -101,7 +103,7 @@ class ParameterSheet:
         Raises ValueError for a missing value, or for a value outside its allowed interval.
         """
         cls = KINDS[self.joint].laws[self.law]
-        declared = {key for key, _ in flat_fields(cls)}
+        declared = {key for key, _ in flatten_fields(cls)}
         parameters = {key: entry for key, entry in self.entries.items() if key in declared}
         starts = {key: entry for key, entry in self.entries.items() if key.startswith("inputs.")}
         entries = parameters | starts

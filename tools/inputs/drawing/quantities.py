@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from jointfmu.quantity.units import conversion_factor
 
-from ...common.options import option_flag
+from ...common.options import format_option_flag
 from .reading import NUMBER_PATTERN, check_separators
 
 _RANGE_PATTERN = re.compile(r"(.+?)\s*\.\.\s*(.+)")
@@ -224,7 +224,7 @@ def parse_quantity(option: str, text: str, default_unit: str | None = None) -> S
         value = _parse_value(option, text, default_unit)
         return StatedNumber(value, value, value)
     if not quantity.allows_range:
-        raise ValueError(f"{option_flag(option)} = {text!r} is a range; expected one number")
+        raise ValueError(f"{format_option_flag(option)} = {text!r} is a range; expected one number")
     unit = number[2] if (number := NUMBER_PATTERN.fullmatch(match[2])) else ""
     has_unit = (first := NUMBER_PATTERN.fullmatch(match[1])) is None or first[2]
     low, high = (
@@ -232,7 +232,7 @@ def parse_quantity(option: str, text: str, default_unit: str | None = None) -> S
         for end in (match[1] if has_unit else match[1] + unit, match[2])
     )
     if not low < high:
-        raise ValueError(f"{option_flag(option)} = {text!r} is not a range; expected LOW..HIGH")
+        raise ValueError(f"{format_option_flag(option)} = {text!r} is not a range; expected LOW..HIGH")
     return StatedNumber(0.5 * (low + high), low, high)
 
 
@@ -240,7 +240,7 @@ def parse_value(option: str, text: str, default_unit: str | None = None) -> floa
     """Parse the number of an option in its SI unit. Raises ValueError as `parse_quantity`, or for a range."""
     number = parse_quantity(option, text, default_unit)
     if number.is_range:
-        raise ValueError(f"{option_flag(option)} = {text!r} is a range; expected one number")
+        raise ValueError(f"{format_option_flag(option)} = {text!r} is a range; expected one number")
     return number.value
 
 
@@ -253,14 +253,15 @@ def parse_values(option: str, text: str, *, separator: str, count: int) -> list[
     if len(words) != count:
         example = separator.join(["200", "100"][:count])
         raise ValueError(
-            f"{option_flag(option)} = {text!r} has {len(words)} numbers, expected {count}, as in {example}"
+            f"{format_option_flag(option)} = {text!r} has {len(words)} numbers, expected {count}, as "
+            f"in {example}"
         )
     return [parse_value(option, word) for word in words]
 
 
 def _parse_value(option: str, text: str, default_unit: str | None) -> float:
     """Parse one number in the SI unit of its option."""
-    quantity, flag = QUANTITIES[option], option_flag(option)
+    quantity, flag = QUANTITIES[option], format_option_flag(option)
     unit = default_unit or quantity.unit
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
@@ -308,7 +309,9 @@ def _check_limits(option: str, text: str, magnitude: float) -> None:
         return
     interval = f"{lower}, {high:g}]" if high < math.inf else f"{lower}, inf)"
     unit = "" if quantity.unit == "1" else f" {quantity.unit}"
-    raise ValueError(f"{option_flag(option)} = {text!r} is outside {interval}{unit}: {quantity.meaning}")
+    raise ValueError(
+        f"{format_option_flag(option)} = {text!r} is outside {interval}{unit}: {quantity.meaning}"
+    )
 
 
 def _unit_size(quantity: DrawingQuantity, unit: str) -> float:

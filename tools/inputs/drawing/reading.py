@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, LUBRICANT_TEMPERATURES, conversion_factor
 
-from ...common.options import option_flag
+from ...common.options import format_option_flag
 
 _TEMPERATURE_PATTERN = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
 NUMBER_PATTERN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
@@ -24,7 +24,7 @@ def check_separators(option: str, number_text: str) -> None:
     advice = f"{point} with a decimal point" if text.count(",") == 1 else joined
     if _THOUSANDS_PATTERN.fullmatch(text) and text.count(",") == 1:
         advice += f", or {joined} if the comma separates thousands"
-    raise ValueError(f"{option_flag(option)} = {number_text!r} has a comma; write {advice}")
+    raise ValueError(f"{format_option_flag(option)} = {number_text!r} has a comma; write {advice}")
 
 
 def parse_number(
@@ -45,14 +45,14 @@ def parse_number(
     if unit == "1":
         example = "expected a number without a unit"
     if not match:
-        raise ValueError(f"{option_flag(option)} = {number_text!r} is not a number; {example}")
+        raise ValueError(f"{format_option_flag(option)} = {number_text!r} is not a number; {example}")
     try:
         value = float(match[1]) * conversion_factor(match[2] or unit, target_unit)
     except ValueError as error:
-        raise ValueError(f"{option_flag(option)} = {number_text!r}: {error}; {example}") from None
+        raise ValueError(f"{format_option_flag(option)} = {number_text!r}: {error}; {example}") from None
     if not math.isfinite(value) or (lower_bound is not None and not value > lower_bound):
         low = "-inf" if lower_bound is None else f"{lower_bound:g}"
-        raise ValueError(f"{option_flag(option)} = {number_text!r} is outside ({low}, inf)")
+        raise ValueError(f"{format_option_flag(option)} = {number_text!r} is outside ({low}, inf)")
     return value
 
 
@@ -64,14 +64,14 @@ def parse_temperature(option: str, temperature_text: str) -> float:
     match = _TEMPERATURE_PATTERN.fullmatch(temperature_text.strip())
     if not match:
         raise ValueError(
-            f"{option_flag(option)} = {temperature_text!r} is not a temperature; expected 45, 45degC "
+            f"{format_option_flag(option)} = {temperature_text!r} is not a temperature; expected 45, 45degC "
             "or 318.15K"
         )
     kelvin = float(match[1]) + (0.0 if match[2] == "K" else CELSIUS_ZERO_IN_KELVIN)
     if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
         low, high = (end - CELSIUS_ZERO_IN_KELVIN for end in LUBRICANT_TEMPERATURES)
         raise ValueError(
-            f"{option_flag(option)} = {temperature_text!r} is {kelvin:g} K, outside [{low:g}, "
+            f"{format_option_flag(option)} = {temperature_text!r} is {kelvin:g} K, outside [{low:g}, "
             f"{high:g}] degC; write "
             "kelvin as 318.15K"
         )
@@ -96,7 +96,7 @@ def parse_numbers(
     if len(words) != count:
         example = separator.join(["200", "100"][:count])
         raise ValueError(
-            f"{option_flag(option)} = {numbers_text!r} has {len(words)} numbers, expected {count}, as "
+            f"{format_option_flag(option)} = {numbers_text!r} has {len(words)} numbers, expected {count}, as "
             f"in {example}"
         )
     return [parse_number(option, word, unit, target_unit, lower_bound) for word in words]
@@ -111,6 +111,7 @@ def expand_to_sides(option: str, texts: Sequence[str] | None) -> tuple[str, str]
         return None
     if len(texts) > 2:
         raise ValueError(
-            f"{option_flag(option)} has {len(texts)} values, state one for both sides, or one for each side"
+            f"{format_option_flag(option)} has {len(texts)} values, state one for both sides, or one "
+            "for each side"
         )
     return texts[0], texts[-1]

@@ -192,9 +192,9 @@ MIN_LARGE_THREAD_DIAMETER = 16e-3
 """Thread diameter [m] above which the second strength of a property class in the table holds."""
 
 
-def property_class_strength(property_class: str, stress_kind: str, thread: Thread) -> float:
+def property_class_strength(property_class: str, strength_kind: str, thread: Thread) -> float:
     """Strength [Pa] of a property class, "yield" or "proof", for a thread."""
-    return read_property_classes()[property_class][stress_kind][
+    return read_property_classes()[property_class][strength_kind][
         int(thread.nominal_diameter > MIN_LARGE_THREAD_DIAMETER)
     ]
 

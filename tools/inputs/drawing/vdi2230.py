@@ -76,9 +76,9 @@ def cone_slope(grip: float, bearing_diameter: float, outer_diameter: float, is_t
     return float(0.362 + 0.032 * np.log(0.5 * beta) + 0.153 * np.log(y))
 
 
-def cone_diameter(depth: float, bearing_diameter: float, tan_phi: float) -> float:
+def cone_diameter(depth_below_head: float, bearing_diameter: float, tan_phi: float) -> float:
     """Diameter [m] of the deformation cone at a distance [m] below the head."""
-    return bearing_diameter + 2.0 * depth * tan_phi
+    return bearing_diameter + 2.0 * depth_below_head * tan_phi
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,7 +214,7 @@ def shank_length(thread: Thread, grip: float, head_type: str, is_tapped: bool) -
     )
 
 
-STRONGEST_CLASS = "12.9"
+STRONGEST_PROPERTY_CLASS = "12.9"
 """The strongest property class of ISO 898-1."""
 
 
@@ -228,6 +228,6 @@ def proof_load(hole_diameter: float) -> tuple[float, str] | None:
     if not fitting or hole_diameter > 1.2 * largest.nominal_diameter:
         return None
     bolt = max(fitting, key=lambda thread: thread.nominal_diameter)
-    load = property_class_strength(STRONGEST_CLASS, "proof", bolt) * stress_area(bolt)
-    name = f"{bolt.name}, class {STRONGEST_CLASS} (ISO 898-1)"
+    load = property_class_strength(STRONGEST_PROPERTY_CLASS, "proof", bolt) * stress_area(bolt)
+    name = f"{bolt.name}, class {STRONGEST_PROPERTY_CLASS} (ISO 898-1)"
     return load, f"the proof load of {name}, the largest bolt that passes the hole"

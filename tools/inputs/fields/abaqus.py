@@ -67,7 +67,7 @@ def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float)
             f"{path}: has no contact pressure, a column {PRESSURE_COLUMN} for nodes (Unique Nodal)"
         )
     if meshes:
-        return _result_on_deck(path, meshes[0], values, left_out, length_unit, pressure_unit)
+        return _combine_pressures_with_deck(path, meshes[0], values, left_out, length_unit, pressure_unit)
     for table, text in (
         (values.position, "no coordinates, columns COOR1, COOR2 and COOR3 (COORD)"),
         (values.area, f"no nodal areas, a column {AREA_COLUMN}"),
@@ -88,7 +88,7 @@ def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float)
     )
 
 
-def _result_on_deck(
+def _combine_pressures_with_deck(
     path: Path,
     mesh_path: Path,
     listed_values: NodalValues,
@@ -123,7 +123,7 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
         lines = read_lines(path, "an Abaqus listing")
         report = any(line.lstrip().startswith("Field Output") for line in lines)
         left_out |= not report
-        for row in _report_rows(path, lines) if report else _data_file_rows(path, lines):
+        for row in _read_report_rows(path, lines) if report else _read_data_file_rows(path, lines):
             frame = frames.setdefault(row.step_and_increment, NodalValues({}, {}, {}))
             key = row.part_instance, row.node_number
             for name, table in ((PRESSURE_COLUMN, frame.pressure), (AREA_COLUMN, frame.area)):
@@ -144,7 +144,7 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
     return NodalValues(values.pressure, values.area, coordinates | values.position), left_out
 
 
-def _report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
+def _read_report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
     """Rows of the nodal tables of a field report; tables by element are ignored."""
     step = frame = instance = ""
     head: list[str] | None = None  # lines between the name of the part and the rows
@@ -191,7 +191,7 @@ def _column_names(file_and_line: str, head_lines: Sequence[str]) -> list[str]:
         raise ValueError(
             f"{file_and_line}: has {count} columns, their names cannot be separated: {' '.join(words)}"
         )
-    columns = [_standard_name(name) for name in names]
+    columns = [_standardise_column_name(name) for name in names]
     if columns.count(PRESSURE_COLUMN) > 1:
         raise ValueError(
             f"{file_and_line}: has {columns.count(PRESSURE_COLUMN)} columns {PRESSURE_COLUMN}, expected one "
@@ -200,7 +200,7 @@ def _column_names(file_and_line: str, head_lines: Sequence[str]) -> list[str]:
     return columns
 
 
-def _standard_name(column_heading: str) -> str:
+def _standardise_column_name(column_heading: str) -> str:
     """Standard name of a column: COOR1 for COORD.COOR1, CPRESS for CPRESS with a contact pair."""
     first = column_heading.split()[0]
     return first.removeprefix("COORD.") if first.startswith("COORD.") else first
@@ -233,7 +233,7 @@ def _parse_row(
     )
 
 
-def _data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
+def _read_data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
     """Rows of the nodal tables of a data file."""
     step = increment = ""
     columns: list[str] = []

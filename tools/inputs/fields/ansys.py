@@ -15,7 +15,7 @@ import numpy as np
 from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import FiniteElementMesh, missing_reader_error
+from .mesh import FiniteElementMesh, make_missing_reader_error
 from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
 _LISTING_ELEMENT_COLUMNS = 6
@@ -36,7 +36,7 @@ def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) 
     elements: list[list[int]] = []
     meshes = [path for path in paths[1:] if path.suffix.lower() == ".cdb"]
     for path in (path for path in paths if path not in meshes):
-        for location, content, row in _listing_rows(path):
+        for location, content, row in _read_listing_rows(path):
             if content == "element":
                 elements.append([int(x) for x in row[_LISTING_ELEMENT_COLUMNS:]])
             elif content == "more":
@@ -49,7 +49,7 @@ def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) 
                     raise ValueError(f"{location}: node {name} has a second {content}, expected one")
     first = paths[0]
     if meshes and values:
-        return _result_on_archive(first, meshes[0], values, length_unit, pressure_unit)
+        return _combine_pressures_with_archive(first, meshes[0], values, length_unit, pressure_unit)
     for entries, text in (
         (values, f"no contact pressure, a table with NODE and {PRESSURE_COLUMN} (PRNSOL,CONT)"),
         (coordinates, "no nodes, a table with NODE, X, Y and Z (NLIST)"),
@@ -57,10 +57,10 @@ def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) 
     ):
         if not entries:
             raise InputRefusal(f"{first}: has {text}; give further listings", "beside")
-    return _nodal_result(first, values, coordinates, elements, length_unit, pressure_unit)
+    return _build_nodal_result(first, values, coordinates, elements, length_unit, pressure_unit)
 
 
-def _result_on_archive(
+def _combine_pressures_with_archive(
     path: Path,
     archive_path: Path,
     listed_pressures: dict[int, float],
@@ -74,7 +74,7 @@ def _result_on_archive(
     return mesh.nodal_result(path, listed_pressures, length_unit, pressure_unit)
 
 
-def _nodal_result(
+def _build_nodal_result(
     path: Path,
     listed_pressures: dict[int, float],
     coordinates: dict[int, tuple[float, ...]],
@@ -111,7 +111,7 @@ def _nodal_result(
     )
 
 
-def _listing_rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
+def _read_listing_rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
     """All rows of a listing as (file and line, content, numbers).
 
     The content is "pressure", "place" (coordinates), "element", or "more" (more nodes of an element).
@@ -231,7 +231,7 @@ def _open_archive(path: Path) -> Any:
     try:
         import mapdl_archive
     except ImportError as error:
-        raise missing_reader_error(path, error) from None
+        raise make_missing_reader_error(path, error) from None
     check_regular_file(path, "an ANSYS archive (CDWRITE)")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected an ANSYS archive (CDWRITE)")

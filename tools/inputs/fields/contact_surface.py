@@ -77,7 +77,7 @@ class ContactSurface:
         """File and number of a node of the contact, for messages."""
         return self.source_result.describe_node(int(self.node_indices[contact_node]))
 
-    def select_field(self, node_mask: NDArray[np.bool_]) -> ContactField:
+    def select_pressure_field(self, node_mask: NDArray[np.bool_]) -> ContactField:
         """Pressure field of the selected nodes, from a mask (n)."""
         return ContactField(self.area[node_mask], self.position[node_mask], self.pressure[node_mask])
 

@@ -22,12 +22,12 @@ CELL_TYPES = {
     **dict(enumerate(("triangle", "triangle6", "quad", "quad8", "line", "line3"), 7)),
 }
 """Cell type of meshio for each element type of the format."""
-NODE_ORDER = {
+MESHIO_NODE_ORDER = {
     "hexahedron20": [*range(12), *range(16, 20), *range(12, 16)],
     "wedge15": [*range(9), *range(12, 15), *range(9, 12)],
 }
 """Node order of meshio for cells in which the format lists the mid-side nodes in another order."""
-RESULT_NAME, PRESSURE_COMPONENT = "CONTACT", "CPRESS"
+CONTACT_RESULT_NAME, PRESSURE_COMPONENT = "CONTACT", "CPRESS"
 
 
 def read_frd(path: Path, length_unit: float, pressure_unit: float) -> NodalResult:
@@ -65,14 +65,14 @@ def _block_lines(lines: list[str], start_line: int) -> Iterator[tuple[int, str]]
         yield number, lines[number]
 
 
-def _find_block(path: Path, lines: list[str], block_key: str, content_name: str) -> int:
+def _find_block(path: Path, lines: list[str], block_key: str, block_description: str) -> int:
     """Line number of the last block with this key; ValueError if there is none or if it is binary.
 
     content_name : name of the content in the message
     """
     starts = [i for i, line in enumerate(lines) if line.startswith(block_key)]
     if not starts:
-        raise ValueError(f"{path}: has no {content_name}, expected a block {block_key.strip()}")
+        raise ValueError(f"{path}: has no {block_description}, expected a block {block_key.strip()}")
     if lines[starts[-1]].rstrip().endswith(("2", "3")):
         raise ValueError(f"{path}: line {starts[-1] + 1}: is binary, expected an ASCII .frd file")
     return starts[-1]
@@ -88,7 +88,7 @@ def _read_nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]
     return np.array(names, dtype=np.int64), np.array(coordinates)
 
 
-def _parse_row(path: Path, line_index: int, line: str, min_count: int) -> tuple[int, list[float]]:
+def _parse_row(path: Path, line_index: int, line: str, min_value_count: int) -> tuple[int, list[float]]:
     """Node number and values of a line -1: I10 after the key, then E12.5 without blanks between.
 
     Raises ValueError if the line has fewer than `min_count` values.
@@ -98,9 +98,9 @@ def _parse_row(path: Path, line_index: int, line: str, min_count: int) -> tuple[
         values = [float(line[i : i + 12]) for i in range(13, len(line.rstrip()), 12)]
     except ValueError:
         values = []
-    if len(values) < min_count or not line.startswith(" -1") or not all(map(isfinite, values)):
+    if len(values) < min_value_count or not line.startswith(" -1") or not all(map(isfinite, values)):
         raise ValueError(
-            f"{path}: line {line_index + 1}: {line[:60]!r} is not a node with {min_count} numbers"
+            f"{path}: line {line_index + 1}: {line[:60]!r} is not a node with {min_value_count} numbers"
         )
     return name, values
 
@@ -120,7 +120,9 @@ def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
                 f"{path}: line {number + 1}: {line[:60]!r} is not an element of the format"
             ) from None
         if len(nodes) == CELL_NODE_COUNTS.get(kind):
-            cells.setdefault(kind, []).append([nodes[i] for i in NODE_ORDER.get(kind, range(len(nodes)))])
+            cells.setdefault(kind, []).append(
+                [nodes[i] for i in MESHIO_NODE_ORDER.get(kind, range(len(nodes)))]
+            )
     return cells
 
 
@@ -131,12 +133,14 @@ def _read_pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]
     leaves out nodes whose gap is too large for a contact spring.
     """
     starts = [
-        i for i, line in enumerate(lines) if line.startswith(" -4") and line[5:13].strip() == RESULT_NAME
+        i
+        for i, line in enumerate(lines)
+        if line.startswith(" -4") and line[5:13].strip() == CONTACT_RESULT_NAME
     ]
     if not starts:
         available = sorted({line[5:13].strip() for line in lines if line.startswith(" -4")})
         raise ValueError(
-            f"{path}: has no result {RESULT_NAME} (*CONTACT FILE with CSTR); "
+            f"{path}: has no result {CONTACT_RESULT_NAME} (*CONTACT FILE with CSTR); "
             f"there are {', '.join(available) or 'none'}"
         )
     names: list[str] = []
@@ -146,7 +150,7 @@ def _read_pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]
             continue
         if PRESSURE_COMPONENT not in names:
             raise ValueError(
-                f"{path}: line {number + 1}: {RESULT_NAME} has no {PRESSURE_COMPONENT}; there are "
+                f"{path}: line {number + 1}: {CONTACT_RESULT_NAME} has no {PRESSURE_COMPONENT}; there are "
                 f"{', '.join(names)}"
             )
         name, values = _parse_row(path, number, line, len(names))

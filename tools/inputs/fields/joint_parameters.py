@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.mechanics.footprint.distribution import (
-    BOLT_MEAN_NAMES,
+    BOLT_POSITION_MEAN_NAMES,
     MAX_PATCHES,
     PressureDistribution,
     moment_pressure,
@@ -27,7 +27,7 @@ FORCE_TOLERANCE = 0.01
 """Largest relative difference of the field's force from the total preload [1]."""
 MOMENT_RATIO_RANGE = (0.5, 1.5)
 """Allowed range of the moment of the pressure over the given moment [1]; bolt forces carry the rest."""
-_REPLACED_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
+_REPLACED_PARAMETER_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
 """Prefixes of the entries that a field replaces. Bodies are replaced too: they belong to another contact."""
 
 
@@ -79,11 +79,13 @@ def insert_field(
         positions = bolt_positions - contact_field.centroid
         bolt_means = position_means(positions)
         new_values |= {
-            f"field.{name}": value for name, value in zip(BOLT_MEAN_NAMES, bolt_means, strict=True)
+            f"field.{name}": value for name, value in zip(BOLT_POSITION_MEAN_NAMES, bolt_means, strict=True)
         }
         new_values |= {f"field.each_bolt_{a}": tuple(positions[:, i].tolist()) for i, a in enumerate("xy")}
     old_values = {
-        n: v for n, v in parameter_file.values_by_name.items() if not n.startswith(_REPLACED_PREFIXES)
+        n: v
+        for n, v in parameter_file.values_by_name.items()
+        if not n.startswith(_REPLACED_PARAMETER_PREFIXES)
     }
     text = (
         f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for "
@@ -92,9 +94,13 @@ def insert_field(
     return replace(
         parameter_file,
         values=build_parameter_set(type(parameter_file.values), old_values | new_values),
-        origins={n: k for n, k in parameter_file.origins.items() if not n.startswith(_REPLACED_PREFIXES)}
+        origins={
+            n: k for n, k in parameter_file.origins.items() if not n.startswith(_REPLACED_PARAMETER_PREFIXES)
+        }
         | dict.fromkeys(new_values, "derived"),
-        sources={n: s for n, s in parameter_file.sources.items() if not n.startswith(_REPLACED_PREFIXES)}
+        sources={
+            n: s for n, s in parameter_file.sources.items() if not n.startswith(_REPLACED_PARAMETER_PREFIXES)
+        }
         | dict.fromkeys(new_values, text)
         | {
             "A_0": f"{field_source}, sum of the nodal areas",
@@ -124,7 +130,7 @@ def normalise_pressure_field(
     force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =
     L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p is the centre of pressure.
     """
-    scale = _force_ratio(joint, contact_field, preload, "the field", force_tolerance)
+    scale = _bolt_force_ratio(joint, contact_field, preload, "the field", force_tolerance)
     area = float(np.sum(contact_field.area))
     share, position = contact_field.area / area, contact_field.position - contact_field.centroid
     mean = preload * joint.n_bolts / area
@@ -134,7 +140,7 @@ def normalise_pressure_field(
         return PressureDistribution(share, position, equal, tilt)
     if moment is None or not np.isfinite(moment) or moment == 0.0:
         raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
-    scale = _force_ratio(joint, moment_field, preload, "the field with a moment", force_tolerance)
+    scale = _bolt_force_ratio(joint, moment_field, preload, "the field with a moment", force_tolerance)
     _check_same_nodes(contact_field, moment_field)
     added = scale * moment_field.pressure - mean * equal
     moment_ratio = area * float(share @ (added * position[:, 1])) / moment
@@ -147,7 +153,7 @@ def normalise_pressure_field(
     return PressureDistribution(share, position, equal, added * joint.row_distance * area / moment)
 
 
-def _force_ratio(
+def _bolt_force_ratio(
     joint: BoltedInterface,
     contact_field: ContactField,
     preload: float,

@@ -43,22 +43,22 @@ def nodal_areas(position: Array, faces: Sequence[NodeIndices]) -> Array:
         for cut in LINEAR_FACES[block.shape[1]]:
             nodes = block[:, cut]
             weights = (
-                _quadrilateral_integrals(position[nodes])
+                _integrate_quadrilateral_shape_functions(position[nodes])
                 if len(cut) == 4
-                else _triangle_integrals(position[nodes])
+                else _integrate_triangle_shape_functions(position[nodes])
             )
             area += np.bincount(nodes.ravel(), weights.ravel(), len(position))
     return area
 
 
-def _triangle_integrals(corners: Array) -> Array:
+def _integrate_triangle_shape_functions(corners: Array) -> Array:
     """Integrals (k, 3) of the shape functions of triangles with corners (k, 3, 2)."""
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     return np.repeat(area[:, None] / 3.0, 3, axis=1)
 
 
-def _quadrilateral_integrals(corners: Array) -> Array:
+def _integrate_quadrilateral_shape_functions(corners: Array) -> Array:
     """Integrals (k, 4) of the bilinear shape functions of quadrilaterals with corners (k, 4, 2)."""
     total = np.zeros(corners.shape[:2])
     signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
@@ -217,13 +217,13 @@ class FiniteElementMesh:
             node_numbers=self.node_numbers,
             position=self.position * length_unit,
             pressure=p * pressure_unit,
-            faces=self.faces() if omits_open_nodes else faces_with_values(self.faces(), p),
+            faces=self.faces() if omits_open_nodes else select_faces_with_values(self.faces(), p),
             body_of_node=self.body_of_node(),
             omits_open_nodes=omits_open_nodes,
         )
 
 
-def faces_with_values(faces: Sequence[NodeIndices], nodal_values: Array) -> list[NodeIndices]:
+def select_faces_with_values(faces: Sequence[NodeIndices], nodal_values: Array) -> list[NodeIndices]:
     """Faces whose corners all have a value, from nodal values (n) with NaN for none."""
     has_value = np.isfinite(nodal_values)
     selected = [
@@ -232,7 +232,7 @@ def faces_with_values(faces: Sequence[NodeIndices], nodal_values: Array) -> list
     return [block for block in selected if block.size]
 
 
-def missing_reader_error(path: Path, error: ImportError) -> ValueError:
+def make_missing_reader_error(path: Path, error: ImportError) -> ValueError:
     """Error for a missing package that is needed to read a file."""
     return ValueError(
         f"the package {error.name} is missing, needed to read {path}; "

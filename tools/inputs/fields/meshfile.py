@@ -15,7 +15,7 @@ from .mesh import (
     VOLUME_CELLS,
     boundary_faces,
     label_bodies,
-    missing_reader_error,
+    make_missing_reader_error,
 )
 from .nodal_result import NodalResult
 
@@ -71,7 +71,7 @@ def _read_meshio(path: Path) -> Any:
     try:
         import meshio
     except ImportError as error:
-        raise missing_reader_error(path, error) from None
+        raise make_missing_reader_error(path, error) from None
     check_regular_file(path, "a mesh with point data")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected a mesh with point data")

@@ -22,12 +22,12 @@ NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 """Pattern of a number in a listing, also with a Fortran exponent (1.5D+03)."""
 
 
-def read_lines(path: Path, content: str) -> list[str]:
+def read_lines(path: Path, file_description: str) -> list[str]:
     """Read the lines of a listing; ValueError (one line) if the file cannot be read.
 
     content : name of the content in the message
     """
-    return read_bytes(path, content).decode("latin-1").splitlines()
+    return read_bytes(path, file_description).decode("latin-1").splitlines()
 
 
 @dataclass(frozen=True, slots=True)

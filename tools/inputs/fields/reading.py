@@ -73,13 +73,13 @@ class FieldReader:
             for surface in filter(None, (first, second)):
                 _check_no_open_nodes(surface)
         if second is None:
-            return first.select_field(selected), None
+            return first.select_pressure_field(selected), None
         if second.area.size != first.area.size:
             raise ValueError(
                 f"{moment_path}: has a contact of {second.area.size} nodes, expected those of {path}: "
                 f"{first.area.size}"
             )
-        return first.select_field(selected), second.select_field(selected)
+        return first.select_pressure_field(selected), second.select_pressure_field(selected)
 
     def _read_surface(self, path: Path, companion_files: Sequence[Path]) -> ContactSurface:
         """Read a file and extract the contact surface."""

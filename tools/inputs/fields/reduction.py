@@ -28,9 +28,9 @@ from .sums import (
     PRELOAD_RATIO_RANGE,
     RANDOM_SEED,
     LoadCase,
-    LoadSums,
+    LoadCaseSums,
     SumFunctions,
-    balance_functions,
+    evaluate_equilibrium_functions,
     initial_load_cases,
     max_moment_ratio,
     nodes_per_group,
@@ -41,7 +41,7 @@ GROUPS_PER_SUM = 2
 """Number of groups of nodes over number of independent sums [1]."""
 
 
-def recombine(
+def recombine_weights(
     function_values: Array, node_weights: Array, orthogonal_transform: Array
 ) -> tuple[NodeIndices, Array]:
     """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
@@ -70,7 +70,7 @@ RELATIVE_TOLERANCE = 1e-6
 """Largest relative deviation of a sum [1] of a reduced field."""
 LARGE_FIELD_TOLERANCE = 1e-5
 """Largest relative deviation of a sum [1] of a reduced field with more than MAX_KEPT_NODES nodes."""
-GOAL_DEVIATION_RATIO, ACCEPTED_DEVIATION_RATIO, ADDED_CASE_DEVIATION_RATIO = 0.05, 0.6, 0.15
+TARGET_DEVIATION_RATIO, ACCEPTED_DEVIATION_RATIO, ADDED_CASE_DEVIATION_RATIO = 0.05, 0.6, 0.15
 """Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
 (the margin is for untested ones); deviation from which a test load case is added to the selection."""
 ROUNDING_BITS = 25
@@ -79,7 +79,7 @@ MIN_PIVOT_RATIO = 7e-9
 """Smallest pivot of an independent sum over the largest pivot [1]; sums below it are dependent."""
 SUM_COUNT_FACTOR = 0.93
 """Factor [1] on the number of kept sums, and so of points, from one attempt to the next."""
-INITIAL_RANDOM_LOADS = 100
+INITIAL_RANDOM_LOAD_CASES = 100
 """Number of quasi-random load cases in the selection from the start."""
 SKETCH_ROWS = 600
 """Number of random combinations of the sample nodes (Halko, Martinsson and Tropp 2011); more than the number
@@ -192,13 +192,13 @@ def _search_points(
     limit = max_moment_ratio(sum_functions.joint, rounded_distribution)
     loads = random_load_cases(limit)
     tests = int(np.clip(MAX_TEST_EVALUATIONS / rounded_distribution.area_share.size, *TEST_LOAD_RANGE))
-    system = _SumSystem.from_loads(
+    system = _SumSystem.from_load_case_sums(
         sum_functions,
         rounded_distribution,
         unrounded_distribution,
         sample_distribution,
         sum_functions.compute_sums(
-            rounded_distribution, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOADS)]
+            rounded_distribution, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOAD_CASES)]
         ),
     )
     best, best_deviation = None, LARGE_FIELD_TOLERANCE
@@ -226,15 +226,15 @@ def _deviation_above_tested_moments(
     sum_functions: SumFunctions,
     normalised_pressure: PressureDistribution,
     reduced_points: PressureDistribution,
-    moment_limit: float,
+    moment_ratio_limit: float,
 ) -> float:
     """Largest deviation [1] of the sums at moments up to the one at which a row of bolts loses its force.
 
     moment_limit : smallest of these moments over the largest one [1]
     """
-    if moment_limit >= 1.0:
+    if moment_ratio_limit >= 1.0:
         return 0.0
-    moments = np.linspace(moment_limit, 1.0, 6)[1:].tolist()
+    moments = np.linspace(moment_ratio_limit, 1.0, 6)[1:].tolist()
     loads = [LoadCase(p, sign * m, 0.0) for p in PRELOAD_RATIO_RANGE for m in moments for sign in (-1.0, 1.0)]
     return float(
         np.max(
@@ -263,22 +263,22 @@ class _SumSystem:
     unrounded_distribution: PressureDistribution
     sample_distribution: PressureDistribution
     mixing_matrix: Array
-    load_sums: LoadSums
-    balance_scale: Array
+    load_case_sums: LoadCaseSums
+    equilibrium_scale: Array
     sketch_matrix: Array
 
     @classmethod
-    def from_loads(
+    def from_load_case_sums(
         cls,
         sum_functions: SumFunctions,
         rounded_distribution: PressureDistribution,
         unrounded_distribution: PressureDistribution,
         sample_distribution: PressureDistribution,
-        load_sums: LoadSums,
+        load_case_sums: LoadCaseSums,
     ) -> "_SumSystem":
         """System of the sums of `balance_functions`, and of the sums in initial load cases."""
         scale = np.maximum(
-            np.max(np.abs(balance_functions(rounded_distribution)), axis=0), np.finfo(float).tiny
+            np.max(np.abs(evaluate_equilibrium_functions(rounded_distribution)), axis=0), np.finfo(float).tiny
         )
         mixing = np.random.default_rng(RANDOM_SEED).standard_normal(
             (SKETCH_ROWS, sample_distribution.area_share.size)
@@ -286,8 +286,8 @@ class _SumSystem:
         mixing *= np.sqrt(sample_distribution.area_share / SKETCH_ROWS)
         sketch = mixing @ np.concatenate(
             [
-                balance_functions(sample_distribution) / scale,
-                sum_functions.function_values(sample_distribution, load_sums),
+                evaluate_equilibrium_functions(sample_distribution) / scale,
+                sum_functions.function_values(sample_distribution, load_case_sums),
             ],
             axis=1,
         )
@@ -297,28 +297,29 @@ class _SumSystem:
             unrounded_distribution,
             sample_distribution,
             mixing,
-            load_sums,
+            load_case_sums,
             scale,
             sketch,
         )
 
-    def add_load_cases(self, load_sums: LoadSums) -> None:
+    def add_load_cases(self, load_case_sums: LoadCaseSums) -> None:
         """Add the sums in more load cases."""
         self.sketch_matrix = np.concatenate(
             [
                 self.sketch_matrix,
-                self.mixing_matrix @ self.sum_functions.function_values(self.sample_distribution, load_sums),
+                self.mixing_matrix
+                @ self.sum_functions.function_values(self.sample_distribution, load_case_sums),
             ],
             axis=1,
         )
-        self.load_sums = self.load_sums.concatenate(load_sums)
+        self.load_case_sums = self.load_case_sums.concatenate(load_case_sums)
 
     def function_values(self, normalised_pressure: PressureDistribution) -> Array:
         """Values (n, r) of all r functions at the n nodes of a pressure distribution."""
         return np.concatenate(
             [
-                balance_functions(normalised_pressure) / self.balance_scale,
-                self.sum_functions.function_values(normalised_pressure, self.load_sums),
+                evaluate_equilibrium_functions(normalised_pressure) / self.equilibrium_scale,
+                self.sum_functions.function_values(normalised_pressure, self.load_case_sums),
             ],
             axis=1,
         )
@@ -332,7 +333,7 @@ class _SumSystem:
         fixed = find_peak_nodes(self.rounded_distribution)
         try:
             candidates, share = self._select_groups(independent, turn, fixed)
-            selected, share = recombine(self._selected_values(candidates, independent), share, turn)
+            selected, share = recombine_weights(self._selected_values(candidates, independent), share, turn)
         except RuntimeError:  # round-off
             return None
         selected = candidates[selected]
@@ -340,9 +341,9 @@ class _SumSystem:
         target = np.concatenate(
             [
                 self.rounded_distribution.area_share
-                @ balance_functions(self.rounded_distribution)
-                / self.balance_scale,
-                self.load_sums.total_sums.ravel(),
+                @ evaluate_equilibrium_functions(self.rounded_distribution)
+                / self.equilibrium_scale,
+                self.load_case_sums.total_sums.ravel(),
             ]
         )
         target -= self.rounded_distribution.area_share[fixed] @ self.function_values(
@@ -351,17 +352,17 @@ class _SumSystem:
         best, count = None, independent.size
         tolerance = ACCEPTED_DEVIATION_RATIO * LARGE_FIELD_TOLERANCE
         while count > 1 and np.max(np.abs(share @ values - target)) <= tolerance:
-            best, tolerance = (selected, share), GOAL_DEVIATION_RATIO * RELATIVE_TOLERANCE
+            best, tolerance = (selected, share), TARGET_DEVIATION_RATIO * RELATIVE_TOLERANCE
             count = int(SUM_COUNT_FACTOR * count)
             try:
-                fewer, share = recombine(values[:, independent[:count]], share, turn[:count, :count])
+                fewer, share = recombine_weights(values[:, independent[:count]], share, turn[:count, :count])
             except RuntimeError:
                 break
             selected, values = selected[fewer], values[fewer]
         if best is None:
             return None
         points = self.unrounded_distribution.select_nodes(np.concatenate([fixed, best[0]]))
-        return _correct_balance(
+        return _restore_equilibrium(
             points, np.concatenate([self.rounded_distribution.area_share[fixed], best[1]])
         )
 
@@ -377,14 +378,14 @@ class _SumSystem:
         group = np.arange(share.size) // nodes_per_group(share.size)
         old_share = np.asarray(np.bincount(group, share), dtype=np.float64)
         nonempty = np.flatnonzero(old_share)
-        sums = self._group_sums(function_indices)
+        sums = self._sum_over_groups(function_indices)
         np.subtract.at(
             sums,
             group[fixed_nodes],
             self.rounded_distribution.area_share[fixed_nodes, None]
             * self._selected_values(fixed_nodes, function_indices),
         )
-        selected, new_share = recombine(
+        selected, new_share = recombine_weights(
             sums[nonempty] / old_share[nonempty, None], old_share[nonempty], orthogonal_transform
         )
         scale = np.zeros(old_share.size)
@@ -393,29 +394,31 @@ class _SumSystem:
         nodes = np.flatnonzero(share)
         return nodes, share[nodes]
 
-    def _group_sums(self, function_indices: NodeIndices) -> Array:
+    def _sum_over_groups(self, function_indices: NodeIndices) -> Array:
         """Sums (g, k) of k selected functions over g groups of nodes."""
-        share, count = self.rounded_distribution.area_share[:, None], self.balance_scale.size
+        share, count = self.rounded_distribution.area_share[:, None], self.equilibrium_scale.size
         is_balance = function_indices < count
         load, function = np.divmod(function_indices[~is_balance] - count, 9)
-        values = (balance_functions(self.rounded_distribution) / self.balance_scale)[
+        values = (evaluate_equilibrium_functions(self.rounded_distribution) / self.equilibrium_scale)[
             :, function_indices[is_balance]
         ]
-        out = np.empty((self.load_sums.group_sums.shape[2], function_indices.size))
+        out = np.empty((self.load_case_sums.group_sums.shape[2], function_indices.size))
         out[:, is_balance] = np.add.reduceat(
             share * values, np.arange(0, share.size, nodes_per_group(share.size))
         )
-        out[:, ~is_balance] = self.load_sums.group_sums[load, function].T
+        out[:, ~is_balance] = self.load_case_sums.group_sums[load, function].T
         return out
 
     def _selected_values(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
         """Values (n, k) of k selected functions at n nodes."""
-        shape, count = self.rounded_distribution.select_nodes(node_indices), self.balance_scale.size
+        shape, count = self.rounded_distribution.select_nodes(node_indices), self.equilibrium_scale.size
         is_balance = function_indices < count
         out = np.empty((node_indices.size, function_indices.size))
-        out[:, is_balance] = (balance_functions(shape) / self.balance_scale)[:, function_indices[is_balance]]
+        out[:, is_balance] = (evaluate_equilibrium_functions(shape) / self.equilibrium_scale)[
+            :, function_indices[is_balance]
+        ]
         out[:, ~is_balance] = self.sum_functions.selected_function_values(
-            shape, self.load_sums, function_indices[~is_balance] - count
+            shape, self.load_case_sums, function_indices[~is_balance] - count
         )
         return out
 
@@ -427,7 +430,9 @@ class _SumSystem:
         return order[:count], solve_triangular(triangle[:count, :count], np.eye(count))
 
 
-def _correct_balance(normalised_pressure: PressureDistribution, node_weights: Array) -> PressureDistribution:
+def _restore_equilibrium(
+    normalised_pressure: PressureDistribution, node_weights: Array
+) -> PressureDistribution:
     """Select the nodes with a weight > 0; make total share, centroid and mean pressures exact."""
     points = normalised_pressure.select_nodes(np.flatnonzero(node_weights > 0.0))
     share = node_weights[node_weights > 0.0] / np.sum(node_weights)

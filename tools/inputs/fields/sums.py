@@ -54,23 +54,25 @@ def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistri
     return float(min(opening_moment[order][np.searchsorted(opened_force, MAX_OPENED_SHARE)], 1.0))
 
 
-def initial_load_cases(moment_limit: float) -> list[LoadCase]:
+def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
     """Load cases from which the selection of points starts.
 
     moment_limit : largest moment over the moment that unloads a row of bolts [1]
     """
-    moments = [moment_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
-    extremes = (-1.0, 1.0) if moment_limit < 1.0 else ()
+    moments = [moment_ratio_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
+    extremes = (-1.0, 1.0) if moment_ratio_limit < 1.0 else ()
     preloaded = [LoadCase(p, m, 0.0) for p in PRELOAD_RATIO_RANGE for m in (*moments, *extremes)]
     openings = (-MAX_COMPRESSION_RATIO, -0.4 * MAX_COMPRESSION_RATIO, 0.05, 0.2, 0.4, 0.55, 0.65, 0.75, 0.85)
     opened = [LoadCase(p, m, s) for p in PRELOAD_RATIO_RANGE for m in moments[::2] for s in openings]
-    steep = [moment_limit * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)]  # nodes open row by row there
+    steep = [
+        moment_ratio_limit * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)
+    ]  # nodes open row by row there
     return (
         preloaded + opened + [LoadCase(PRELOAD_RATIO_RANGE[0], m, s) for m in steep for s in (0.3, 0.45, 0.6)]
     )
 
 
-def random_load_cases(moment_limit: float) -> Iterator[LoadCase]:
+def random_load_cases(moment_ratio_limit: float) -> Iterator[LoadCase]:
     """Endless quasi-random load cases (Halton sequence), every third one without normal motion."""
     from scipy.stats import qmc  # imported here: its import is slow
 
@@ -80,7 +82,7 @@ def random_load_cases(moment_limit: float) -> Iterator[LoadCase]:
     for i, (a, b, c) in enumerate(points):
         opening = c * (1.0 + MAX_COMPRESSION_RATIO) - MAX_COMPRESSION_RATIO if i % 3 else 0.0
         yield LoadCase(
-            float(np.exp(low + a * (high - low))), float(moment_limit * (2.0 * b - 1.0)), float(opening)
+            float(np.exp(low + a * (high - low))), float(moment_ratio_limit * (2.0 * b - 1.0)), float(opening)
         )
 
 
@@ -88,10 +90,10 @@ LOAD_CASES_PER_DRAW = 64
 """Number of load cases drawn in one call, which takes as long as a call for one load case."""
 COUPLING_TOLERANCE_FACTOR = 100.0
 """Tolerance of first and mixed moments over the tolerance of the other sums [1]."""
-_CUBIC_PRESSURE_RATIO = 1e-2
+_CUBIC_ROOT_PRESSURE_RATIO = 1e-2
 """Pressure over the pressure of complete closure [1], below which the table is interpolated in the cubic root
 of the pressure."""
-_TABLE_INTERVAL_FRACTIONS = np.linspace(0.0, 1.0, 33)[:-1]
+_TABLE_REFINEMENT_FRACTIONS = np.linspace(0.0, 1.0, 33)[:-1]
 _VALUES_PER_BLOCK = 1 << 15
 """Number of function values in one block of the computation."""
 MAX_NODE_GROUPS = 4096
@@ -99,7 +101,7 @@ MAX_NODE_GROUPS = 4096
 
 
 @dataclass(frozen=True, slots=True)
-class LoadSums:
+class LoadCaseSums:
     """The 9 sums of a field in m load cases, relative to their scale.
 
     load_cases : (m) load cases
@@ -117,25 +119,25 @@ class LoadSums:
     total_sums: Array
     sum_scales: Array
 
-    def select_load_cases(self, case_index: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadSums":
+    def select_load_cases(self, selected_cases: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadCaseSums":
         """Select the sums in some of the load cases."""
-        loads = tuple(self.load_cases[i] for i in np.arange(len(self.load_cases))[case_index])
-        return LoadSums(
+        loads = tuple(self.load_cases[i] for i in np.arange(len(self.load_cases))[selected_cases])
+        return LoadCaseSums(
             loads,
-            self.opening[case_index],
-            self.group_sums[case_index],
-            self.total_sums[case_index],
-            self.sum_scales[case_index],
+            self.opening[selected_cases],
+            self.group_sums[selected_cases],
+            self.total_sums[selected_cases],
+            self.sum_scales[selected_cases],
         )
 
-    def concatenate(self, other_sums: "LoadSums") -> "LoadSums":
+    def concatenate(self, other_load_case_sums: "LoadCaseSums") -> "LoadCaseSums":
         """Concatenate the sums in the load cases of two objects."""
-        return LoadSums(
-            self.load_cases + other_sums.load_cases,
-            np.concatenate([self.opening, other_sums.opening]),
-            np.concatenate([self.group_sums, other_sums.group_sums]),
-            np.concatenate([self.total_sums, other_sums.total_sums]),
-            np.concatenate([self.sum_scales, other_sums.sum_scales]),
+        return LoadCaseSums(
+            self.load_cases + other_load_case_sums.load_cases,
+            np.concatenate([self.opening, other_load_case_sums.opening]),
+            np.concatenate([self.group_sums, other_load_case_sums.group_sums]),
+            np.concatenate([self.total_sums, other_load_case_sums.total_sums]),
+            np.concatenate([self.sum_scales, other_load_case_sums.sum_scales]),
         )
 
 
@@ -165,7 +167,7 @@ class SumFunctions:
         """Prepare the functions of a joint for a pressure field at a preload [N] per bolt."""
         curve = tabulate_approach(joint)
         x = curve.displacement
-        fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE_INTERVAL_FRACTIONS, x[-1])
+        fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE_REFINEMENT_FRACTIONS, x[-1])
         p = curve.derivatives(fine, 0)[0]
         return cls(joint, curve, preload, nodal_pressures, (p, np.cbrt(p), fine))
 
@@ -187,7 +189,7 @@ class SumFunctions:
         """
         pressure, root, approach = self.approach_table
         start = np.interp(p, pressure, approach)
-        closing = p < _CUBIC_PRESSURE_RATIO * self.pressure_curve.closing_end_load
+        closing = p < _CUBIC_ROOT_PRESSURE_RATIO * self.pressure_curve.closing_end_load
         start[closing] = np.interp(np.cbrt(p[closing]), root, approach)
         value, slope, curvature = self.pressure_curve.derivatives(start, 2)
         curvature = np.where(start < self.pressure_curve.end_point[0], curvature, 0.0)
@@ -200,13 +202,13 @@ class SumFunctions:
 
     def compute_sums(
         self, normalised_pressure: PressureDistribution, load_cases: Sequence[LoadCase]
-    ) -> LoadSums:
+    ) -> LoadCaseSums:
         """Compute the sums over all nodes of a normalised pressure distribution, in load cases."""
         pairs, index = np.unique([load[:2] for load in load_cases], axis=0, return_inverse=True)
         index = index.ravel()
         preloaded = [LoadCase(p, m, 0.0) for p, m in pairs]
         group_size = nodes_per_group(normalised_pressure.area_share.size)
-        blocks = list(_node_blocks(normalised_pressure, len(load_cases), whole_groups=True))
+        blocks = list(_divide_into_node_blocks(normalised_pressure, len(load_cases), keep_groups_whole=True))
         peak = np.max([np.max(self._preload_pressure(block, preloaded), axis=1) for block in blocks], axis=0)
         max_opening = self._approach_at_pressure(peak) - self.pressure_curve.displacement[0]
         opening = np.array([load.opening_ratio for load in load_cases]) * max_opening[index]
@@ -216,9 +218,9 @@ class SumFunctions:
             """Group sums of one block of nodes: in the preloaded joint, and after the normal motion."""
             p = self._preload_pressure(node_block, preloaded)
             start, k = self._approach_and_stiffness(p)
-            preload_sums = _group_sums(node_block, p, k, group_size)
+            preload_sums = _sum_over_groups(node_block, p, k, group_size)
             p_moved, k_moved = self.pressure_curve.derivatives(start[index[moved]] - opening[moved, None], 1)
-            return preload_sums, _group_sums(node_block, p_moved, k_moved, group_size)
+            return preload_sums, _sum_over_groups(node_block, p_moved, k_moved, group_size)
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:  # numpy releases the global interpreter lock
             preload_blocks, moved_blocks = zip(*pool.map(block_sums, blocks), strict=True)
@@ -230,9 +232,11 @@ class SumFunctions:
         scale = _sum_scales(total, *radii)
         scale = np.where(opening[:, None] > 0.0, np.maximum(scale, _sum_scales(preload_total, *radii)), scale)
         groups /= scale[:, :, None]
-        return LoadSums(tuple(load_cases), opening, groups, total / scale, scale)
+        return LoadCaseSums(tuple(load_cases), opening, groups, total / scale, scale)
 
-    def sample_probability(self, normalised_pressure: PressureDistribution, moment_limit: float) -> Array:
+    def sample_probability(
+        self, normalised_pressure: PressureDistribution, moment_ratio_limit: float
+    ) -> Array:
         """Probability (n) of each node to be in the sample: its mean share of the sums over load cases.
 
         When the joint is nearly open, few nodes carry the load: the sample needs more of them than their area
@@ -240,7 +244,9 @@ class SumFunctions:
 
         moment_limit : largest moment over the moment that unloads a row of bolts [1]
         """
-        loads = [LoadCase(p, m * moment_limit, 0.0) for p in PRELOAD_RATIO_RANGE for m in (-1.0, 0.0, 1.0)]
+        loads = [
+            LoadCase(p, m * moment_ratio_limit, 0.0) for p in PRELOAD_RATIO_RANGE for m in (-1.0, 0.0, 1.0)
+        ]
         start = self._approach_at_pressure(self._preload_pressure(normalised_pressure, loads))
         max_opening = np.max(start, axis=1) - self.pressure_curve.displacement[0]
         probability = np.zeros(normalised_pressure.area_share.size)
@@ -251,40 +257,50 @@ class SumFunctions:
         probability += np.sum(probability) * normalised_pressure.area_share
         return probability / np.sum(probability)
 
-    def function_values(self, normalised_pressure: PressureDistribution, load_sums: LoadSums) -> Array:
+    def function_values(
+        self, normalised_pressure: PressureDistribution, load_case_sums: LoadCaseSums
+    ) -> Array:
         """Values (c, 9 m) of the 9 functions in m load cases at c nodes, over the scale of their sum."""
         return self.selected_function_values(
-            normalised_pressure, load_sums, np.arange(load_sums.sum_scales.size)
+            normalised_pressure, load_case_sums, np.arange(load_case_sums.sum_scales.size)
         )
 
     def selected_function_values(
-        self, normalised_pressure: PressureDistribution, load_sums: LoadSums, function_indices: NodeIndices
+        self,
+        normalised_pressure: PressureDistribution,
+        load_case_sums: LoadCaseSums,
+        function_indices: NodeIndices,
     ) -> Array:
         """Values (c, k) of k selected functions at c nodes: k columns of `function_values`."""
         load, function = np.divmod(function_indices, 9)
         needed, index = np.unique(load, return_inverse=True)
-        loads, opening = [load_sums.load_cases[i] for i in needed], load_sums.opening[needed, None]
+        loads, opening = [load_case_sums.load_cases[i] for i in needed], load_case_sums.opening[needed, None]
         out = np.empty((normalised_pressure.area_share.size, function_indices.size))
-        factor, scale = np.array([0, 1, 2, 0, 1, 2, 3, 4, 5])[function], load_sums.sum_scales[load, function]
+        factor, scale = (
+            np.array([0, 1, 2, 0, 1, 2, 3, 4, 5])[function],
+            load_case_sums.sum_scales[load, function],
+        )
         first, columns_of = 0, [np.flatnonzero(function < 3), np.flatnonzero(function >= 3)]
-        for block in _node_blocks(normalised_pressure, needed.size):
+        for block in _divide_into_node_blocks(normalised_pressure, needed.size):
             approach = self._approach_at_pressure(self._preload_pressure(block, loads)) - opening
-            factors, block_out = _moment_factors(block), out[first : first + block.area_share.size]
+            factors, block_out = _compute_position_factors(block), out[first : first + block.area_share.size]
             for columns, value in zip(columns_of, self.pressure_curve.derivatives(approach, 1), strict=True):
                 values = value.T[:, index[columns]] * factors[:, factor[columns]]
                 block_out[:, columns] = values / scale[columns]
             first += block.area_share.size
         return out
 
-    def sum_deviations(self, reduced_points: PressureDistribution, load_sums: LoadSums) -> Array:
+    def sum_deviations(self, reduced_points: PressureDistribution, load_case_sums: LoadCaseSums) -> Array:
         """Largest deviation (m) [1] of the sums of reduced points in each load case."""
         approach = (
-            self._approach_at_pressure(self._preload_pressure(reduced_points, load_sums.load_cases))
-            - load_sums.opening[:, None]
+            self._approach_at_pressure(self._preload_pressure(reduced_points, load_case_sums.load_cases))
+            - load_case_sums.opening[:, None]
         )
         p, k = self.pressure_curve.derivatives(approach, 1)
-        total = _group_sums(reduced_points, p, k, reduced_points.area_share.size)[:, :, 0]
-        return np.asarray(np.max(np.abs(total / load_sums.sum_scales - load_sums.total_sums), axis=1))
+        total = _sum_over_groups(reduced_points, p, k, reduced_points.area_share.size)[:, :, 0]
+        return np.asarray(
+            np.max(np.abs(total / load_case_sums.sum_scales - load_case_sums.total_sums), axis=1)
+        )
 
 
 def nodes_per_group(node_count: int) -> int:
@@ -292,21 +308,21 @@ def nodes_per_group(node_count: int) -> int:
     return -(-node_count // MAX_NODE_GROUPS)
 
 
-def _node_blocks(
-    normalised_pressure: PressureDistribution, case_count: int, whole_groups: bool = False
+def _divide_into_node_blocks(
+    normalised_pressure: PressureDistribution, case_count: int, keep_groups_whole: bool = False
 ) -> Iterator[PressureDistribution]:
     """Divide the nodes into blocks whose values in all load cases fit into the processor's cache.
 
     case_count   : number of load cases
     whole_groups : divide only between groups
     """
-    unit = nodes_per_group(normalised_pressure.area_share.size) if whole_groups else 1
+    unit = nodes_per_group(normalised_pressure.area_share.size) if keep_groups_whole else 1
     count = unit * max(_VALUES_PER_BLOCK // case_count // unit, -(-16 // unit))
     for first in range(0, normalised_pressure.area_share.size, count):
         yield normalised_pressure.select_nodes(slice(first, first + count))
 
 
-def _group_sums(
+def _sum_over_groups(
     normalised_pressure: PressureDistribution, pressure: Array, stiffness: Array, group_size: int
 ) -> Array:
     """Sums (m, 9, g) of the 9 functions over g groups of nodes, in m load cases.
@@ -320,7 +336,8 @@ def _group_sums(
         count * group_size - normalised_pressure.area_share.size,
     )  # nodes without share that complete the last group
     factors = np.pad(
-        normalised_pressure.area_share[:, None] * _moment_factors(normalised_pressure), (padding, (0, 0))
+        normalised_pressure.area_share[:, None] * _compute_position_factors(normalised_pressure),
+        (padding, (0, 0)),
     ).reshape(count, group_size, 6)
     pressure, stiffness = (
         np.moveaxis(np.pad(value, ((0, 0), padding)).reshape(-1, count, group_size), 1, 0)
@@ -329,7 +346,7 @@ def _group_sums(
     return np.moveaxis(np.concatenate([pressure @ factors[:, :, :3], stiffness @ factors], axis=2), 0, 2)
 
 
-def _moment_factors(normalised_pressure: PressureDistribution) -> Array:
+def _compute_position_factors(normalised_pressure: PressureDistribution) -> Array:
     """Factors (n, 6) of the stiffness of a node: 1, x, y, y^2, x^2, x y; the pressure has the first three."""
     x, y = normalised_pressure.position.T
     return np.stack([np.ones_like(x), x, y, y * y, x * x, x * y], axis=1)
@@ -345,7 +362,7 @@ def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
     return np.stack([*columns, sums[:, 6], sums[:, 7], k * x_scale * radius_y], axis=1)
 
 
-def balance_functions(normalised_pressure: PressureDistribution) -> Array:
+def evaluate_equilibrium_functions(normalised_pressure: PressureDistribution) -> Array:
     """Functions (n, 9) whose sums over the nodes give area, centroid, force and moments of a field.
 
     The functions are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.

@@ -28,20 +28,20 @@ from jointfmu.quantity import Array
 
 from .branches import find_reversals
 
-MIN_REVERSAL = 0.1
+MIN_TORQUE_REVERSAL_RATIO = 0.1
 """Smallest reversal of the torque that counts as a turning point, over the range of the torque [1]."""
-CENTRAL_FRACTION = 0.25
+CENTRAL_TORQUE_RANGE_FRACTION = 0.25
 """Central fraction of the torque range [1], in which friction is fully reversed on both branches."""
-MIN_BRANCH_SPAN = 0.9
+MIN_BRANCH_RANGE_RATIO = 0.9
 """Range of a branch over the torque range [1], from which the branch counts as covering the full range."""
 MAX_KNOTS, POINTS_PER_KNOT = 41, 20
 """Maximum number of knots of the piecewise linear curves, and number of samples for each knot."""
 MAX_BACKBONE_POINTS = 400
 """Maximum number of points of the backbone; more samples are averaged in groups of neighbouring torque."""
-MIN_DRIFT_FRACTION = 0.05
+MIN_INDEPENDENT_DRIFT_FRACTION = 0.05
 """Fraction of the drift column of the design matrix [1] that is linearly independent of the other columns,
 above which the drift counts as determined."""
-MONOTONE_INTERVALS = 10
+MONOTONICITY_CHECK_INTERVALS = 10
 """Number of equal torque intervals in which the backbone is checked to be monotonic."""
 
 
@@ -105,7 +105,7 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
 
 def _cut_branches(torque: Array) -> list[_Branch]:
     """Cut a record into branches at the turning points of the torque, in the order of the measurement."""
-    turns = find_reversals(torque, MIN_REVERSAL * float(np.ptp(torque)))
+    turns = find_reversals(torque, MIN_TORQUE_REVERSAL_RATIO * float(np.ptp(torque)))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
     branches = []
     for first, last in pairwise(ends):
@@ -121,7 +121,7 @@ def _full_range_branches(branches: list[_Branch]) -> list[_Branch]:
     selected = []
     for rising in (True, False):
         same = [b for b in branches if b.is_rising is rising]
-        selected += [b for b in same if b.max_torque - b.min_torque >= MIN_BRANCH_SPAN * span] or same
+        selected += [b for b in same if b.max_torque - b.min_torque >= MIN_BRANCH_RANGE_RATIO * span] or same
     return sorted(selected, key=lambda b: int(b.sample_indices[0]))
 
 
@@ -178,7 +178,7 @@ def _separate_hysteresis(
     position = (T - 0.5 * (min_torque + max_torque)) / (
         0.5 * (max_torque - min_torque)
     )  # in the range of the torque, from -1 to 1
-    central = np.abs(position) <= CENTRAL_FRACTION
+    central = np.abs(position) <= CENTRAL_TORQUE_RANGE_FRACTION
     friction = _fit_friction_torque(T[central], driftless[central], direction[central])
     loading = direction * position >= 0.0
     line = _average_groups((T - friction * direction)[loading], driftless[loading])
@@ -217,7 +217,7 @@ def _has_turning_point(
         and branch.sample_indices[-1] == next_branch.sample_indices[0]
         and branch.is_rising is (end_index == -1)
         and abs((branch.max_torque if branch.is_rising else branch.min_torque) - end_torque)
-        < (1.0 - MIN_BRANCH_SPAN) * torque_range
+        < (1.0 - MIN_BRANCH_RANGE_RATIO) * torque_range
         for branch, next_branch in pairs
     )
 
@@ -227,7 +227,7 @@ def _is_drift_determined(design_matrix: scipy.sparse.csr_matrix) -> bool:
     columns, last = design_matrix[:, :-1], design_matrix[:, -1].toarray()[:, 0]
     normal = np.linalg.pinv((columns.T @ columns).toarray(), hermitian=True)
     independent = last - columns @ (normal @ (columns.T @ last))
-    return bool(np.linalg.norm(independent) > MIN_DRIFT_FRACTION * np.linalg.norm(last))
+    return bool(np.linalg.norm(independent) > MIN_INDEPENDENT_DRIFT_FRACTION * np.linalg.norm(last))
 
 
 def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
@@ -245,9 +245,11 @@ def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
 
 def _check_monotone(backbone: Backbone) -> Backbone:
     """Return the backbone; ValueError if its angle falls between neighbouring tenths of the torque range."""
-    edges = np.linspace(backbone.torque[0], backbone.torque[-1], MONOTONE_INTERVALS + 1)
-    tenth = np.clip(np.searchsorted(edges, backbone.torque, side="right") - 1, 0, MONOTONE_INTERVALS - 1)
-    nonempty = [k for k in range(MONOTONE_INTERVALS) if np.any(tenth == k)]
+    edges = np.linspace(backbone.torque[0], backbone.torque[-1], MONOTONICITY_CHECK_INTERVALS + 1)
+    tenth = np.clip(
+        np.searchsorted(edges, backbone.torque, side="right") - 1, 0, MONOTONICITY_CHECK_INTERVALS - 1
+    )
+    nonempty = [k for k in range(MONOTONICITY_CHECK_INTERVALS) if np.any(tenth == k)]
     means = np.array(
         [np.average(backbone.angle[tenth == k], weights=backbone.sample_counts[tenth == k]) for k in nonempty]
     )
@@ -257,6 +259,7 @@ def _check_monotone(backbone: Backbone) -> Backbone:
         k = nonempty[int(np.argmax(falling))]
         raise ValueError(
             f"the mid-line of the angle does not rise with the torque between {edges[k]:.4g} and "
-            f"{edges[min(k + 2, MONOTONE_INTERVALS)]:.4g} N.m; expected one loop or curve of a spring"
+            f"{edges[min(k + 2, MONOTONICITY_CHECK_INTERVALS)]:.4g} N.m; expected one loop or curve of "
+            "a spring"
         )
     return backbone

@@ -16,21 +16,21 @@ from jointfmu.quantity import Array
 
 from .hysteresis import HysteresisLaw
 
-MIN_REVERSAL = 0.02
+MIN_MOTION_REVERSAL_RATIO = 0.02
 """Smallest reversal of the motion that counts as a turning point, over the range of the motion [1]."""
-MIN_REVERSAL_NOISE = 8.0
+MIN_REVERSAL_NOISE_RATIO = 8.0
 """Smallest reversal that counts as a turning point, over the standard deviation of the noise [1]."""
-TURNING_POINT_WIDTH = 5.0
+TURNING_POINT_NOISE_RATIO = 5.0
 """Deviation from the motion at a turning point, over the standard deviation of the noise [1], up to which
 samples enter the parabola of the turning point."""
 MIN_BRANCH_SAMPLES = 5
 """Minimum number of samples of a branch."""
-MAX_CREATED_ENERGY = 4.0
+MAX_CREATED_ENERGY_RATIO = 4.0
 """Energy that a loop may create (negative area), over the standard deviation of its area [1]."""
 RELATIVE_ROUNDING = 1e-9
 """Relative round-off [1] of data without noise: of areas over range of force times range of motion, of
 motions over their range."""
-MIN_COMMON_RANGE = 0.9
+MIN_COMMON_RANGE_RATIO = 0.9
 """Range of motion common to two branches, over the range of the longer branch [1], from which they count as
 a closed loop."""
 RISE_FRACTION = 0.9
@@ -50,9 +50,9 @@ MIN_BEARING_NOISE = 8.0
 """Rise of the stiffness over its standard deviation by noise [1], from which a joint bears after slip."""
 MIN_RISING_SAMPLES = 5
 """Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
-_GRID_POINTS = 200
+_AREA_INTEGRATION_POINTS = 200
 """Points of the integration grid for the area between two branches."""
-_MAX_REST_ITERATIONS, _REST_DIFFERENCE = 6, 1e-4
+_MAX_REST_ITERATIONS, _REST_DIFFERENCE_STEP = 6, 1e-4
 """Gauss-Newton iterations for the rest position, and half the difference step over the motion's range [1]."""
 
 
@@ -255,8 +255,8 @@ class Loops:
         middle = 0.5 * float(np.max(self.motion) + np.min(self.motion))
         position = min((0.0, middle), key=lambda rest: float(np.sum(misfit(rest) ** 2)))
         for _ in range(_MAX_REST_ITERATIONS):
-            high, low = (misfit(position + sign * _REST_DIFFERENCE * size) for sign in (1.0, -1.0))
-            slope = (high - low) / (2.0 * _REST_DIFFERENCE)
+            high, low = (misfit(position + sign * _REST_DIFFERENCE_STEP * size) for sign in (1.0, -1.0))
+            slope = (high - low) / (2.0 * _REST_DIFFERENCE_STEP)
             step = -float(misfit(position) @ slope) / (float(slope @ slope) + 1.0)
             position += size * float(np.clip(step, -0.5, 0.5))
         return position
@@ -399,7 +399,9 @@ def _branches_of_run(
 
 def find_turning_points(motion: Array) -> NDArray[np.int64]:
     """Find the indices of the turning points of a motion; reversals within the noise do not count."""
-    least = max(MIN_REVERSAL * float(np.ptp(motion)), MIN_REVERSAL_NOISE * noise_deviation(motion))
+    least = max(
+        MIN_MOTION_REVERSAL_RATIO * float(np.ptp(motion)), MIN_REVERSAL_NOISE_RATIO * noise_deviation(motion)
+    )
     if not least > 0.0:
         return np.array([], dtype=np.int64)
     return find_reversals(motion, least)
@@ -422,7 +424,7 @@ def refine_turning_point(motion: Array, sample_index: int, motion_noise: float) 
     The parabola uses the samples within TURNING_POINT_WIDTH deviations of the turning point.
     The extreme sample itself would overestimate the motion, because of its noise.
     """
-    distinct = np.abs(motion - motion[sample_index]) > TURNING_POINT_WIDTH * motion_noise
+    distinct = np.abs(motion - motion[sample_index]) > TURNING_POINT_NOISE_RATIO * motion_noise
     before, after = np.flatnonzero(distinct[:sample_index]), np.flatnonzero(distinct[sample_index:])
     width = min(
         sample_index - int(before[-1]) if before.size else sample_index,
@@ -468,18 +470,18 @@ def _check_work(
     rise = float(np.mean([loop.mean_rise for loop in loops]))
     slope = float(np.ptp(force) / np.ptp(motion))
     # the area between two branches is integrated over at most _GRID_POINTS of their samples
-    samples = min(motion.size / len(branches), _GRID_POINTS) * len(loops)
+    samples = min(motion.size / len(branches), _AREA_INTEGRATION_POINTS) * len(loops)
     noise = np.hypot(noise_deviation(force), slope * noise_deviation(motion))
     deviation = noise * size * np.sqrt(2.0 / samples)
     if rise < -abs(area) / size:
         raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
-    if area < -max(MAX_CREATED_ENERGY * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
+    if area < -max(MAX_CREATED_ENERGY_RATIO * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
         sign_hint = "" if rise > abs(area) / size else "reverse the sign of one column, or "
         raise ValueError(
             f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected 0 or more: the force "
             f"must lead the motion; {sign_hint}reverse the order of the rows if their time order is reversed"
         )
-    closed = [loop for loop in loops if loop.motion_range >= MIN_COMMON_RANGE * loop.longer_range]
+    closed = [loop for loop in loops if loop.motion_range >= MIN_COMMON_RANGE_RATIO * loop.longer_range]
     if not closed:
         return []
     widest = max(closed, key=lambda loop: loop.motion_range)
@@ -520,9 +522,9 @@ def _enclosed_loop(
     low, high = max(u.min(), v.min()), min(u.max(), v.max())
     if not high > low or min(u.size, v.size) < MIN_BRANCH_SAMPLES:
         return None
-    grid = np.linspace(low, high, _GRID_POINTS)
+    grid = np.linspace(low, high, _AREA_INTEGRATION_POINTS)
     up, down = (np.interp(grid, *sort_points(x, y)) for x, y in ((u, F), (v, G)))
-    fraction = np.linspace(-0.5, 0.5, _GRID_POINTS)
+    fraction = np.linspace(-0.5, 0.5, _AREA_INTEGRATION_POINTS)
     return _EnclosedLoop(
         float(np.trapezoid(up - down, grid)),
         float(high - low),

@@ -18,9 +18,9 @@ from jointfmu.quantity import Array
 
 WINDOW_PERIODS = (2, 5)
 """Minimum and maximum number of periods of a window."""
-WINDOW_DECAY = 0.3
+WINDOW_LOG_DECREMENT = 0.3
 """Logarithmic decrement of the amplitude over a window [1] that is aimed at, within WINDOW_PERIODS."""
-MAX_WINDOW_DECAY = 1.0
+MAX_WINDOW_LOG_DECREMENT = 1.0
 """Logarithmic decrement over a window [1], from which the window is left out: the two periods of the window
 are too different."""
 MIN_SAMPLES_PER_PERIOD = 10
@@ -118,7 +118,7 @@ def _fit_windows(time: Array, motion: Array, angular_frequency: float) -> Iterat
     while True:
         periods = int(
             np.clip(
-                WINDOW_DECAY * angular_frequency / (2.0 * np.pi * max(s, 1e-9 * angular_frequency)),
+                WINDOW_LOG_DECREMENT * angular_frequency / (2.0 * np.pi * max(s, 1e-9 * angular_frequency)),
                 *WINDOW_PERIODS,
             )
         )
@@ -136,7 +136,7 @@ def _fit_windows(time: Array, motion: Array, angular_frequency: float) -> Iterat
             return
         angular_frequency, s = float(shape[0]) / length, float(shape[1]) / length
         deviations = (x / length for x in _standard_deviations(shape, A, B, t, noise))
-        if s * length < MAX_WINDOW_DECAY:
+        if s * length < MAX_WINDOW_LOG_DECREMENT:
             yield size * amplitude, angular_frequency, s, *deviations, length
 
 

@@ -33,7 +33,7 @@ _HALF_CYCLE_ANGLES, _HALF_CYCLE_WEIGHTS = np.polynomial.legendre.leggauss(64)
 _HALF_CYCLE_ANGLES = 0.5 * np.pi * (1.0 + _HALF_CYCLE_ANGLES)
 _HALF_CYCLE_WEIGHTS = 0.5 * np.pi * _HALF_CYCLE_WEIGHTS
 """Gauss-Legendre angles (64) [rad] from 0 to pi, and their weights: half an oscillation u = a cos(angle)."""
-_MAX_SECANT_STEPS, _MAX_DECREMENT = 12, 3.0
+_MAX_SECANT_STEPS, _MAX_LOG_DECREMENT = 12, 3.0
 """Number of secant iterations for the logarithmic decrement of half a period, and upper limit of it [1]."""
 
 
@@ -55,7 +55,7 @@ class HysteresisLaw:
     viscous_damping : viscous damping [N.s/m or N.m.s/rad]; acts in vibrations only
     """
 
-    friction: ForceFunction
+    friction_force: ForceFunction
     friction_work: ForceFunction
     elastic_spring: NonlinearSpring | None = None
     viscous_damping: float = 0.0
@@ -66,7 +66,7 @@ class HysteresisLaw:
         turning_motion : motion (...) at the turning points
         """
         distance = motion - turning_motion
-        change = np.copysign(2.0 * self.friction(0.5 * np.abs(distance)), distance)
+        change = np.copysign(2.0 * self.friction_force(0.5 * np.abs(distance)), distance)
         if self.elastic_spring is None:
             return change
         return np.asarray(
@@ -99,7 +99,9 @@ class HysteresisLaw:
 
         B : friction force in first loading, w : its work
         """
-        return np.asarray(8.0 * (self.friction_work(amplitude) - 0.5 * amplitude * self.friction(amplitude)))
+        return np.asarray(
+            8.0 * (self.friction_work(amplitude) - 0.5 * amplitude * self.friction_force(amplitude))
+        )
 
     def free_decay(self, half_distance: Array, inertia: float) -> tuple[Array, Array]:
         """Free decay: angular frequency (n) [rad/s], logarithmic decrement of half a period (n) [1].
@@ -130,14 +132,18 @@ class HysteresisLaw:
         viscous_slope : viscous part (n) of G over h, pi d omega/4
         """
 
-        def dissipated_force(half_distance: Array) -> Array:
+        def dissipated_work_ratio(half_distance: Array) -> Array:
             return np.asarray(
                 2.0 * self.friction_work(half_distance) / half_distance + viscous_slope * half_distance
             )
 
         def energy_residual(decrement: Array) -> Array:
             first, second = half_distance * np.exp(0.5 * decrement), half_distance * np.exp(-0.5 * decrement)
-            dissipated = dissipated_force(first) + dissipated_force(second) - 2.0 * self.friction(first)
+            dissipated = (
+                dissipated_work_ratio(first)
+                + dissipated_work_ratio(second)
+                - 2.0 * self.friction_force(first)
+            )
             return np.asarray(
                 dissipated
                 - self._released_energy(first, decrement)
@@ -148,7 +154,7 @@ class HysteresisLaw:
         at_low, at_high = energy_residual(low), energy_residual(high)
         for _ in range(_MAX_SECANT_STEPS):
             slope = np.where(at_high == at_low, np.inf, at_high - at_low)
-            low, high = high, np.clip(high - at_high * (high - low) / slope, 0.0, _MAX_DECREMENT)
+            low, high = high, np.clip(high - at_high * (high - low) / slope, 0.0, _MAX_LOG_DECREMENT)
             at_low, at_high = at_high, energy_residual(high)
         return high
 

@@ -16,13 +16,13 @@ from .branches import Loops, sort_points
 from .hysteresis import ForcedResponse, FreeVibration, HysteresisLaw, Oscillator
 from .least_squares import Residuals, Solution, Unknown, UnknownExchange, select_start, solve
 from .measurement import Measurement
-from .outcome import Facts, Picture, correlation_note
+from .outcome import FitFacts, FitPlot, correlation_note
 
 DAMPING_RATIO_NAME = "damping_ratio"
 """Name of an unknown that is not a parameter of the joint: the damping ratio of the structure [1]."""
-MAX_DAMPING = 0.3
+MAX_DAMPING_RATIO = 0.3
 """Upper limit of the damping ratio of the structure [1]."""
-DAMPING_UNKNOWN = Unknown(DAMPING_RATIO_NAME, "1", 1e-3, 1e-9, MAX_DAMPING)
+UNKNOWN_DAMPING_RATIO = Unknown(DAMPING_RATIO_NAME, "1", 1e-3, 1e-9, MAX_DAMPING_RATIO)
 FIRST_FIT_TOLERANCE, SECOND_FIT_TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
 FIRST_FIT_NOISE = 0.01
@@ -97,8 +97,8 @@ def build_model(
         )
     elif not 0.0 < inertia < np.inf:
         raise ValueError(f"{name} = {inertia:g} is outside (0, inf)")
-    if not 0.0 <= damping_ratio < MAX_DAMPING:
-        raise ValueError(f"damping ratio = {damping_ratio:g} is outside [0, {MAX_DAMPING:g})")
+    if not 0.0 <= damping_ratio < MAX_DAMPING_RATIO:
+        raise ValueError(f"damping ratio = {damping_ratio:g} is outside [0, {MAX_DAMPING_RATIO:g})")
     return MeasurementModel(make_law, inertia, damping_ratio)
 
 
@@ -107,8 +107,8 @@ def fit_measurement(
     unknowns: Sequence[Unknown],
     model: MeasurementModel,
     alternative_starts: Mapping[str, Sequence[float]],
-    level_exchange: UnknownExchange | None = None,
-    is_level_exchanged: bool = False,
+    stiffness_exchange: UnknownExchange | None = None,
+    is_stiffness_exchanged: bool = False,
     correct_measurement: Callable[[Mapping[str, float]], Measurement] | None = None,
 ) -> tuple[Solution, Array, Measurement]:
     """Fit the unknowns twice: the first fit estimates the noise of each group of data, the second uses it.
@@ -136,26 +136,26 @@ def fit_measurement(
         return lambda values: residual_function(current.restore_unknowns(values, start))
 
     first_scale = data.residual_scale
-    measured_stiffness = None if level_exchange is None else measurement.rest_stiffness(model.inertia)
+    measured_stiffness = None if stiffness_exchange is None else measurement.rest_stiffness(model.inertia)
 
     def evaluate_start(parameter_values: dict[str, float]) -> tuple[Mapping[str, float], float]:
         """Values of a starting point and their cost; the stiffness level is adjusted to the measurement."""
-        if level_exchange is not None and measured_stiffness is not None:
+        if stiffness_exchange is not None and measured_stiffness is not None:
             others = {
                 name: value
                 for name, value in parameter_values.items()
-                if name != level_exchange.exchanged_name
+                if name != stiffness_exchange.exchanged_name
             }
-            parameter_values |= level_exchange.restore_unknowns(
-                others | {level_exchange.quantity_label: measured_stiffness},
-                parameter_values[level_exchange.exchanged_name],
+            parameter_values |= stiffness_exchange.restore_unknowns(
+                others | {stiffness_exchange.quantity_label: measured_stiffness},
+                parameter_values[stiffness_exchange.exchanged_name],
             )
         if any(not u.lower_bound < parameter_values[u.name] < u.upper_bound for u in unknowns):
             return parameter_values, np.inf
         return parameter_values, float(np.sum(residuals(first_scale)(parameter_values) ** 2))
 
     original = {u.name: u for u in select_start(unknowns, alternative_starts, evaluate_start)}
-    exchange = level_exchange if is_level_exchanged else None
+    exchange = stiffness_exchange if is_stiffness_exchanged else None
     free = [
         exchange.derived_unknown(original) if exchange and u.name == exchange.exchanged_name else u
         for u in original.values()
@@ -190,7 +190,7 @@ def _clip_to_bounds(unknown: Unknown, value: float) -> float:
 
 def summarize_fit(
     measurement: Measurement, solution: Solution, law: HysteresisLaw, residual_scale: Array
-) -> Facts:
+) -> FitFacts:
     """Results of a fit besides its parameters: points, amplitude, offset, loop area, loss factor, noise.
 
     residual_scale : noise (n) of the data
@@ -224,7 +224,7 @@ def summarize_fit(
     return result
 
 
-def misfit_notes(measurement: Measurement, solution: Solution) -> list[str]:
+def list_misfit_notes(measurement: Measurement, solution: Solution) -> list[str]:
     """Notes for the user if the residuals show that the law misses the data systematically; else empty."""
     if measurement.kind == "response":
         return []
@@ -237,12 +237,12 @@ _CURVE_POINTS = 120
 """Number of points of a plotted curve of the law."""
 
 
-def make_pictures(
+def make_plots(
     measurement: Measurement,
     model: MeasurementModel,
     parameter_values: Mapping[str, float],
     residual_scale: Array,
-) -> Sequence[Picture]:
+) -> Sequence[FitPlot]:
     """Plots of data and fitted law, by the kind of the measurement.
 
     Loops: force over motion. Forced vibration: amplitude over frequency. Free vibration: frequency over
@@ -251,16 +251,16 @@ def make_pictures(
     law = model.hysteresis_law(parameter_values)
     match measurement.data:
         case Loops() as loops:
-            return [_loops_picture(measurement, loops, law, residual_scale)]
+            return [_make_loops_plot(measurement, loops, law, residual_scale)]
         case ForcedResponse() as response:
-            return [_response_picture(measurement, response, model.make_oscillator(law, parameter_values))]
+            return [_make_response_plot(measurement, response, model.make_oscillator(law, parameter_values))]
         case FreeVibration() as free:
-            return _decay_pictures(measurement, free, model.make_oscillator(law, parameter_values))
+            return _make_decay_plots(measurement, free, model.make_oscillator(law, parameter_values))
 
 
-def _loops_picture(
+def _make_loops_plot(
     measurement: Measurement, loops: Loops, law: HysteresisLaw, residual_scale: Array
-) -> Picture:
+) -> FitPlot:
     """Plot of measured loops: force over motion."""
     (force_unit, force_scale), (motion_unit, motion_scale) = (
         choose_unit(unit, values)
@@ -277,7 +277,7 @@ def _loops_picture(
         lines.append(np.append(np.stack([motion, branch]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     names = measurement.column_names
-    return Picture(
+    return FitPlot(
         data_x=motion_scale * loops.motion,
         data_y=force_scale * loops.force,
         misfit=force_scale * misfit,
@@ -290,9 +290,9 @@ def _loops_picture(
     )
 
 
-def _response_picture(
+def _make_response_plot(
     measurement: Measurement, forced_response: ForcedResponse, oscillator: Oscillator
-) -> Picture:
+) -> FitPlot:
     """Plot of a forced vibration: amplitude over frequency, one curve for each force amplitude."""
     unit, size = choose_unit(measurement.column_names.si_units[1], forced_response.amplitude)
     lines = []
@@ -309,7 +309,7 @@ def _response_picture(
         amplitude = oscillator.response_amplitude(f, np.full_like(f, force), measured)
         lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
-    return Picture(
+    return FitPlot(
         data_x=forced_response.frequency,
         data_y=size * forced_response.amplitude,
         misfit=100.0 * np.expm1(forced_response.misfit(oscillator)),
@@ -322,9 +322,9 @@ def _response_picture(
     )
 
 
-def _decay_pictures(
+def _make_decay_plots(
     measurement: Measurement, free_vibration: FreeVibration, oscillator: Oscillator
-) -> tuple[Picture, Picture]:
+) -> tuple[FitPlot, FitPlot]:
     """Plots of a free vibration: frequency and damping ratio over amplitude."""
     unit, size = choose_unit(measurement.column_names.si_units[1], free_vibration.decay_points.amplitude)
     a = free_vibration.decay_points.amplitude
@@ -335,14 +335,14 @@ def _decay_pictures(
     )
     x = f"amplitude of the {measurement.column_names.motion_column} [{unit}]"
     return (
-        Picture(
+        FitPlot(
             data_x=size * a,
             data_y=free_vibration.decay_points.frequency,
             misfit=100.0 * frequency,
             law_curve=(size * grid, lines[0]),
             axis_labels=(x, "frequency [Hz]", "data / law - 1 [%]"),
         ),
-        Picture(
+        FitPlot(
             data_x=size * a,
             data_y=100.0 * free_vibration.decay_points.damping_ratio,
             misfit=100.0 * damping,

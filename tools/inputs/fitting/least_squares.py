@@ -21,7 +21,7 @@ from jointfmu.quantity import Array
 Residuals = Callable[[Mapping[str, float]], Array]
 """Function {name: value} -> residuals (n) [1]; ValueError or RuntimeError if the model refuses values."""
 
-DIFFERENCE_STEP = 1e-4
+FINITE_DIFFERENCE_STEP = 1e-4
 """Step of the central differences, in the logarithm of a parameter [1].
 
 Tabulated laws have errors of 1e-8; with this step they cause errors of 1e-4 of the derivatives.
@@ -33,7 +33,7 @@ MAX_EVALUATIONS = 300
 RIDGE_WEIGHT = 0.01
 """Weight of the regularisation towards the start values: standard deviations of a residual per unit of a
 logarithm [1]. Too weak to move determined parameters, strong enough to hold undetermined parameters."""
-BOUND_DISTANCE = 1e-6
+AT_BOUND_TOLERANCE = 1e-6
 """Distance to a bound, in the logarithm [1], below which a parameter counts as being on the bound."""
 
 
@@ -152,7 +152,7 @@ def solve(
     jacobian = result.jac[: first.size]
     if noise is None:
         noise = float(np.sqrt(current @ current / degrees_of_freedom))
-    at_bound = np.minimum(logs - model.low, model.high - logs) < BOUND_DISTANCE
+    at_bound = np.minimum(logs - model.low, model.high - logs) < AT_BOUND_TOLERANCE
     return Solution(
         unknowns=tuple(unknowns),
         values=model.values_by_name(logs),
@@ -233,7 +233,9 @@ class _LogarithmicModel:
         columns = []
         for k in range(log_values.size):
             ends = np.clip(
-                log_values[k] + np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]), self.low[k], self.high[k]
+                log_values[k] + np.array([-FINITE_DIFFERENCE_STEP, FINITE_DIFFERENCE_STEP]),
+                self.low[k],
+                self.high[k],
             )
             sides = []
             for end in ends:
@@ -298,7 +300,7 @@ class UnknownExchange:
                 - target
             )
 
-        low, high = float(np.log(start_value)), float(np.log(start_value)) + DIFFERENCE_STEP
+        low, high = float(np.log(start_value)), float(np.log(start_value)) + FINITE_DIFFERENCE_STEP
         at_low, at_high = logarithmic_error(low), logarithmic_error(high)
         for _ in range(MAX_SECANT_STEPS):
             if abs(at_high) <= EXCHANGE_TOLERANCE or at_high == at_low:
@@ -346,8 +348,11 @@ class UnknownExchange:
 
         return np.array(
             [
-                (perturbed_quantity(n, DIFFERENCE_STEP) - perturbed_quantity(n, -DIFFERENCE_STEP))
-                / (2.0 * DIFFERENCE_STEP)
+                (
+                    perturbed_quantity(n, FINITE_DIFFERENCE_STEP)
+                    - perturbed_quantity(n, -FINITE_DIFFERENCE_STEP)
+                )
+                / (2.0 * FINITE_DIFFERENCE_STEP)
                 for n in parameter_values
             ]
         )

@@ -31,10 +31,10 @@ COLUMN_SYNONYMS = {
     "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
 }
 """{column: accepted synonyms, in lower case}."""
-WRONG_UNIT_RATIO = 50.0
+WRONG_UNIT_STIFFNESS_RATIO = 50.0
 """Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
 is assumed. Degrees read as radians give 57."""
-MAX_EXPLAINED_RATIO = 5.0
+MAX_CORRECTED_STIFFNESS_RATIO = 5.0
 """A wrong unit counts as the explanation if, with the right unit, measured stiffness over stiffness of the
 start values [1] is at most this value, and at least its inverse."""
 
@@ -86,11 +86,11 @@ class ColumnNames:
 
         Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
         """
-        if 1.0 / WRONG_UNIT_RATIO < stiffness_ratio < WRONG_UNIT_RATIO:
+        if 1.0 / WRONG_UNIT_STIFFNESS_RATIO < stiffness_ratio < WRONG_UNIT_STIFFNESS_RATIO:
             return
         raise InputRefusal(
             f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, allowed are "
-            f"{1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
+            f"{1.0 / WRONG_UNIT_STIFFNESS_RATIO:g} to {WRONG_UNIT_STIFFNESS_RATIO:g}: "
             f"{self.describe_likely_unit_error(stiffness_ratio, stated_units, is_force_plausible)}; if the "
             "units are right, start from the parameter file of a joint of similar stiffness",
             "params",
@@ -119,7 +119,7 @@ class ColumnNames:
                 unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in units.items()
             }
             unit = min(errors, key=errors.__getitem__)
-            if errors[unit] < np.log(MAX_EXPLAINED_RATIO):
+            if errors[unit] < np.log(MAX_CORRECTED_STIFFNESS_RATIO):
                 text = f"the {column} is in {unit}, where the heading says {stated_units[column]}"
                 explanations.append((float(errors[unit]), text))
         if not explanations:
@@ -254,7 +254,7 @@ def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement
             )
         elif kind == "decay":
             data = FreeVibration(
-                _join_points(
+                _join_decay_points(
                     [
                         analyse_decay(run["time"], run[column_names.motion_column], name)
                         for name, run in records
@@ -278,7 +278,7 @@ def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement
     return Measurement(table.path, kind, column_names, data, table.units)
 
 
-def _join_points(decay_records: Sequence[DecayPoints]) -> DecayPoints:
+def _join_decay_points(decay_records: Sequence[DecayPoints]) -> DecayPoints:
     """Concatenate the decay points of several records."""
     return DecayPoints(
         *(

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.contact.roughness import MAX_HEIGHT
+from jointfmu.contact.roughness import MAX_ROUGHNESS_HEIGHT
 from jointfmu.files.timestamp import build_time
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, Interval, flat_fields
+from jointfmu.quantity import Array, Interval, flatten_fields
 
 from ...common import plots
 from .least_squares import Solution, Unknown
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-MAX_RELATIVE_DEVIATION = 0.2
+MAX_PARAMETER_DEVIATION = 0.2
 """Standard deviation of the logarithm of a parameter [1], up to which it counts as determined: about 20 %."""
-INTERVAL_FRACTION = 0.1
+MAX_INTERVAL_FRACTION = 0.1
 """Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
 parameter counts as determined."""
 MIN_EXPONENT_RATIO = 0.01
@@ -37,7 +37,7 @@ MIN_SINGULAR_VALUE_RATIO = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
-class Combination:
+class ParameterCombination:
     """Combination prod name^exponent of parameters, statistically independent of the other combinations.
 
     exponents          : {name: exponent}, the largest is 1
@@ -55,18 +55,19 @@ class Combination:
         )
 
 
-def max_deviation(unknown: Unknown) -> float:
+def max_determined_deviation(unknown: Unknown) -> float:
     """Largest standard deviation of the logarithm [1] of a parameter that counts as determined."""
     if unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
-        return MAX_RELATIVE_DEVIATION
+        return MAX_PARAMETER_DEVIATION
     return min(
-        MAX_RELATIVE_DEVIATION, INTERVAL_FRACTION * float(np.log(unknown.upper_bound / unknown.lower_bound))
+        MAX_PARAMETER_DEVIATION,
+        MAX_INTERVAL_FRACTION * float(np.log(unknown.upper_bound / unknown.lower_bound)),
     )
 
 
-def combinations(solution: Solution) -> list[Combination]:
+def find_parameter_combinations(solution: Solution) -> list[ParameterCombination]:
     """Statistically independent combinations of the parameters of a solution, best determined first."""
-    limits = np.array([max_deviation(u) for u in solution.unknowns])
+    limits = np.array([max_determined_deviation(u) for u in solution.unknowns])
     _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
     independent = []
     for value, row in zip(s, rows, strict=True):
@@ -80,19 +81,24 @@ def combinations(solution: Solution) -> list[Combination]:
         }
         has_no_effect = value <= MIN_SINGULAR_VALUE_RATIO * s[0]
         deviation = np.inf if has_no_effect else solution.noise / value
-        independent.append(Combination(exponents, float(deviation / abs(largest)), bool(deviation <= 1.0)))
+        independent.append(
+            ParameterCombination(exponents, float(deviation / abs(largest)), bool(deviation <= 1.0))
+        )
     return independent
 
 
 def undetermined_names(solution: Solution) -> list[str]:
     """Names of the parameters that the data do not determine, or that are on a bound."""
     without_effect = {
-        name for c in combinations(solution) if not np.isfinite(c.relative_deviation) for name in c.exponents
+        name
+        for c in find_parameter_combinations(solution)
+        if not np.isfinite(c.relative_deviation)
+        for name in c.exponents
     }
     return [
         u.name
         for u in solution.unknowns
-        if solution.relative_deviations[u.name] > max_deviation(u)
+        if solution.relative_deviations[u.name] > max_determined_deviation(u)
         or u.name in solution.names_at_bound
         or u.name in without_effect
     ]
@@ -101,10 +107,10 @@ def undetermined_names(solution: Solution) -> list[str]:
 MAX_RESIDUAL_CORRELATION = 0.5
 """Correlation of neighbouring residuals [1], above which the misfit is systematic and not noise."""
 
-MAX_AREA_RATIO = 2.0
+MAX_LOOP_AREA_RATIO = 2.0
 """Ratio of measured to fitted area of the widest loop [1], or its inverse, above which a fit is rejected."""
 
-HEIGHT_PARAMETER = "h"
+RMS_HEIGHT_PARAMETER = "h"
 """Name of the parameter rms roughness height [m], in laws that have it."""
 
 MAX_RESIDUAL_RATIO = 0.95
@@ -112,7 +118,7 @@ MAX_RESIDUAL_RATIO = 0.95
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class FitPlot:
     """Contents of a plot: data, fitted curve and misfit over one abscissa, in the units of the axis labels.
 
     data_x, data_y     : data (n)
@@ -132,7 +138,7 @@ class Picture:
     other_laws: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
 
-Facts = dict[str, tuple[float, str, str]]
+FitFacts = dict[str, tuple[float, str, str]]
 """Results {name: (value, unit, meaning)} that are no parameters."""
 
 
@@ -149,8 +155,8 @@ class FitResult:
 
     parameters: ParameterFile
     solution: Solution
-    facts: Facts
-    pictures: Sequence[Picture]
+    facts: FitFacts
+    fit_plots: Sequence[FitPlot]
     notes: Sequence[str] = ()
     confidence_intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     doubt: str | None = None
@@ -182,21 +188,26 @@ class FitResult:
         if at_bound := self.solution.names_at_bound:
             interval = "their intervals" if at_bound[1:] else "its interval"
             return f"{', '.join(at_bound)} ended on a bound of {interval}"
-        if (height := self.solution.values.get(HEIGHT_PARAMETER, 0.0)) > MAX_HEIGHT:
+        if (height := self.solution.values.get(RMS_HEIGHT_PARAMETER, 0.0)) > MAX_ROUGHNESS_HEIGHT:
             return (
-                f"{HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, {1e6 * MAX_HEIGHT:g}] "
+                f"{RMS_HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, "
+                f"{1e6 * MAX_ROUGHNESS_HEIGHT:g}] "
                 "um: too large for a roughness; check the units, and state the stiffness in series with the "
                 "joint (--series-stiffness)"
             )
         count = len(undetermined_names(self.solution))
-        if names and count == len(names) and not any(c.is_determined for c in combinations(self.solution)):
+        if (
+            names
+            and count == len(names)
+            and not any(c.is_determined for c in find_parameter_combinations(self.solution))
+        ):
             return f"the data determine none of {', '.join(names)}, nor a combination of them"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
-            if not measured / MAX_AREA_RATIO <= law <= measured * MAX_AREA_RATIO:
+            if not measured / MAX_LOOP_AREA_RATIO <= law <= measured * MAX_LOOP_AREA_RATIO:
                 return (
                     f"the area of the widest loop is {measured:.3g} J measured, {law:.3g} J by the fitted "
-                    f"law; allowed is a factor of {MAX_AREA_RATIO:g}"
+                    f"law; allowed is a factor of {MAX_LOOP_AREA_RATIO:g}"
                 )
         if "held_out" in self.facts:
             law, constant = self.facts["held_out"][0], self.facts["held_out_constant"][0]
@@ -212,7 +223,7 @@ class FitResult:
         lines = []
         if names := undetermined_names(self.solution):
             lines.append(f"the data do not determine {', '.join(names)}: other values fit as well")
-            ranked = combinations(self.solution)
+            ranked = find_parameter_combinations(self.solution)
             for combination in ranked:
                 if combination.is_determined:
                     lines.append(
@@ -229,7 +240,7 @@ class FitResult:
             lines.append(f"the fit ended at values that the model rejects: {self.solution.refusal_message}")
         return lines + list(self.notes)
 
-    def document(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, Any]:
         """Result of the fit as one JSON object."""
         return {
             "joint": self.parameters.joint,
@@ -241,7 +252,7 @@ class FitResult:
                     "relative_deviation": _finite_or_none(combination.relative_deviation),
                     "determined": combination.is_determined,
                 }
-                for combination in combinations(self.solution)
+                for combination in find_parameter_combinations(self.solution)
             ],
             "facts": {
                 name: {"value": _finite_or_none(v), "unit": unit} for name, (v, unit, _) in self.facts.items()
@@ -297,7 +308,7 @@ def make_unknowns(
     Raises ValueError for a name that the joint lacks, that is not a number, or that is given twice.
     """
     values, result = start_file.values_by_name, []
-    declared = {n: f for n, f in flat_fields(type(start_file.values)) if isinstance(values.get(n), float)}
+    declared = {n: f for n, f in flatten_fields(type(start_file.values)) if isinstance(values.get(n), float)}
     for name in fitted_names:
         if name not in declared:
             raise ValueError(f"{name!r} is not a parameter to fit; allowed are {', '.join(declared)}")
@@ -344,12 +355,12 @@ def fitted_parameters(
 
 def figure_size(fit_result: FitResult) -> tuple[float, float]:
     """Width and height of the figure [inch]."""
-    return 3.6 * (1 + len(fit_result.pictures)), 5.6
+    return 3.6 * (1 + len(fit_result.fit_plots)), 5.6
 
 
 def draw_fit(figure: "Figure", fit_result: FitResult) -> None:
     """Draw the plots of a fit side by side: data and law above, misfit below."""
-    pictures = fit_result.pictures
+    pictures = fit_result.fit_plots
     all_axes = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
     for (above, below), picture in zip(all_axes.T, pictures, strict=True):
         x, y = picture.data_x, picture.data_y

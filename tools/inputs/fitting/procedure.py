@@ -40,7 +40,7 @@ class Procedure:
     run_fit: "Callable[..., FitResult]"
 
 
-def lazy_fit(module_name: str) -> "Callable[..., FitResult]":
+def make_lazy_fit(module_name: str) -> "Callable[..., FitResult]":
     """Function that loads a module when called, and calls the function `fit` of this module."""
 
     def call_fit(*arguments: object, **options: object) -> "FitResult":

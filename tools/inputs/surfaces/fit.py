@@ -15,7 +15,7 @@ from .spectrum import ScaleSeries
 
 MIN_LAW_DEVIATION = 0.03
 """Least standard deviation [1] of ln(value) from the law that the fit assumes, at each scale."""
-CORRELATION_LENGTH = 0.5
+LOG_SCALE_CORRELATION_LENGTH = 0.5
 """Correlation length in ln(scale) [1] of the deviations from the law."""
 MAX_DIMENSION_DRIFT = 0.1
 """Largest drift of D over a self-affine range [1]; a larger one is allowed within two standard errors."""
@@ -31,7 +31,7 @@ MAX_LAW_DEVIATION = 0.25
 """Largest standard deviation of ln(value) from the law over a self-affine range [1]."""
 MIN_RANGE_DECADES = 0.5
 """Shortest range [decades] that the search considers."""
-COVARIANCE_FACTOR = 1.15
+COVARIANCE_CORRECTION_FACTOR = 1.15
 """Factor on the covariance of the result, from simulation (studies/surfaces_explanation.py: coverage)."""
 OFFSET_PRIOR_DEVIATION = 2.0
 """Prior standard deviation of the offset [1], relative to the value at the shortest scale."""
@@ -60,13 +60,13 @@ class SelfAffineLaw:
     log_power: float
     reference_wavelength: float
     covariance: Array
-    offset: float
-    deviation: float
+    relative_offset: float
+    excess_deviation: float
     dimension_drift: float
     drift_error: float
     min_scale: float
     max_scale: float
-    covers_interval: bool = False
+    drift_covers_dimensions: bool = False
 
     @property
     def is_self_affine(self) -> bool:
@@ -74,8 +74,8 @@ class SelfAffineLaw:
         allowed = max(MAX_DIMENSION_DRIFT, min(2.0 * self.drift_error, MAX_UNCERTAIN_DIMENSION_DRIFT))
         return (
             abs(self.dimension_drift) <= allowed
-            and self.deviation <= MAX_LAW_DEVIATION
-            and not self.covers_interval
+            and self.excess_deviation <= MAX_LAW_DEVIATION
+            and not self.drift_covers_dimensions
         )
 
     @property
@@ -84,7 +84,7 @@ class SelfAffineLaw:
         return not 1.5 * HURST_MARGIN < self.H < 1.0 - 1.5 * HURST_MARGIN
 
     @property
-    def decades(self) -> float:
+    def range_decades(self) -> float:
         """Length of the range [decades]."""
         return float(np.log10(self.max_scale / self.min_scale))
 
@@ -106,8 +106,8 @@ def fit_law(
                 f"method, at least 4 are needed; allowed is within {series.scale[sure][0]:.3g} "
                 f"{series.scale[sure][-1]:.3g} m"
             )
-        return _fit_series(series.select(inside & sure))
-    return _search_range(series.select(sure))
+        return _fit_series(series.select_scales(inside & sure))
+    return _search_range(series.select_scales(sure))
 
 
 def _search_range(series: ScaleSeries) -> SelfAffineLaw:
@@ -132,14 +132,13 @@ def _search_range(series: ScaleSeries) -> SelfAffineLaw:
     for length, negative_start, j in windows:
         if length < MIN_RANGE_DECADES and candidates:
             break
-        candidate = _fit_series(series.select(np.arange(-negative_start, j)))
-        candidate = replace(
-            candidate, covers_interval=covers_interval and candidate.decades < SUFFICIENT_RANGE_DECADES
-        )
+        candidate = _fit_series(series.select_scales(np.arange(-negative_start, j)))
+        is_range_short = candidate.range_decades < SUFFICIENT_RANGE_DECADES
+        candidate = replace(candidate, drift_covers_dimensions=covers_interval and is_range_short)
         if candidate.is_self_affine:
             return candidate
         candidates.append(candidate)
-    return min(candidates, key=lambda law: abs(law.dimension_drift) + law.deviation)
+    return min(candidates, key=lambda law: abs(law.dimension_drift) + law.excess_deviation)
 
 
 def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
@@ -176,14 +175,14 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
         scatter = series.covariance(float(np.clip(p[0], 0.05, 0.95)))
         deviation = _excess_deviation(unbiased - log_law(p), scatter, x, p.size)
     drift, drift_error = _estimate_drift(x, unbiased - log_law(p), scatter)
-    covariance = COVARIANCE_FACTOR * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
+    covariance = COVARIANCE_CORRECTION_FACTOR * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
     return SelfAffineLaw(
         H=float(p[0]),
         log_power=float(p[1]),
         reference_wavelength=reference,
         covariance=covariance,
-        offset=float(p[2]) if offset else 0.0,
-        deviation=deviation,
+        relative_offset=float(p[2]) if offset else 0.0,
+        excess_deviation=deviation,
         dimension_drift=drift,
         drift_error=drift_error,
         min_scale=float(series.scale[0]),
@@ -202,7 +201,7 @@ def _whitening_matrix(covariance: Array) -> Array:
 
 def _correlation_matrix(log_scale: Array) -> Array:
     """Correlation matrix (n, n) [1] of the deviations from the law at ln(scale) x (n)."""
-    return np.asarray(np.exp(-np.abs(log_scale[:, None] - log_scale) / CORRELATION_LENGTH))
+    return np.asarray(np.exp(-np.abs(log_scale[:, None] - log_scale) / LOG_SCALE_CORRELATION_LENGTH))
 
 
 def _excess_deviation(

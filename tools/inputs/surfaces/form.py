@@ -90,12 +90,12 @@ def remove_form(heights: Heights, form: str = "tilt") -> Heights:
     return heights.with_heights(residual)
 
 
-def _monomials(coordinates: list[Array], order: int) -> list[Array]:
+def _monomials(coordinates: list[Array], polynomial_order: int) -> list[Array]:
     """Monomials up to an order in one or two coordinates."""
     terms = [np.ones_like(coordinates[0])]
-    if order >= 1:
+    if polynomial_order >= 1:
         terms += coordinates
-    if order >= 2:
+    if polynomial_order >= 2:
         terms += [a * b for i, a in enumerate(coordinates) for b in coordinates[i:]]
     return terms
 
@@ -125,9 +125,9 @@ def fill_gaps(heights: Heights) -> tuple[Heights, list[Repair]]:
     return heights.with_heights(complete), [Repair(f"missing points filled {method}", count, z.size)]
 
 
-def _fill_harmonically(z: Array, missing: Mask) -> Array:
+def _fill_harmonically(z: Array, missing_mask: Mask) -> Array:
     """Solve Laplace's equation at the missing points by Jacobi iterations, from the initial heights z."""
-    row, column = np.nonzero(missing)
+    row, column = np.nonzero(missing_mask)
     low, high = np.maximum(row - 1, 0), np.minimum(row + 1, z.shape[0] - 1)
     left, right = np.maximum(column - 1, 0), np.minimum(column + 1, z.shape[1] - 1)
     heights = z.copy()
@@ -137,13 +137,13 @@ def _fill_harmonically(z: Array, missing: Mask) -> Array:
     return heights
 
 
-def _fill_nearest(z: Array, valid: Mask) -> Array:
+def _fill_nearest(z: Array, valid_mask: Mask) -> Array:
     """Fill missing points with the height of the nearest valid point."""
-    if valid.all():
+    if valid_mask.all():
         return z
     from scipy.ndimage import distance_transform_edt
 
-    index = distance_transform_edt(~valid, return_distances=False, return_indices=True)
+    index = distance_transform_edt(~valid_mask, return_distances=False, return_indices=True)
     return np.asarray(z[tuple(index)])
 
 
@@ -194,8 +194,8 @@ class ScanRoughness:
     """
 
     is_areal: bool
-    rms: float
-    mean_absolute: float
+    rms_height: float
+    mean_absolute_height: float
     h: float
     slope: float
     longest_wave: float
@@ -246,8 +246,8 @@ def scan_roughness(heights_with_gaps: Heights, filled_heights: Heights, longest_
     slope = 2.0 * np.pi * np.sqrt(directions * np.sum(power[resolved] * squared[resolved]))
     return ScanRoughness(
         is_areal=isinstance(filled_heights, ArealMap),
-        rms=float(np.sqrt(np.mean(valid**2))),
-        mean_absolute=float(np.mean(np.abs(valid))),
+        rms_height=float(np.sqrt(np.mean(valid**2))),
+        mean_absolute_height=float(np.mean(np.abs(valid))),
         h=float(np.sqrt(np.sum(power[inside]))),
         slope=float(slope),
         longest_wave=longest_wave,

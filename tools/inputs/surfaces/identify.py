@@ -115,7 +115,7 @@ def add_series(first_series: ScaleSeries, second_series: ScaleSeries) -> ScaleSe
             f"{first_series.scale[-1]:.3g} m and "
             f"{second_series.scale[0]:.3g} to {second_series.scale[-1]:.3g} m"
         )
-    first_series = first_series.select(common)
+    first_series = first_series.select_scales(common)
     x1, x2 = np.log(first_series.scale), np.log(second_series.scale)
     interpolation = np.stack([np.interp(x1, x2, unit) for unit in np.eye(x2.size)], axis=1)
     value, raw = (

@@ -60,7 +60,10 @@ def dimension_meaning(joint: str) -> str:
 
 
 def with_surface(
-    file: ParameterFile, identification: Identification, method: str | None = None, force: bool = False
+    file: ParameterFile,
+    identification: Identification,
+    method: str | None = None,
+    set_undetermined: bool = False,
 ) -> ParameterFile:
     """Set the parameters of a file that follow from a measured surface, with their sources.
 
@@ -69,7 +72,7 @@ def with_surface(
 
     force : set D and G or the Hurst exponent even if they are not determined; ValueError if one is not finite
     """
-    sure = force or undetermined_reason(identification, file.joint) is None
+    sure = set_undetermined or undetermined_reason(identification, file.joint) is None
     if file.law == ROUGHNESS_LAW:
         file = _with_roughness_law(file, identification, method, sure)
     elif sure:
@@ -106,7 +109,7 @@ def _with_fractal_parameters(
             raise ValueError(
                 f"{name} of {' and '.join(identification.file_names)} is not determined (D = {D:.2f}, "
                 "the interval of "
-                f"G spans {G.decades:.0f} decades): {file.joint} needs a number"
+                f"G spans {G.interval_decades:.0f} decades): {file.joint} needs a number"
             )
         prefix, _, symbol = name.rpartition(".")
         source = _describe_source(identification, result, surfaces[prefix], symbol)

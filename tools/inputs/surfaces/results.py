@@ -43,7 +43,7 @@ class RoughnessEstimate(Estimate):
     decades : length of the interval [decades], whether or not G is determined
     """
 
-    decades: float
+    interval_decades: float
 
     @property
     def is_determined(self) -> bool:
@@ -172,7 +172,7 @@ class Identification:
             )
             return f"the methods disagree, D = {values}"
         G = self.select_best_result(direction).profile.G
-        return None if G.is_determined else f"the interval of G spans {G.decades:.0f} decades"
+        return None if G.is_determined else f"the interval of G spans {G.interval_decades:.0f} decades"
 
 
 def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
@@ -202,26 +202,27 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
         )
     for result in results:
         label = f"{result.method}, {result.direction}"
-        if not (result.fit.is_self_affine or result.fit.covers_interval):
+        if not (result.fit.is_self_affine or result.fit.drift_covers_dimensions):
             lines.append(
                 f"{label}: not self-affine over {result.fit.min_scale:.3g} to "
                 f"{result.fit.max_scale:.3g} m: D drifts by "
                 f"{result.fit.dimension_drift:+.2f}, deviation from the law "
-                f"{100.0 * result.fit.deviation:.0f} %"
+                f"{100.0 * result.fit.excess_deviation:.0f} %"
             )
-        if result.fit.decades < 1.0:
-            lines.append(f"{label}: the range spans {result.fit.decades:.2f} decades, less than one")
-        if result.fit.covers_interval:
+        if result.fit.range_decades < 1.0:
+            lines.append(f"{label}: the range spans {result.fit.range_decades:.2f} decades, less than one")
+        if result.fit.drift_covers_dimensions:
             lines.append(
                 f"{label}: over all scales D runs through its interval from 1 to 2, and only a piece of "
-                f"{result.fit.decades:.2f} decades is straight; state a range to take it"
+                f"{result.fit.range_decades:.2f} decades is straight; state a range to take it"
             )
         if result.fit.is_at_bound:
             lines.append(f"{label}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
     G = min(results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
-    if G.decades > 4.0:
+    if G.interval_decades > 4.0:
         lines.append(
-            f"G is {'hardly' if G.is_determined else 'not'} determined: its interval spans {G.decades:.1f} "
+            f"G is {'hardly' if G.is_determined else 'not'} determined: its interval spans "
+            f"{G.interval_decades:.1f} "
             "decades; a larger patch or more decades are needed"
         )
     structures, spectra = results[0].profile.D, results[1].profile.D
@@ -298,7 +299,11 @@ def _plot_data(result: FractalResult) -> tuple[Array, Array, Array]:
     is_structure = series.method == "structure"
     unsmoothed = structure_power_law(series.scale, fit.H) if is_structure else series.scale ** (2.0 * fit.H)
     first = expected[np.argmin(np.abs(series.scale - fit.min_scale))]
-    law = np.exp(fit.log_power) * fit.reference_wavelength ** (-2.0 * fit.H) * (expected + fit.offset * first)
+    law = (
+        np.exp(fit.log_power)
+        * fit.reference_wavelength ** (-2.0 * fit.H)
+        * (expected + fit.relative_offset * first)
+    )
     data, law = series.value * unsmoothed / expected, law * unsmoothed / expected
     if is_structure:
         return series.scale, data / second_difference_ratio(fit.H), law / second_difference_ratio(fit.H)

@@ -17,7 +17,7 @@ from jointfmu.quantity import Array
 from ..fractal import second_difference_ratio, structure_constant
 from .heights import ArealMap, Heights
 
-METHODS = ("structure", "psd")
+SERIES_METHODS = ("structure", "psd")
 SCAN_SIDES = ("1", "2", "both")
 """Side of the contact that a single scan represents: 1 or 2 (the other side is smooth), or both (alike)."""
 MIN_SERIES_VALUE = 1e-200
@@ -48,7 +48,7 @@ class ScaleSeries:
     expected_value: Callable[[float], Array]
     covariance: Callable[[float], Array]
 
-    def select(self, selection: NDArray[Any]) -> "ScaleSeries":
+    def select_scales(self, selection: NDArray[Any]) -> "ScaleSeries":
         """Series at the selected scales, by mask or indices."""
         return replace(
             self,
@@ -229,7 +229,7 @@ def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
     areal = direction == "areal"
 
     def expected_power(H: float) -> Array:
-        return np.asarray(share * f ** (-2.0 * H) * _window_factor(f * length, H, areal))
+        return np.asarray(share * f ** (-2.0 * H) * _hann_window_factor(f * length, H, areal))
 
     def covariance(H: float) -> Array:
         weight = kernel * expected_power(H)
@@ -248,7 +248,7 @@ def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
     )
 
 
-def _window_factor(mode_index: Array, H: float, is_areal: bool) -> Array:
+def _hann_window_factor(mode_index: Array, H: float, is_areal: bool) -> Array:
     """Factor [1] of a Hann window on a power law, since the window mixes neighbouring modes.
 
     mode_index : number k of waves per length

@@ -1,8 +1,8 @@
 """Tool modules of the bolted joint."""
 
-from ...common.joint_parts import ToolParts
+from ...common.joint_parts import JointToolModules
 
-TOOL_PARTS = ToolParts(
+TOOL_MODULES = JointToolModules(
     __name__,
     ("export", "fit", "modelica", "new", "published", "report", "uncertainty"),
     checks="job",

@@ -19,7 +19,7 @@ from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.quantity import Array, quantity_field
 
-from ...exchange.export.exports import Exports, LoadCurve
+from ...exchange.export.exports import Exports, LoadCurveExport
 from ...exchange.export.placing import Springs
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...exchange.export.placing import Placement
     from ...exchange.export.tables import LoadTable
 
-TOTAL_OUTPUTS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
+TOTAL_STIFFNESS_AND_DAMPING_NAMES = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
 """Outputs of the joint that the springs and dashpots of all nodes must add up to."""
 FORCE_TOLERANCE = 0.3
 """Relative error [1] of the total force of interpolated pressures that is still corrected by scaling."""
@@ -41,7 +41,7 @@ most."""
 
 
 def springs_of_joint(
-    spring: BoltedJointSpring, preload: float, moment: float, first_label: int = 1
+    spring: BoltedJointSpring, preload: float, moment: float, first_node_label: int = 1
 ) -> Springs:
     """Springs at the joint's own pressure nodes, for a preload [N] per bolt and a moment [N.m].
 
@@ -49,7 +49,7 @@ def springs_of_joint(
     side 1, then that of side 2. The first label is `first_label`.
     """
     count = spring.points.area_share.size
-    labels = first_label + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
+    labels = first_node_label + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
     return _distribute_to_nodes(spring, labels, preload, moment, None)
 
 
@@ -128,7 +128,7 @@ def _check_area(spring: BoltedJointSpring, node_pairs: "NodePairs") -> None:
 def _interface_totals(spring: BoltedJointSpring, preload: float, moment: float) -> dict[str, float]:
     rest = (0.0, 0.0, 0.0)
     state = spring.evaluate(preload, moment, rest, rest)
-    sums = {name: float(state[name]) for name in TOTAL_OUTPUTS}
+    sums = {name: float(state[name]) for name in TOTAL_STIFFNESS_AND_DAMPING_NAMES}
     tightened = spring.bolts.preload_force(spring.joint, preload, moment)
     bolts = spring.bolts.bolts_per_position * spring.bolts.active_stiffness(
         tightened, np.zeros_like(tightened)
@@ -141,7 +141,7 @@ def _distribute_to_nodes(
     node_labels: NDArray[np.int64],
     preload: float,
     moment: float,
-    total_outputs: dict[str, float] | None,
+    stiffness_and_damping_totals: dict[str, float] | None,
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times stiffness per area.
 
@@ -161,7 +161,7 @@ def _distribute_to_nodes(
     closed = nodal_stiffness > 0.0
     fraction = (nodal_stiffness / nodal_stiffness.sum())[closed]
     spring_totals = _interface_totals(spring, preload, moment)
-    sums = total_outputs or spring_totals
+    sums = stiffness_and_damping_totals or spring_totals
     return Springs(
         node_labels[closed],
         shape.position[closed],
@@ -177,11 +177,11 @@ def _distribute_to_nodes(
     )
 
 
-MAX_FORCE_RATIO = 10.0
+MAX_CONTACT_FORCE_RATIO = 10.0
 """Total contact force at the compressed end of the table over the one at tightening [1]."""
-_ERROR_POINTS = 4000
+_ERROR_SAMPLE_COUNT = 4000
 """Sample points on either side of the tightened state, at which the error of the table is measured."""
-_BLOCK_SIZE = 100_000
+_EVALUATION_BLOCK_SIZE = 100_000
 """Nodes times sample points that are evaluated at once, to limit the memory."""
 
 
@@ -203,13 +203,13 @@ def tabulate_normal_force(
 
     start = spring.checked_preloaded_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    shape = spring.points.merge_nodes(keeps_moment=moment != 0.0)
+    shape = spring.points.merge_nodes(keeps_moment_pressure=moment != 0.0)
     approach = spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
     weight = spring.joint.A_0 * shape.area_share
     springs, held_bolts = spring.bolts, spring.bolts.preload_force(spring.joint, preload, moment)
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
 
-    def compression_correction(separation: Array) -> tuple[Array, Array]:
+    def bolt_compression_correction(separation: Array) -> tuple[Array, Array]:
         """Force [N] and stiffness [N/m] by which bolts, which only pull, deviate from linear springs."""
         elongation = separation[:, None] + np.zeros(len(held_bolts))
         gap = springs.head_gap(held_bolts, elongation)
@@ -219,23 +219,29 @@ def tabulate_normal_force(
         ), springs.bolts_per_position * lost.sum(axis=1)
 
     def contact_force_and_stiffness(separation: Array) -> Array:
-        blocks = np.array_split(separation[:, None], max(separation.size * approach.size // _BLOCK_SIZE, 1))
+        blocks = np.array_split(
+            separation[:, None], max(separation.size * approach.size // _EVALUATION_BLOCK_SIZE, 1)
+        )
         results = [[value @ weight for value in spring.curve.derivatives(approach - s, 1)] for s in blocks]
         return np.concatenate(results, axis=1)
 
     preload_force, preload_stiffness = (float(value[0]) for value in contact_force_and_stiffness(np.zeros(1)))
     compression = np.linspace(0.0, float(high - np.max(start)), 400)
     end = float(
-        np.interp(MAX_FORCE_RATIO * preload_force, contact_force_and_stiffness(-compression)[0], compression)
+        np.interp(
+            MAX_CONTACT_FORCE_RATIO * preload_force, contact_force_and_stiffness(-compression)[0], compression
+        )
     )
     opening = float(np.max(start) - low)
-    s = np.concatenate([np.linspace(-end, 0.0, _ERROR_POINTS), np.linspace(0.0, opening, _ERROR_POINTS)[1:]])
+    s = np.concatenate(
+        [np.linspace(-end, 0.0, _ERROR_SAMPLE_COUNT), np.linspace(0.0, opening, _ERROR_SAMPLE_COUNT)[1:]]
+    )
     force, stiffness = contact_force_and_stiffness(s)
-    pushing, lost = compression_correction(s)
+    pushing, lost = bolt_compression_correction(s)
     normal_force = preload_force - force + bolts * s + pushing
     scale = preload_force, preload_stiffness
     table = decimate_curve(
-        s, normal_force, stiffness + (bolts - lost), max_error, scale, fixed_points=(_ERROR_POINTS - 1,)
+        s, normal_force, stiffness + (bolts - lost), max_error, scale, fixed_points=(_ERROR_SAMPLE_COUNT - 1,)
     )
     last = [2.0 * opening, preload_force + 2.0 * bolts * opening, bolts]
     return LoadTable(np.vstack([table.rows, last]), table.linear_errors, table.monotone_cubic_errors)
@@ -265,7 +271,7 @@ def _make_springs(
         return springs_under_pressure(spring, node_pairs), f"pressures of {node_pairs.path.name}"
     if node_pairs is None:
         return springs_of_joint(
-            spring, tightened_state.preload, tightened_state.moment, placement.first_number
+            spring, tightened_state.preload, tightened_state.moment, placement.first_free_number
         ), str(tightened_state)
     springs = springs_on_mesh(spring, node_pairs, tightened_state.preload, tightened_state.moment)
     return springs, f"{tightened_state}, on the nodes of {node_pairs.path.name}"
@@ -295,7 +301,7 @@ EXPORTS = Exports(
     working_point_class=TightenedState,
     springs=_make_springs,
     contact=_contact_curve,
-    curve=LoadCurve(
+    curve=LoadCurveExport(
         meaning="force that holds the interface together over its separation from the tightened state, "
         "with the tension of the bolts; without members and damping",
         columns=(

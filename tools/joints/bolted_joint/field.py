@@ -12,7 +12,7 @@ from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ...common.pressure import NominalPressure
+from ...common.pressure import NominalPressureModel
 from ...inputs.drawing.vdi2230 import proof_load
 
 if TYPE_CHECKING:
@@ -60,10 +60,10 @@ class PlaneLayout:
         )
 
 
-def _frame_outline(pattern: BoltedFrame) -> tuple[Array, Array]:
-    half = 0.5 * np.array([pattern.column_spacing, pattern.row_spacing])
+def _frame_outline(bolted_frame: BoltedFrame) -> tuple[Array, Array]:
+    half = 0.5 * np.array([bolted_frame.column_spacing, bolted_frame.row_spacing])
     signs = np.array([[-1.0], [1.0]])
-    return signs * (half + 0.5 * pattern.flange_width), signs * (half - 0.5 * pattern.flange_width)
+    return signs * (half + 0.5 * bolted_frame.flange_width), signs * (half - 0.5 * bolted_frame.flange_width)
 
 
 def _mean_pressure(joint: AnyBoltedJoint, preload: float) -> float:
@@ -85,7 +85,7 @@ def _proof_load(joint: AnyBoltedJoint) -> tuple[float, str] | None:
     return None if isinstance(pattern, NodalField) else proof_load(pattern.hole_diameter)
 
 
-NOMINAL_PRESSURE = NominalPressure(
+NOMINAL_PRESSURE = NominalPressureModel(
     load_variable="preload",
     default_load=_default_preload,
     mean_pressure=_mean_pressure,
@@ -95,11 +95,11 @@ NOMINAL_PRESSURE = NominalPressure(
 
 
 def insert_elastic_bodies(
-    file: ParameterFile,
+    parameter_file: ParameterFile,
     assembly: "Assembly",
     preload: float,
     attachment: str,
-    pressure_shape: PressureDistribution,
+    normalised_pressure: PressureDistribution,
 ) -> ParameterFile:
     """Compute the elastic bodies of an assembly; return the parameter file of the joint with them.
 
@@ -111,12 +111,12 @@ def insert_elastic_bodies(
     from .new.plate_finite_elements import compute_joint_of_assembly
 
     return compute_joint_of_assembly(
-        file, lambda: assembly, preload, attachment, pressure_shape
+        parameter_file, lambda: assembly, preload, attachment, normalised_pressure
     ).parameter_file
 
 
-def joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
+def joint_facts(parameter_file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
     """Facts about the complete joint at a preload [N] per bolt: {name: (value, unit, meaning)}."""
     from .new import plate_finite_elements
 
-    return plate_finite_elements.joint_facts(file, preload)
+    return plate_finite_elements.joint_facts(parameter_file, preload)

@@ -18,7 +18,7 @@ from ...pages.report.figure import Figure, Panel, Series
 from ...run.ramps import ramp
 from ...run.ramps.ramp import RampResult
 from ...studies.checks import relative_deviation
-from ...studies.published.reference import Point
+from ...studies.published.reference import PublishedPoint
 from ...systems.master import Slave
 from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
 from .picture import draw_plan
@@ -39,7 +39,7 @@ RAMP_CHECKS = {_FMU_NAME: _check_separation}
 relative deviation [1])."""
 
 
-def compute_through_fmu(published_point: Point, folder: Path) -> float | None:
+def compute_through_fmu(published_point: PublishedPoint, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     if published_point.quantity != "p_max":
         return None
@@ -47,7 +47,7 @@ def compute_through_fmu(published_point: Point, folder: Path) -> float | None:
     return float(ramp.run_ramp(folder / f"{_FMU_NAME}.fmu", "preload", load, load).columns["p_max"][-1])
 
 
-_MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
+_PRESSURE_MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
 """Preload [N] and moment [N.m] of the two pressure maps: without a moment, and with the moment of the
 paper."""
 
@@ -66,7 +66,7 @@ def make_figures(job_result: Any) -> list[Figure]:
             "Contact pressure",
             "Bolts are numbered. First picture: the preload of the published pressures. Second picture: with "
             "a moment that changes the bolt forces of the two rows by 5 kN.",
-            pictures=[draw_plan(joint, *case) for case in _MAP_LOADS],
+            pictures=[draw_plan(joint, *case) for case in _PRESSURE_MAP_LOADS],
         ),
     ]
 

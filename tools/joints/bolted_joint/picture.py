@@ -212,7 +212,7 @@ def _draw_bolts(
     positions: Array,
     plane_layout: PlaneLayout,
     pixels_per_metre: float,
-    is_attached: bool,
+    is_load_at_heads: bool,
 ) -> None:
     """Draw holes, heads, centre lines and numbers of bolts at positions (b, 2) [px]."""
     hole, head = (
@@ -223,7 +223,7 @@ def _draw_bolts(
         reach = max(hole, head, 6.0) + 7.0
         if hole:
             svg_drawing.add_element("circle", cx=x, cy=y, r=hole, fill="#fff", stroke=LINE_COLOUR)
-        if head and is_attached:
+        if head and is_load_at_heads:
             wide = max(head - hole, 4.0) if hole else 4.0
             ring = {"stroke_width": wide, "stroke_dasharray": "2 4", "stroke_opacity": 0.9}
             svg_drawing.add_element(
@@ -304,7 +304,7 @@ def _draw_bolt_section(
     vertical_range: tuple[float, float],
     head_radius: float,
     head_height: float,
-    is_attached: bool,
+    is_load_at_heads: bool,
     thread_depth: float,
 ) -> None:
     """Draw one bolt, schematic [px]: with head and nut, or with head and tapped thread."""
@@ -322,7 +322,7 @@ def _draw_bolt_section(
             fill="#fff",
             stroke=LINE_COLOUR,
         )
-    if is_attached:
+    if is_load_at_heads:
         under = {"stroke": RED, "stroke_width": 5, "stroke_dasharray": "2 3"}
         for y in (bottom,) if thread_depth else vertical_range:
             svg_drawing.add_element("line", x1=x - head_radius, y1=y, x2=x + head_radius, y2=y, **under)

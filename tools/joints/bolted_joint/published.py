@@ -7,19 +7,24 @@ import numpy as np
 from jointfmu.contact.laws import mindlin
 from jointfmu.contact.laws import zhao2018 as zhao
 from jointfmu.contact.surface import domain_extension
-from jointfmu.joints.bolted_joint.law import BoltedJoint, get_bolted_frame, preload_pressure, row_forces
+from jointfmu.joints.bolted_joint.law import (
+    BoltedJointParameters,
+    get_bolted_frame,
+    preload_pressure,
+    row_forces,
+)
 from jointfmu.mechanics.footprint.bolts import bolt_pressures, frame_cells, pressure_distribution
 
 from ...inputs.fractal import rms_height
 from ...studies.published.computed import CalibrationFit, PublishedNumbers
 
 
-def largest_pressure(joint: BoltedJoint, preload: float) -> float:
+def largest_pressure(joint: BoltedJointParameters, preload: float) -> float:
     """Largest nodal pressure [Pa] at a preload [N] per bolt."""
     return float(np.max(preload_pressure(joint, pressure_distribution(joint.pattern), preload, 0.0)))
 
 
-def pressure_between_bolts(joint: BoltedJoint, preload: float) -> float:
+def pressure_between_bolts(joint: BoltedJointParameters, preload: float) -> float:
     """Pressure [Pa] midway between a corner bolt and the next bolt of the other row.
 
     preload : [N] per bolt
@@ -31,17 +36,17 @@ def pressure_between_bolts(joint: BoltedJoint, preload: float) -> float:
     return unit * preload * joint.n_bolts / 8.0 * float(areas.sum()) / joint.A_0
 
 
-def row_force(joint: BoltedJoint, preload: float, moment: float, row: int) -> float:
+def row_force(joint: BoltedJointParameters, preload: float, moment: float, row: int) -> float:
     """Force [N] of a bolt in row 1 or 2, at a preload [N] per bolt and a moment [N.m]."""
     return row_forces(joint, preload, moment)[row - 1]
 
 
-def critical_area(joint: BoltedJoint, choice: str) -> float:
+def critical_area(joint: BoltedJointParameters, choice: str) -> float:
     """Critical area a'_c [m2] of a spot, by one of the choices of the parameter `critical_area`."""
     return float(zhao.critical_area(replace(joint, critical_area=choice)))
 
 
-def spot_stiffness_ratio(joint: BoltedJoint) -> float:
+def spot_stiffness_ratio(joint: BoltedJointParameters) -> float:
     """Stiffness of a spot by the choice `family` over that by the choice `hertz` [1]."""
     family, hertz = (
         zhao.normal_stiffness(replace(joint, spot_stiffness=kind), 1e-6) for kind in ("family", "hertz")
@@ -49,12 +54,12 @@ def spot_stiffness_ratio(joint: BoltedJoint) -> float:
     return float(family / hertz)
 
 
-def surface_rms_height(joint: BoltedJoint, longest_wave: float) -> float:
+def surface_rms_height(joint: BoltedJointParameters, longest_wave: float) -> float:
     """Rms height h [m] of the fractal surface (D, G) with wavelengths up to `longest_wave` [m]."""
     return float(rms_height(joint.surface.D, joint.surface.G, longest_wave))
 
 
-def evaluate_mindlin(joint: BoltedJoint, function: str, x: float) -> float:
+def evaluate_mindlin(joint: BoltedJointParameters, function: str, x: float) -> float:
     """Mindlin's function of the dissipation, the stored energy or their ratio [1], at a traction ratio x [1].
 
     function : "loop" (H1, dissipation), "storage" (H2, stored energy) or "loss_ratio" (W_d/W)
@@ -67,19 +72,19 @@ def evaluate_mindlin(joint: BoltedJoint, function: str, x: float) -> float:
     return float(table[function](x))
 
 
-def domain_extension_factor(joint: BoltedJoint, D: float) -> float:
+def domain_extension_factor(joint: BoltedJointParameters, D: float) -> float:
     """Domain extension factor psi [1] for a fractal dimension D of the profile."""
     return float(domain_extension(D))
 
 
-def frequency_error(joint: BoltedJoint, predicted: float, measured: float) -> float:
+def frequency_error(joint: BoltedJointParameters, predicted: float, measured: float) -> float:
     """Error [%] of a predicted frequency relative to the measured one [Hz]."""
     return 100.0 * (predicted / measured - 1.0)
 
 
 PUBLISHED_NUMBERS = PublishedNumbers(
     papers=("zhao2018",),
-    observables={
+    observable_functions={
         "p_max": largest_pressure,
         "p_between": pressure_between_bolts,
         "row_force": row_force,

@@ -25,7 +25,7 @@ from .gross_slip import PRELOAD_ENTRY, friction_results, preload_results
 from .picture import draw_plan, draw_section
 from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces
 
-PLOTTED_LOAD_RATIO = 1.3
+MAX_PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
@@ -129,7 +129,7 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     remaining_preload = float(working_preload(joint, preload))
     opening = compliances.opening_load(remaining_preload)
     limit = float(slip_force(joint, remaining_preload))
-    panel = _bolt_force_panel(spring, preload, moment, PLOTTED_LOAD_RATIO * opening)
+    panel = _bolt_force_panel(spring, preload, moment, MAX_PLOTTED_LOAD_RATIO * opening)
     share = compliances.bolt_force[:, 2]
     most_loaded = int(np.argmax(share))
     is_uneven = share[most_loaded] > (1.0 + EQUAL_SHARE_TOLERANCE) * np.mean(share)
@@ -143,7 +143,7 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
         "with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. The whole "
         f"interface slips at {_format_value(limit, 'N')} along x or y; slip begins at the edges at a far "
         "lower load, and its loss is under Loops. The plot shows a tensile force up to "
-        f"{PLOTTED_LOAD_RATIO:g} times the opening load, free in the other five motions, and up to "
+        f"{MAX_PLOTTED_LOAD_RATIO:g} times the opening load, free in the other five motions, and up to "
         f"{MAX_BOLT_FORCE_RATIO:g} times the force of a bolt at tightening."
     )
     return [Figure("The complete joint", text, [panel], table=_stiffness_rows(compliances))]

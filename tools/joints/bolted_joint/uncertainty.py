@@ -12,15 +12,15 @@ from jointfmu.quantity import Array
 
 from ...studies.uncertainty.curves import DerivedOutput, JointSample, LoadCurves, spline_weights
 
-INTERFACE = {"sides": "rigid", "bolt_stiffness": 0.0, "memory": True}
+INTERFACE_ONLY_PARAMETERS = {"sides": "rigid", "bolt_stiffness": 0.0, "memory": True}
 """Parameters of the interface alone: rigid members, no bolts in parallel, friction with slip."""
-LOG_RANGE, LOG_POINTS = 30.0, 41
+LOG_FORCE_RANGE, LOG_FORCE_POINT_COUNT = 30.0, 41
 """Range of ln(force) below the end of the ramp, and number of points [1] of the integral of dF/K."""
-SHEAR_RATIO = 0.05
+LOOP_SHEAR_FORCE_RATIO = 0.05
 """Shear force of the loop over the force of all bolts [1]: half of mu = 0.1."""
 MAX_SLIP_RATIO = 0.8
 """Largest shear force of the loop over the slip force [1]."""
-LOOP_LOADS = np.geomspace(0.02, 1.0, 5)
+LOOP_LOAD_RATIOS = np.geomspace(0.02, 1.0, 5)
 """Loads of the loops over the end of the ramp [1]. The loss factor is interpolated between them."""
 MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
 """Limits of Newton's method for the amplitude of the loop [1]."""
@@ -32,9 +32,9 @@ def approach(sample: JointSample, preload: Array) -> Array:
     Below the first point the integrand F/K is a power of F.
     """
     end = preload[-1]
-    x = np.linspace(-LOG_RANGE, 0.0, LOG_POINTS)
+    x = np.linspace(-LOG_FORCE_RANGE, 0.0, LOG_FORCE_POINT_COUNT)
     force = sample.parameters.n_bolts * end * np.exp(x)
-    rate = force / sample.follow({"preload": end * np.exp(x)}, INTERFACE)["K_zz"]
+    rate = force / sample.follow({"preload": end * np.exp(x)}, INTERFACE_ONLY_PARAMETERS)["K_zz"]
     (exponent,) = spline_weights(x, x[:1], 1) @ np.log(rate)
     return np.asarray(rate[0] / exponent + spline_weights(x, np.log(preload / end), -1) @ rate)
 
@@ -55,25 +55,25 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
     finds the displacement at which the shear force is reached: the virgin curve is concave, so the iteration
     is monotone.
     """
-    loads, parameters = preload[-1] * LOOP_LOADS, sample.parameters
-    shear = parameters.n_bolts * loads * min(SHEAR_RATIO, MAX_SLIP_RATIO * parameters.mu)
+    loads, parameters = preload[-1] * LOOP_LOAD_RATIOS, sample.parameters
+    shear = parameters.n_bolts * loads * min(LOOP_SHEAR_FORCE_RATIO, MAX_SLIP_RATIO * parameters.mu)
     amplitude = np.zeros_like(shear)
     for _ in range(MAX_ITERATIONS):
-        state = sample.follow({"preload": loads, "s_rel_x": amplitude}, INTERFACE)
+        state = sample.follow({"preload": loads, "s_rel_x": amplitude}, INTERFACE_ONLY_PARAMETERS)
         step = (shear + state["f_x"]) / state["K_xx"]
         amplitude = amplitude + step
         if np.all(np.abs(step) <= RELATIVE_TOLERANCE * amplitude):
             break
-    relative = np.maximum(preload / preload[-1], LOOP_LOADS[0])
-    return np.asarray(spline_weights(np.log(LOOP_LOADS), np.log(relative)) @ state["eta_loop"])
+    relative = np.maximum(preload / preload[-1], LOOP_LOAD_RATIOS[0])
+    return np.asarray(spline_weights(np.log(LOOP_LOAD_RATIOS), np.log(relative)) @ state["eta_loop"])
 
 
-CURVES = LoadCurves(
+UNCERTAINTY_CURVES = LoadCurves(
     model="BoltedJoint",
     load=replace(KIND.variables["preload"], doc="force of each bolt after embedding"),
     outputs=tuple(KIND.variables[name] for name in ("K_zz", "K_xx", "C_zz", "C_xx")),
-    knots=17,
-    derived=(
+    knot_count=17,
+    derived_outputs=(
         DerivedOutput(
             Variable("approach", "m", "approach of the two sides by tightening, from zero preload", 1e-6),
             approach,
@@ -88,7 +88,10 @@ CURVES = LoadCurves(
         ),
         DerivedOutput(
             Variable(
-                "loss_factor", "1", f"of a loop under a shear of {SHEAR_RATIO:g} times the bolts' force", 0.1
+                "loss_factor",
+                "1",
+                f"of a loop under a shear of {LOOP_SHEAR_FORCE_RATIO:g} times the bolts' force",
+                0.1,
             ),
             loss_factor,
         ),

@@ -1,8 +1,8 @@
 """Tool modules of the gear contact."""
 
-from ...common.joint_parts import ToolParts
+from ...common.joint_parts import JointToolModules
 
-TOOL_PARTS = ToolParts(
+TOOL_MODULES = JointToolModules(
     __name__,
     ("modelica", "new", "published", "uncertainty"),
     checks="ramp",

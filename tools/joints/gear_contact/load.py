@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 from jointfmu.joints.gear_contact import KIND
 from jointfmu.joints.gear_contact.spring import ContactParameters, GearContactSpring
 
-from ...common.pressure import FLANK_PRESSURE
-from ...exchange.export.exports import Exports, LoadCurve
+from ...common.pressure import FLANK_PRESSURE_MODEL
+from ...exchange.export.exports import Exports, LoadCurveExport
 from ...pages.laboratory.joint_additions import LaboratoryModel
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def _load_table(contact_parameters: ContactParameters, _working_point: None, max
 
 EXPORTS = Exports(
     contact=_contact_curve,
-    curve=LoadCurve(
+    curve=LoadCurveExport(
         meaning="normal load over approach of the flanks from first touch; without load while apart",
         columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K_N")),
         table_name="force",
@@ -39,6 +39,6 @@ EXPORTS = Exports(
 )
 
 
-NOMINAL_PRESSURE = FLANK_PRESSURE
+NOMINAL_PRESSURE = FLANK_PRESSURE_MODEL
 LABORATORY_MODELS = {"GearContact": LaboratoryModel(slider_spans={"f": (0.0, 3e3)})}
 """{FMU: contents of its laboratory page that are not variables of the FMU}."""

@@ -27,11 +27,11 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
             f"--radii = {' '.join(options['radii'])}: the flanks do not bulge towards each other"
         )
     sides = [
-        ElasticConstants(E=sheet.value_of(f"side{i}.E"), nu=sheet.value_of(f"side{i}.nu")) for i in (1, 2)
+        ElasticConstants(E=sheet.get_value(f"side{i}.E"), nu=sheet.get_value(f"side{i}.nu")) for i in (1, 2)
     ]
     hertz = hertz_line_contact(load, width, curvature, contact_modulus(*sides))
     text = f"Hertz's line contact under {load:g} N, {width * 1e3:g} mm wide, 1/R = {curvature:.4g} 1/m"
-    sheet.add("A_0", float(hertz.area), "derived", text)
+    sheet.add_parameter("A_0", float(hertz.area), "derived", text)
     sheet.add_drawing_value("inputs.f", load)
     file = sheet.build_file(f"flanks {options['width']} wide")
     state = GearContactSpring.tabulate(file.values).evaluate(load)

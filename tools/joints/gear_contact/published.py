@@ -7,12 +7,12 @@ import numpy as np
 
 from jointfmu.contact.interface import evaluate_at_largest_spot
 from jointfmu.contact.laws.yu2022 import Yu2022
-from jointfmu.joints.gear_contact.spring import GearContact
+from jointfmu.joints.gear_contact.spring import GearContactParameters
 
 from ...studies.published.computed import PublishedNumbers
 
 
-def is_claim_met(contact: GearContact, of: str, over: str) -> bool:
+def is_claim_met(contact: GearContactParameters, of: str, over: str) -> bool:
     """Check whether a claim of Yu 2022, section 5, holds for the parameter values in that section.
 
     of   : quantity that changes: load, stiffness, real area `A_r` or `elastic_fraction`
@@ -49,7 +49,7 @@ def is_claim_met(contact: GearContact, of: str, over: str) -> bool:
     return bool(np.all(np.diff(rows, axis=1) > 0.0))
 
 
-def _replace_parameters(contact: GearContact, **new_values: Any) -> GearContact:
+def _replace_parameters(contact: GearContactParameters, **new_values: Any) -> GearContactParameters:
     for key in ("D1", "D2", "G1", "G2"):
         if key in new_values:
             name = f"surface{key[1]}"
@@ -60,7 +60,7 @@ def _replace_parameters(contact: GearContact, **new_values: Any) -> GearContact:
 
 def _state_at_real_area(law: Yu2022, area_fraction: float) -> dict[str, float]:
     """State of the law at a real contact area of `area_fraction` times A_0; largest spot by Eq. 54."""
-    spots = law.spots()
+    spots = law.spot_distribution()
     largest = (
         area_fraction * law.A_0 * (1.0 - spots.size_exponent) / (spots.size_exponent * spots.size_prefactor)
     )
@@ -68,7 +68,7 @@ def _state_at_real_area(law: Yu2022, area_fraction: float) -> dict[str, float]:
     return {name: float(value) for name, value in state.items()}
 
 
-def _is_below_majumdar_bhushan(contact: GearContact) -> bool:
+def _is_below_majumdar_bhushan(contact: GearContactParameters) -> bool:
     """Whether the load is below that of Majumdar and Bhushan (1991) at all real areas from 1 to 10 % of A_0.
 
     Both models have the same D (fractal dimension of the profile) and G. In the model of Majumdar and Bhushan
@@ -89,7 +89,7 @@ def _is_below_majumdar_bhushan(contact: GearContact) -> bool:
 
 PUBLISHED_NUMBERS = PublishedNumbers(
     papers=("yu2022",),
-    observables={
+    observable_functions={
         "claim": is_claim_met,
     },
 )

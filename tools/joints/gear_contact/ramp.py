@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.gear_contact.spring import GearContact
+from jointfmu.joints.gear_contact.spring import GearContactParameters
 from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
@@ -17,7 +17,7 @@ from ...studies.checks import integrate_logarithmically, relative_deviation
 
 def _check_approach(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
     law = load_default("gear_contact").values
-    assert isinstance(law, GearContact)
+    assert isinstance(law, GearContactParameters)
 
     def compliance(force: Array) -> Array:
         return 1.0 / (law.A_0 * stiffness_curve(law, force / law.A_0)[0])

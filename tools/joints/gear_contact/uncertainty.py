@@ -4,7 +4,7 @@ from jointfmu.joints.gear_contact import KIND
 
 from ...studies.uncertainty.curves import LoadCurves
 
-CURVES = LoadCurves(
+UNCERTAINTY_CURVES = LoadCurves(
     model="GearContact",
     load=KIND.variables["f"],
     outputs=tuple(KIND.variables[name] for name in ("K_N", "s_rel")),

@@ -1,8 +1,8 @@
 """Tool modules of the gear mesh."""
 
-from ...common.joint_parts import ToolParts
+from ...common.joint_parts import JointToolModules
 
-TOOL_PARTS = ToolParts(
+TOOL_MODULES = JointToolModules(
     __name__,
     ("modelica", "new", "uncertainty"),
     checks="ramp",

@@ -9,8 +9,8 @@ from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import MeshParameters, tabulate_tooth_pair
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 
-from ...common.pressure import FLANK_PRESSURE
-from ...exchange.export.exports import Exports, LoadCurve
+from ...common.pressure import FLANK_PRESSURE_MODEL
+from ...exchange.export.exports import Exports, LoadCurveExport
 
 if TYPE_CHECKING:
     from ...exchange.export.tables import LoadTable
@@ -38,7 +38,7 @@ def _load_table(mesh_parameters: MeshParameters, _working_point: None, max_error
 
 EXPORTS = Exports(
     contact=_contact_curve,
-    curve=LoadCurve(
+    curve=LoadCurveExport(
         meaning="force over deflection of the flanks beyond the backlash, mean over the mesh cycle",
         columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K")),
         table_name="force",
@@ -47,4 +47,4 @@ EXPORTS = Exports(
 )
 
 
-NOMINAL_PRESSURE = FLANK_PRESSURE
+NOMINAL_PRESSURE = FLANK_PRESSURE_MODEL

@@ -8,7 +8,7 @@ from jointfmu.contact.surface import ElasticConstants, contact_modulus
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 
-from ...common.options import Option, option_flag
+from ...common.options import Option, format_option_flag
 from ...inputs.drawing import faces
 from ...inputs.drawing.faces import FACE_OPTIONS, hertz_line_contact
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand, ParameterSheet
@@ -16,7 +16,7 @@ from ...inputs.drawing.quantities import parse_quantity, parse_value
 
 E_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
-STIFFNESS_CORRECTION = 0.8
+TOOTH_STIFFNESS_CORRECTION = 0.8
 """Factor C_M of ISO 6336-1: measured over theoretical single stiffness [1]."""
 REFERENCE_LINE_LOAD = 100e3
 """Tangential load per face width [N/m] below which ISO 6336-1 reduces the tooth stiffness."""
@@ -97,7 +97,7 @@ class InvoluteGearPair:
         rack = 1.0 - 0.02 * (20.0 - np.degrees(self.pressure_angle))  # C_B
         loaded = min(torque / self.reference_radii[0] / self.face_width / REFERENCE_LINE_LOAD, 1.0) ** 0.25
         theory = 1e9 / q * np.cos(self.helix_angle) * material * self.face_width
-        return float(STIFFNESS_CORRECTION * rack * loaded * theory)
+        return float(TOOTH_STIFFNESS_CORRECTION * rack * loaded * theory)
 
     def mesh_stiffness(self, tooth_stiffness: float) -> float:
         """Mesh stiffness c_gamma times width [N/m] of ISO 6336-1.
@@ -128,13 +128,13 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     wheels, torque = _parse_wheels(options), parse_value("torque", options["torque"])
     sheet = ParameterSheet(KIND.name, "roughness")
     faces.add_faces(sheet, options)
-    moduli = (sheet.value_of("side1.E"), sheet.value_of("side2.E"))
+    moduli = (sheet.get_value("side1.E"), sheet.get_value("side2.E"))
     load = torque / wheels.base_radii[0]
-    sides = [ElasticConstants(E=E, nu=sheet.value_of(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
+    sides = [ElasticConstants(E=E, nu=sheet.get_value(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
     hertz = hertz_line_contact(load, wheels.face_width, wheels.relative_curvature, contact_modulus(*sides))
     _add_parameters(sheet, wheels, options, wheels.tooth_stiffness(moduli, torque))
     text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
-    sheet.add("A_0", float(hertz.area), "derived", text)
+    sheet.add_parameter("A_0", float(hertz.area), "derived", text)
     file = sheet.build_file(
         f"wheels of module {options['module']}, {wheels.tooth_counts[0]:g} to "
         f"{wheels.tooth_counts[1]:g} teeth"
@@ -179,7 +179,7 @@ def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
         if not max(lowest, 0.0) <= np.degrees(angle) < highest or (lowest == 0.0 and angle == 0.0):
             lower_end = "(0" if lowest == 0.0 else "[0"
             raise ValueError(
-                f"{option_flag(name)} = {options[name]} deg is outside {lower_end}, {highest:g})"
+                f"{format_option_flag(name)} = {options[name]} deg is outside {lower_end}, {highest:g})"
             )
         angles.append(angle)
     width, module = (parse_value(name, options[name]) for name in ("width", "module"))
@@ -197,7 +197,7 @@ def _add_parameters(
     tooth_stiffness : [N/m] of one tooth pair
     """
     for i, radius in enumerate(gear_pair.base_radii):
-        parameter_sheet.add(
+        parameter_sheet.add_parameter(
             f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing"
         )
     parameter_sheet.add_drawing_value("teeth1", gear_pair.tooth_counts[0])
@@ -205,25 +205,27 @@ def _add_parameters(
         distance = sum(gear_pair.reference_radii) * 1e3
         min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * gear_pair.normal_module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
-        parameter_sheet.add("backlash", min_backlash, "estimate", text)
+        parameter_sheet.add_parameter("backlash", min_backlash, "estimate", text)
     else:
         parameter_sheet.add_drawing_number("backlash", parse_quantity("backlash", options["backlash"]))
-    parameter_sheet.add(
+    parameter_sheet.add_parameter(
         "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
     )
     text = "ISO 21771, addendum of one module, transverse"
-    parameter_sheet.add("contact_ratio", gear_pair.contact_ratio, "derived", text)
-    parameter_sheet.add(
+    parameter_sheet.add_parameter("contact_ratio", gear_pair.contact_ratio, "derived", text)
+    parameter_sheet.add_parameter(
         "overlap_ratio", gear_pair.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771"
     )
-    parameter_sheet.add("engagement", 0.3, "estimate", "see docs/gear_mesh.md")
+    parameter_sheet.add_parameter("engagement", 0.3, "estimate", "see docs/gear_mesh.md")
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
     d = gear_pair.mesh_damping(tooth_stiffness * gear_pair.contact_ratio, (density[0], density[1]))
-    parameter_sheet.add(
+    parameter_sheet.add_parameter(
         "d", d, "estimate", f"a damping ratio of {DAMPING_RATIO:g} for the wheels as solid discs"
     )
     for name in ("phi1", "phi2"):
-        parameter_sheet.add(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")
+        parameter_sheet.add_parameter(
+            f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash"
+        )
 
 
 NEW_JOINT_COMMAND = NewJointCommand(

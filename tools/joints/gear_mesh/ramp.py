@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs_in_contact
+from jointfmu.joints.gear_mesh.spring import GearMeshParameters, GearMeshSpring, pairs_in_contact
 from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
@@ -15,20 +15,20 @@ from ...pages.report.figure import Figure, Panel, Series
 from ...run.ramps.ramp import RampResult
 from ...studies.checks import integrate_logarithmically, relative_deviation
 
-_CLOSED_FORCE = 10.0
+_FULL_CONTACT_FORCE = 10.0
 """Force [N] of a tooth pair above which its contact is closed, with the default parameters."""
 
 
 def _check_deflection_and_work(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
     mesh = load_default("gear_mesh").values
-    assert isinstance(mesh, GearMesh)
+    assert isinstance(mesh, GearMeshParameters)
 
     def compliance(force: Array) -> Array:
         return 1.0 / (mesh.A_0 * stiffness_curve(mesh, force / mesh.A_0)[0]) + 1.0 / mesh.K_tooth
 
     c = ramp_result.columns
     pair = c["f"] / c["pairs"]
-    first = int(np.argmax(pair > _CLOSED_FORCE))
+    first = int(np.argmax(pair > _FULL_CONTACT_FORCE))
     rows = np.linspace(first, pair.size - 1, 4).astype(int)
     deflection = integrate_logarithmically(compliance, pair[rows])
     work = -cumulative_simpson(c["tau1"], x=c["phi1"], initial=0.0)

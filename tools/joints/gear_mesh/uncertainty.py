@@ -8,7 +8,7 @@ from jointfmu.joints.gear_mesh.spring import MeshParameters
 
 from ...studies.uncertainty.curves import LoadCurves
 
-RAMP_END_RATIO = 0.05
+RAMP_END_FORCE_RATIO = 0.05
 """Default end of the ramp over `largest_table_angle` [1]."""
 
 
@@ -25,11 +25,11 @@ def largest_table_angle(mesh: MeshParameters) -> float:
     return mesh.hardness * mesh.A_0 / (mesh.K_tooth * mesh.r_b1)
 
 
-CURVES = LoadCurves(
+UNCERTAINTY_CURVES = LoadCurves(
     model="GearMesh",
     load=KIND.variables["phi1"],
     outputs=tuple(KIND.variables[name] for name in ("K", "f")),
-    default_end=lambda mesh: RAMP_END_RATIO * float(largest_table_angle(mesh)),
+    default_end=lambda mesh: RAMP_END_FORCE_RATIO * float(largest_table_angle(mesh)),
     max_load=largest_table_angle,
     other_inputs=lambda mesh: {"phi2": first_contact_angle(mesh)},
 )

@@ -1,8 +1,8 @@
 """Tool modules of the harmonic drive."""
 
-from ...common.joint_parts import ToolParts
+from ...common.joint_parts import JointToolModules
 
-TOOL_PARTS = ToolParts(
+TOOL_MODULES = JointToolModules(
     __name__,
     ("fit", "modelica", "new", "published", "report", "uncertainty"),
     checks="job",

@@ -19,7 +19,7 @@ from typing import TypeAlias
 from jointfmu.quantity.units import conversion_factor
 
 from ...inputs.catalogue import CatalogueColumn, CatalogueEntry, SourcedNumber
-from .friction import add_friction_estimates, collect_published
+from .friction import add_friction_estimates, collect_published_friction
 
 STIFFNESS_COLUMNS = (
     CatalogueColumn("K1", "N.m/rad", "stiffness below T1", "N.m/rad"),
@@ -29,9 +29,9 @@ STIFFNESS_COLUMNS = (
     CatalogueColumn("T2", "N.m", "torque at the second corner", "N.m"),
 )
 """Columns of the torsional stiffness."""
-STIFFNESS_NAMES = tuple(column.name for column in STIFFNESS_COLUMNS)
+STIFFNESS_COLUMN_NAMES = tuple(column.name for column in STIFFNESS_COLUMNS)
 """Names of the columns of the torsional stiffness."""
-COLUMNS = (
+CATALOGUE_COLUMNS = (
     CatalogueColumn("ratio", "1", "speed ratio", "1"),
     *STIFFNESS_COLUMNS,
     CatalogueColumn("rated_torque", "N.m", "rated torque", "N.m"),
@@ -51,11 +51,11 @@ RATIOS_FROM_80 = ("80", "100", "120", "160")
 ratio."""
 ACTUATOR_SERIES = ("CHA", "FHA", "RSF")
 """Series with a built-in motor; their published torques are not those of the gear alone."""
-STRONG_SERIES = ("CSG", "SHG")
+HIGH_TORQUE_SERIES = ("CSG", "SHG")
 """Series with higher torques than the others, by the factor STRONG_TORQUE_RATIO."""
-STRONG_TORQUE_RATIO = 1.3
+HIGH_TORQUE_SERIES_RATIO = 1.3
 """Torque of a CSG drive over that of a CSF drive of the same size and ratio [1]."""
-TORQUE_SERIES = ("CSG", "SHG", "HFUC", "HFUS")
+SERIES_WITH_PUBLISHED_TORQUES = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with published torques, in the order in which they serve as estimates for other series."""
 TorqueTable: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
 """Published torques: {(series, size, ratio): row of the file}."""
@@ -130,18 +130,20 @@ def list_drives() -> tuple[CatalogueEntry, ...]:
         item.name: item for row in _read_table("stiffness") for item in _drives_of_row(row, torques)
     }
     for row in _read_table("friction"):
-        drives_by_name[row["drive"]] = _single_drive(row, drives_by_name[row["like"]])
-    drives = collect_published(drives_by_name.values())
+        drives_by_name[row["drive"]] = _make_entry_with_friction(row, drives_by_name[row["like"]])
+    drives = collect_published_friction(drives_by_name.values())
     return tuple(add_friction_estimates(item, drives) for item in drives_by_name.values())
 
 
-def _drives_of_row(stiffness_row: Mapping[str, str], torques: TorqueTable) -> Iterator[CatalogueEntry]:
+def _drives_of_row(stiffness_row: Mapping[str, str], torque_table: TorqueTable) -> Iterator[CatalogueEntry]:
     """Yield the drives for which a row of the table of stiffnesses holds."""
     group = stiffness_row["series"].removeprefix("HD ")
     ratios = [stiffness_row["ratio"]]
     if stiffness_row["ratio"].endswith("+"):
         ratios = [
-            r for r in RATIOS_FROM_80 if any((s, stiffness_row["size"], r) in torques for s in TORQUE_SERIES)
+            r
+            for r in RATIOS_FROM_80
+            if any((s, stiffness_row["size"], r) in torque_table for s in SERIES_WITH_PUBLISHED_TORQUES)
         ]
     source = (
         f"{group}, size {stiffness_row['size']}, ratio {stiffness_row['ratio']}: {stiffness_row['source']}"
@@ -157,7 +159,7 @@ def _drives_of_row(stiffness_row: Mapping[str, str], torques: TorqueTable) -> It
             numbers = {
                 "ratio": SourcedNumber(float(ratio), "catalogue", f"{name}: {source}"),
                 **lines,
-                **_rated_and_peak_torque(torques, series, stiffness_row["size"], ratio),
+                **_rated_and_peak_torque(torque_table, series, stiffness_row["size"], ratio),
                 **_hysteresis_limits(series, stiffness_row["size"], float(ratio)),
             }
             yield CatalogueEntry(name, numbers)
@@ -177,8 +179,11 @@ def _estimate_K3(stiffness_row: Mapping[str, str], source: str) -> SourcedNumber
 _STIFFNESS_HEADINGS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
 """{column: heading in the file of stiffnesses}."""
 _TORQUE_HEADINGS = {"rated_torque": "rated_Nm", "peak_torque": "repeated_peak_Nm"}
-_LIMIT_HEADINGS = {"hysteresis_loss": "hysteresis_below_arcmin", "lost_motion": "lost_motion_below_arcmin"}
-_SINGLE_DRIVE_HEADINGS = {
+_HYSTERESIS_LIMIT_HEADINGS = {
+    "hysteresis_loss": "hysteresis_below_arcmin",
+    "lost_motion": "lost_motion_below_arcmin",
+}
+_FRICTION_TABLE_HEADINGS = {
     "ratio": ("ratio", 1.0),
     "K1": ("K1_Nm_per_rad", 1.0),
     "K3": ("K3_Nm_per_rad", 1.0),
@@ -193,7 +198,7 @@ _SINGLE_DRIVE_HEADINGS = {
 
 
 def _rated_and_peak_torque(
-    torques: TorqueTable, series: str, size: str, ratio: str
+    torque_table: TorqueTable, series: str, size: str, ratio: str
 ) -> dict[str, SourcedNumber]:
     """Rated and repeated peak torque of a drive.
 
@@ -201,16 +206,16 @@ def _rated_and_peak_torque(
     """
     if series.startswith(ACTUATOR_SERIES):
         return {}
-    for other in (series, *TORQUE_SERIES):
-        if row := torques.get((other, size, ratio)):
+    for other in (series, *SERIES_WITH_PUBLISHED_TORQUES):
+        if row := torque_table.get((other, size, ratio)):
             name = f"{other}-{size}-{ratio}"
             if other == series:
                 kind, ratio_to_series = "catalogue", 1.0
                 text = f"{name}: {row['source']}"
-            elif other in STRONG_SERIES and series not in STRONG_SERIES:
-                kind, ratio_to_series = "estimate", 1.0 / STRONG_TORQUE_RATIO
+            elif other in HIGH_TORQUE_SERIES and series not in HIGH_TORQUE_SERIES:
+                kind, ratio_to_series = "estimate", 1.0 / HIGH_TORQUE_SERIES_RATIO
                 text = (
-                    f"that of {name} over {STRONG_TORQUE_RATIO:g}: the catalogue gives the CSG 30 % "
+                    f"that of {name} over {HIGH_TORQUE_SERIES_RATIO:g}: the catalogue gives the CSG 30 % "
                     "more than the CSF"
                 )
             else:
@@ -231,7 +236,7 @@ def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, Source
     rows = [row for row in _read_table("accuracy") if row["ratio"] == step]
     same_size = [row for row in rows if row["size"] == size]
     limits = {}
-    for column, head in _LIMIT_HEADINGS.items():
+    for column, head in _HYSTERESIS_LIMIT_HEADINGS.items():
         row = max(same_size or rows, key=lambda row: float(row[head]))
         actuator = f"{row['series']}-{row['size']}A"
         kind = "catalogue" if series == actuator else "estimate"
@@ -245,7 +250,9 @@ def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, Source
     return limits
 
 
-def _single_drive(friction_row: Mapping[str, str], similar_drive: CatalogueEntry) -> CatalogueEntry:
+def _make_entry_with_friction(
+    friction_row: Mapping[str, str], similar_drive: CatalogueEntry
+) -> CatalogueEntry:
     """Catalogue entry of a drive with published friction.
 
     similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
@@ -258,7 +265,7 @@ def _single_drive(friction_row: Mapping[str, str], similar_drive: CatalogueEntry
             c: SourcedNumber(n.value, "estimate", text + n.source, n.bound) for c, n in numbers.items()
         }
     source = f"{name}: {friction_row['source']}"
-    for column, (head, unit) in _SINGLE_DRIVE_HEADINGS.items():
+    for column, (head, unit) in _FRICTION_TABLE_HEADINGS.items():
         if friction_row[head] and (name != similar_drive.name or column not in ("ratio", "K1", "K3")):
             numbers[column] = SourcedNumber(unit * float(friction_row[head]), "catalogue", source)
     return CatalogueEntry(name, numbers)

@@ -16,9 +16,9 @@ from ...systems.master import Slave
 from .catalogue import list_drives
 from .friction import friction_parameters
 
-_FLANGE_MOTION = ("phi1", "w1", "phi2", "w2")
-_TORQUE_OUTPUTS = ("tau", "tau1")
-_DEVELOPED_ROTATION_RATIO = 20.0
+_FLANGE_INPUT_NAMES = ("phi1", "w1", "phi2", "w2")
+_TORQUE_OUTPUT_NAMES = ("tau", "tau1")
+_DEVELOPED_FRICTION_ROTATION_RATIO = 20.0
 """Rotation of the wave generator over `presliding` [1] after which friction is fully developed."""
 _STEADY_PARAMETERS: Mapping[str, float] = {
     "hysteresis_loss": 0.0,
@@ -47,7 +47,7 @@ class SimulatedDrive:
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
         self._joint = open_joint(model, file)
-        self._path = [(0.0,) * len(_FLANGE_MOTION)]
+        self._path = [(0.0,) * len(_FLANGE_INPUT_NAMES)]
         self._inputs = self._path[0]
 
     def set_inputs(self, *values: float) -> None:
@@ -56,8 +56,8 @@ class SimulatedDrive:
     def get_outputs(self) -> list[float]:
         """Outputs tau, tau1 [N.m] and K_WTS [N.m/rad] at the present inputs."""
         path = zip(*self._path, self._inputs, strict=True)
-        columns = self._joint.follow(dict(zip(_FLANGE_MOTION, path, strict=True))).columns
-        return [float(columns[name][-1]) for name in (*_TORQUE_OUTPUTS, "K_WTS")]
+        columns = self._joint.follow(dict(zip(_FLANGE_INPUT_NAMES, path, strict=True))).columns
+        return [float(columns[name][-1]) for name in (*_TORQUE_OUTPUT_NAMES, "K_WTS")]
 
     def do_step(self, time: float, step_size: float) -> None:
         """Accept the present inputs: they become part of the load history."""
@@ -100,7 +100,7 @@ class DriveTestRig:
 
     drive: Slave | SimulatedDrive
     ratio: float
-    presliding: float
+    presliding_rotation: float
     stiffness: float
     motor_angle: float = 0.0
     step_count: int = 0
@@ -115,17 +115,21 @@ class DriveTestRig:
         self.drive.set_inputs(self.motor_angle, 0.0, self.motor_angle / ratio + wind_up, 0.0)
         self.drive.do_step(float(self.step_count), 1.0)
         self.step_count += 1
-        self.motor_angle += math.copysign(_DEVELOPED_ROTATION_RATIO * self.presliding, speed)
+        self.motor_angle += math.copysign(
+            _DEVELOPED_FRICTION_ROTATION_RATIO * self.presliding_rotation, speed
+        )
         self.drive.set_inputs(self.motor_angle, speed, self.motor_angle / ratio + wind_up, speed / ratio)
         return -self.drive.get_outputs()[1]
 
-    def efficiency(self, speed: float, load: float) -> float:
+    def efficiency(self, speed: float, load_torque: float) -> float:
         """Efficiency [1]: output power over motor power.
 
         speed : [rad/s] of the motor, > 0
         load  : [N.m] at the output against the motion, > 0
         """
-        return load / (abs(self.ratio) * self.motor_torque(speed, -math.copysign(load, self.ratio)))
+        return load_torque / (
+            abs(self.ratio) * self.motor_torque(speed, -math.copysign(load_torque, self.ratio))
+        )
 
     def starting_torque(self) -> float:
         """Motor torque [N.m] that starts the rotation of the drive without load."""
@@ -161,8 +165,8 @@ class DriveTestRig:
 @contextmanager
 def open_fmu_test_rig(path: Path, parameters: Mapping[str, float]) -> Iterator[DriveTestRig]:
     """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test rig; the parameters replace default values."""
-    wires = (*_TORQUE_OUTPUTS, "K_WTS", "ratio", "presliding")
-    with Slave(path, {**parameters, **_STEADY_PARAMETERS}, _FLANGE_MOTION, wires) as drive:
+    wires = (*_TORQUE_OUTPUT_NAMES, "K_WTS", "ratio", "presliding")
+    with Slave(path, {**parameters, **_STEADY_PARAMETERS}, _FLANGE_INPUT_NAMES, wires) as drive:
         _, _, stiffness, ratio, presliding = drive.get_outputs()
         yield DriveTestRig(drive, ratio, presliding, stiffness)
 
@@ -174,7 +178,7 @@ def make_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
     return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get_outputs()[2])
 
 
-LOST_MOTION_RATIO = 0.04
+LOST_MOTION_TORQUE_RATIO = 0.04
 """Torque over rated torque [1], positive and negative, at which catalogues state lost motion."""
 
 
@@ -194,7 +198,7 @@ def lost_motion(spring: HarmonicDriveSpring) -> float:
     ends = (
         0.5
         * sum(
-            _final_wind_up(spring, (rated, side * rated, sign * LOST_MOTION_RATIO * rated))
+            _final_wind_up(spring, (rated, side * rated, sign * LOST_MOTION_TORQUE_RATIO * rated))
             for side in (1.0, -1.0)
         )
         for sign in (1.0, -1.0)

@@ -23,18 +23,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, friction_limits, viscous_torque
 from jointfmu.quantity import Array
 
-from ...common.options import option_flag
+from ...common.options import format_option_flag
 from ...inputs.catalogue import CatalogueEntry, SourcedNumber
 
 CONFIDENCE_LEVEL = 0.95
 """Probability that a single drive lies inside its prediction interval [1]."""
 REFERENCE_SIZE, REFERENCE_RATIO = 20.0, 100.0
 """Reference size and reference ratio of the scaling laws [1]."""
-SIZE_EXPONENT = 3.0
+RUNNING_TORQUE_SIZE_EXPONENT = 3.0
 """Exponent of the size in the scaling law of the running torque [1]."""
 
 
@@ -92,7 +92,7 @@ def scale_friction(
         ]
     )
     running_logs = [
-        np.log(k.running_torque / (k.drive_size / REFERENCE_SIZE) ** SIZE_EXPONENT)
+        np.log(k.running_torque / (k.drive_size / REFERENCE_SIZE) ** RUNNING_TORQUE_SIZE_EXPONENT)
         for k in published_drives
         if k.running_torque is not None
     ]
@@ -102,7 +102,10 @@ def scale_friction(
     )
     ones = np.ones((len(running_logs), 1))
     running = _scale_torque(
-        ones, np.array(running_logs), np.ones(1), (drive_size / REFERENCE_SIZE) ** SIZE_EXPONENT
+        ones,
+        np.array(running_logs),
+        np.ones(1),
+        (drive_size / REFERENCE_SIZE) ** RUNNING_TORQUE_SIZE_EXPONENT,
     )
     rise = (max(x - reference.value, 0.0) for x in running)
     starting = ScaledNumber(*(REFERENCE_RATIO / ratio * x for x in reference))
@@ -120,18 +123,18 @@ def _scale_torque(
     design_matrix, torque_logarithms : (n, k), (n) data of the regression
     design_row : (k) of the drive
     """
-    value, half = _predict(design_matrix, torque_logarithms, design_row)
+    value, half = _predict_with_interval(design_matrix, torque_logarithms, design_row)
     return ScaledNumber(*(torque_factor * float(np.exp(x)) for x in (value, value - half, value + half)))
 
 
 def _mean_loss(published_losses: Sequence[float | None]) -> ScaledNumber:
     """Mean of the published values, with an interval that is cut at zero."""
     published = np.array([value for value in published_losses if value is not None])
-    value, half = _predict(np.ones((published.size, 1)), published, np.ones(1))
+    value, half = _predict_with_interval(np.ones((published.size, 1)), published, np.ones(1))
     return ScaledNumber(value, max(value - half, 0.0), value + half)
 
 
-def _predict(design_matrix: Array, values: Array, design_row: Array) -> tuple[float, float]:
+def _predict_with_interval(design_matrix: Array, values: Array, design_row: Array) -> tuple[float, float]:
     """Predict a value by linear regression; value, and half width of its prediction interval.
 
     design_matrix, values : (n, k), (n) data of the regression
@@ -151,12 +154,12 @@ def _predict(design_matrix: Array, values: Array, design_row: Array) -> tuple[fl
     return float(design_row @ law), float(stdtrit(freedom, 0.5 + 0.5 * CONFIDENCE_LEVEL) * deviation)
 
 
-CATALOGUE_SPEED = 2000.0 * math.pi / 30.0
+CATALOGUE_MOTOR_SPEED = 2000.0 * math.pi / 30.0
 """Speed [rad/s] of the wave generator at which catalogues state running torque and efficiency: 2000
 rev/min."""
 FRICTION_COLUMNS = ("starting_torque", "running_torque", "back_driving_torque", "efficiency")
 """Columns of the catalogue that describe friction."""
-_LIMIT_TOLERANCE = 1e-5
+_STATED_LIMIT_TOLERANCE = 1e-5
 """Relative tolerance [1] of limits, so that a user can type a limit as an error message shows it."""
 _INTERVAL_DECIMALS = 12
 """Decimals to which ends of intervals in SI units are rounded, so that round-off does not hide a zero."""
@@ -190,11 +193,11 @@ def friction_parameters(
         return {}
     start, running = sourced_numbers["starting_torque"], sourced_numbers.get("running_torque")
     ratio, rated = abs(sourced_numbers["ratio"].value), sourced_numbers.get("rated_torque")
-    _check_stated(sourced_numbers, stated_names)
+    _check_stated_numbers(sourced_numbers, stated_names)
     values: dict[str, tuple[Callable[[float], float], str]] = {"starting_torque": (lambda torque: torque, "")}
     if running is not None:
-        text = f" over {CATALOGUE_SPEED:.4g} rad/s"
-        values["running_torque"] = (lambda torque: (torque - start.value) / CATALOGUE_SPEED, text)
+        text = f" over {CATALOGUE_MOTOR_SPEED:.4g} rad/s"
+        values["running_torque"] = (lambda torque: (torque - start.value) / CATALOGUE_MOTOR_SPEED, text)
     if (output := sourced_numbers.get("efficiency")) is not None and rated is not None:
         idle = _no_load_torque_ratio(sourced_numbers)
         values["efficiency"] = (
@@ -207,7 +210,7 @@ def friction_parameters(
             f" {back.value:.4g} N.m over ratio times starting torque",
         )
     parameters = {
-        PARAMETER_OF_COLUMN[name][0]: _make_parameter(name, sourced_numbers[name], *value)
+        PARAMETER_OF_COLUMN[name][0]: _make_friction_parameter(name, sourced_numbers[name], *value)
         for name, value in values.items()
     }
     if "load_loss_back" in parameters and "load_loss" not in parameters:
@@ -221,7 +224,9 @@ def _no_load_torque_ratio(sourced_numbers: Mapping[str, SourcedNumber]) -> float
     return torque * abs(sourced_numbers["ratio"].value) / sourced_numbers["rated_torque"].value
 
 
-def _check_stated(sourced_numbers: Mapping[str, SourcedNumber], stated_names: Collection[str]) -> None:
+def _check_stated_numbers(
+    sourced_numbers: Mapping[str, SourcedNumber], stated_names: Collection[str]
+) -> None:
     """Check stated numbers. Raises ValueError if one of them would make a friction parameter negative."""
     start, ratio = sourced_numbers["starting_torque"].value, abs(sourced_numbers["ratio"].value)
     ends = {
@@ -229,22 +234,22 @@ def _check_stated(sourced_numbers: Mapping[str, SourcedNumber], stated_names: Co
         "back_driving_torque": (ratio * start, "ratio times starting torque"),
     }
     for name, (lowest, bound_text) in ends.items():
-        if name in stated_names and sourced_numbers[name].value < (1.0 - _LIMIT_TOLERANCE) * lowest:
-            value = f"{option_flag(name)} = {sourced_numbers[name].value:g} N.m"
+        if name in stated_names and sourced_numbers[name].value < (1.0 - _STATED_LIMIT_TOLERANCE) * lowest:
+            value = f"{format_option_flag(name)} = {sourced_numbers[name].value:g} N.m"
             raise ValueError(f"{value} is outside [{lowest:.6g}, inf) N.m: it is at least {bound_text}")
     if "efficiency" in stated_names and "rated_torque" in sourced_numbers:
         highest, stated_value = (
             1.0 / (1.0 + _no_load_torque_ratio(sourced_numbers)),
             sourced_numbers["efficiency"].value,
         )
-        if stated_value > (1.0 + _LIMIT_TOLERANCE) * highest:
+        if stated_value > (1.0 + _STATED_LIMIT_TOLERANCE) * highest:
             raise ValueError(
                 f"--efficiency = {stated_value:g} is outside (0, {highest:.6g}]: the torque without load "
                 "takes the rest"
             )
 
 
-def _make_parameter(
+def _make_friction_parameter(
     column: str, number: SourcedNumber, convert: Callable[[float], float], source_text: str
 ) -> SourcedNumber:
     """Friction parameter from a catalogue number, with source and interval.
@@ -265,20 +270,20 @@ def describe_interval(interval: tuple[float, float]) -> str:
     return f"{100.0 * CONFIDENCE_LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
 
 
-def rated_efficiency(drive: Drive, temperature: float = REFERENCE_TEMPERATURE) -> float:
+def rated_efficiency(drive: DriveParameters, temperature: float = REFERENCE_TEMPERATURE) -> float:
     """Efficiency [1] of a drive at rated torque and CATALOGUE_SPEED, without hysteresis.
 
     temperature : [K] of the lubricant
     """
     transmitted = drive.rated_torque / abs(drive.ratio)
     load = -math.copysign(drive.rated_torque, drive.ratio)
-    friction_torque = friction_limits(drive, CATALOGUE_SPEED, load, temperature)[0] + viscous_torque(
-        drive, CATALOGUE_SPEED, temperature
+    friction_torque = friction_limits(drive, CATALOGUE_MOTOR_SPEED, load, temperature)[0] + viscous_torque(
+        drive, CATALOGUE_MOTOR_SPEED, temperature
     )
     return float(transmitted / (transmitted + friction_torque))
 
 
-def collect_published(entries: Iterable[CatalogueEntry]) -> dict[str, tuple[PublishedFriction, str]]:
+def collect_published_friction(entries: Iterable[CatalogueEntry]) -> dict[str, tuple[PublishedFriction, str]]:
     """Published friction {drive: (friction, maker)} of all drives with a published starting torque."""
     found = {}
     for item in entries:

@@ -21,7 +21,7 @@ from ...pages.report.figure import Figure, Panel, Series, published_series
 from ...run.ramps import ramp
 from ...run.ramps.ramp import RampResult
 from ...studies.checks import relative_deviation
-from ...studies.published.reference import Point
+from ...studies.published.reference import PublishedPoint
 from ...studies.published.validation import ValidatedPoint
 from ...systems.master import Slave
 from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
@@ -45,15 +45,15 @@ RAMP_CHECKS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance
 relative deviation [1])."""
 
 
-def compute_through_fmu(published_point: Point, folder: Path) -> float | None:
+def compute_through_fmu(published_point: PublishedPoint, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     where = published_point.where
 
-    def run_drive(column: str, **settings: float) -> float:
+    def run_drive(output_name: str, **settings: float) -> float:
         """Output of the FMU under the torque of the point, with other parameters."""
         torque = where["torque"]
         fmu = folder / "HarmonicDriveCompliance.fmu"
-        return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).columns[column][-1])
+        return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).columns[output_name][-1])
 
     if published_point.quantity == "K_TS":
         changes = {"radial_deformation": where["deformation"]} if "deformation" in where else {}
@@ -138,14 +138,14 @@ def friction_panels(fmu_path: Path) -> list[Panel]:
     return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", series_with_diagonal)]
 
 
-def stiffness_panels(ramp_result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
+def stiffness_panels(ramp_result: RampResult, validated_points: list[ValidatedPoint]) -> list[Panel]:
     """Panels of the stiffness of the drive and of the contact pair over torque, with published points."""
     c = ramp_result.columns
-    points = [row.point for row in rows]
+    points = [row.point for row in validated_points]
     drive = [Series(name, c["tau"], c[name]) for name in ("K_WTS", "K_TS")]
     drive += published_series([p for p in points if p.quantity == "K_WTS"], "torque")
-    least = [row for row in rows if row.point.quantity == "K_TS_least"]
-    most = [r for r in rows if r.point.quantity == "K_TS" and "deformation" in r.point.where]
+    least = [row for row in validated_points if row.point.quantity == "K_TS_least"]
+    most = [r for r in validated_points if r.point.quantity == "K_TS" and "deformation" in r.point.where]
     ends = [*most, *least]
     pair = [
         Series("K_TS on the paper's scale", c["tau"], c["K_TS_pair"]),
@@ -171,7 +171,7 @@ def torque_angle_panel(ramp_result: RampResult) -> Panel:
     return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])
 
 
-TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
+VIBRATION_TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Torques over the rated torque [1] of the simulated free vibrations."""
 
 
@@ -179,7 +179,7 @@ def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[floa
     """Mean torques [N.m] at which free vibrations are simulated: from zero to the rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get_outputs()
-    return [share * rated for share in TORQUE_RATIOS]
+    return [share * rated for share in VIBRATION_TORQUE_RATIOS]
 
 
 def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> WorkingPoint:
@@ -224,7 +224,7 @@ VIBRATION_TEST = VibrationTest(
 )
 
 
-_SLIDER_SPANS = {
+_LABORATORY_INPUT_RANGES = {
     "hysteresis_loss": (0.0, 1e-3),
     "hysteresis_stiffness": (0.0, 2e4),
     "lost_motion": (0.0, 1e-3),
@@ -243,7 +243,11 @@ _SLIDER_SPANS = {
     **{f"error_{n}": (0.0, 1e-3) for n in KINEMATIC_ERROR_HARMONICS},
     **{f"error_{n}_phase": (-math.pi, math.pi) for n in KINEMATIC_ERROR_HARMONICS},
 }
-_POINT_INPUTS = {"torque": "tau", "deformation": "radial_deformation", "eccentricity": "eccentricity"}
+_PUBLISHED_POINT_INPUTS = {
+    "torque": "tau",
+    "deformation": "radial_deformation",
+    "eccentricity": "eccentricity",
+}
 
 _TRANSMISSION_VIEW = TransmissionView(
     input_angle="phi1",
@@ -268,18 +272,18 @@ _LABORATORY_EXAMPLE = ExampleValues(
 
 LABORATORY_MODELS = {
     "HarmonicDriveSpring": LaboratoryModel(
-        slider_spans=_SLIDER_SPANS,
+        slider_spans=_LABORATORY_INPUT_RANGES,
         path_inputs=("phi2",),
         transmission=_TRANSMISSION_VIEW,
         example=_LABORATORY_EXAMPLE,
     ),
     "HarmonicDriveCompliance": LaboratoryModel(
-        slider_spans=_SLIDER_SPANS,
+        slider_spans=_LABORATORY_INPUT_RANGES,
         path_inputs=("tau",),
         published_points={
-            "K_TS": PublishedQuantity("K_TS_pair", _POINT_INPUTS),
-            "K_WTS": PublishedQuantity("K_WTS", _POINT_INPUTS),
-            "peak_pressure": PublishedQuantity("p_max", _POINT_INPUTS),
+            "K_TS": PublishedQuantity("K_TS_pair", _PUBLISHED_POINT_INPUTS),
+            "K_WTS": PublishedQuantity("K_WTS", _PUBLISHED_POINT_INPUTS),
+            "peak_pressure": PublishedQuantity("p_max", _PUBLISHED_POINT_INPUTS),
         },
     ),
 }

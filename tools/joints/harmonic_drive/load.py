@@ -4,30 +4,30 @@ from typing import TYPE_CHECKING
 
 from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.harmonic_drive import KIND
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.law import (
-    HarmonicDrive,
-    RoughHarmonicDrive,
+    HarmonicDriveParameters,
+    RoughHarmonicDriveParameters,
     pair_stiffness,
     peak_pressure,
 )
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-from ...common.pressure import NominalPressure
-from ...exchange.export.exports import Exports, LoadCurve
+from ...common.pressure import NominalPressureModel
+from ...exchange.export.exports import Exports, LoadCurveExport
 
 if TYPE_CHECKING:
     from ...exchange.export.tables import LoadTable
 
 
-def _torque_table(drive: Drive, _working_point: None, max_error: float) -> "LoadTable":
+def _torque_table(drive: DriveParameters, _working_point: None, max_error: float) -> "LoadTable":
     from ...exchange.export.tables import tabulate_odd_curve
 
     return tabulate_odd_curve(HarmonicDriveSpring.tabulate(drive).curve, max_error)
 
 
 EXPORTS = Exports(
-    curve=LoadCurve(
+    curve=LoadCurveExport(
         meaning="torque over wind-up at the output, wave generator locked",
         columns=tuple(KIND.variables[name] for name in ("phi_rel", "tau", "K_WTS")),
         table_name="torque",
@@ -39,7 +39,7 @@ EXPORTS = Exports(
 )
 
 
-_ContactPairDrive = HarmonicDrive | RoughHarmonicDrive
+_ContactPairDrive = HarmonicDriveParameters | RoughHarmonicDriveParameters
 
 
 def _peak_pressure(drive: _ContactPairDrive, torque: float) -> float:
@@ -56,7 +56,7 @@ def _stiffness_ratio(drive: _ContactPairDrive, torque: float) -> float:
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
 
 
-NOMINAL_PRESSURE = NominalPressure(
+NOMINAL_PRESSURE = NominalPressureModel(
     load_variable="tau",
     default_load=lambda drive: drive.rated_torque,
     mean_pressure=_mean_pressure,

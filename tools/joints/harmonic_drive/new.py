@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
-from ...common.options import Option, option_flag
+from ...common.options import Option, format_option_flag
 from ...inputs.catalogue import SourcedNumber
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 from ...inputs.drawing.quantities import parse_value
 from ...inputs.drawing.reading import parse_temperature
-from .catalogue import STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive, find_ratio
+from .catalogue import STIFFNESS_COLUMN_NAMES, STIFFNESS_COLUMNS, find_drive, find_ratio
 from .friction import (
-    CATALOGUE_SPEED,
+    CATALOGUE_MOTOR_SPEED,
     FRICTION_COLUMNS,
     describe_interval,
     friction_parameters,
@@ -24,7 +24,7 @@ from .friction import (
 if TYPE_CHECKING:
     from .fit.drive import CatalogueRow
 
-_OPTION_COLUMNS = ("ratio", *STIFFNESS_NAMES, "rated_torque", *FRICTION_COLUMNS)
+_OPTION_COLUMNS = ("ratio", *STIFFNESS_COLUMN_NAMES, "rated_torque", *FRICTION_COLUMNS)
 """Columns of the catalogue that the user can state."""
 DAMPING_TIME = 1e-4
 """Damping d over K1 [s]: a damping ratio of 2 % for a natural frequency of 60 Hz."""
@@ -58,7 +58,9 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
             printed[name] = _stated_number(options, value)
     if options["hysteresis"] is not None:
         printed["hysteresis_loss"] = _stated_number(options, parse_value("hysteresis", options["hysteresis"]))
-    if missing := [option_flag(name) for name in ("ratio", *STIFFNESS_NAMES) if name not in printed]:
+    if missing := [
+        format_option_flag(name) for name in ("ratio", *STIFFNESS_COLUMN_NAMES) if name not in printed
+    ]:
         raise ValueError(f"{', '.join(missing)} missing: state the row of the catalogue, or --catalogue NAME")
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
@@ -73,9 +75,9 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
         printed["corner"] = SourcedNumber(
             corner, "user", "stated" if corner else "stated: the lines, with kinks"
         )
-    joint = (_make_pair_joint if options["law"] == "hu2023" else _make_line_joint)(
-        printed, friction_numbers, source
-    )
+    joint = (
+        _make_joint_with_contact_pair_law if options["law"] == "hu2023" else _make_joint_with_catalogue_law
+    )(printed, friction_numbers, source)
     _check_efficiency(options, joint)
     joint = replace(joint, facts={"ratio": (printed["ratio"].value, "1", ratio_text), **joint.facts})
     return joint if options["temperature"] is None else _set_temperature(joint, options["temperature"])
@@ -94,7 +96,8 @@ def _check_efficiency(options: DrawingOptions, joint: NewJoint) -> None:
     name = max(stated, key=lambda name: parse_value(name, options[name]))
     highest = drive.rated_torque / abs(drive.ratio) * (1.0 / MIN_EFFICIENCY - 1.0)
     raise ValueError(
-        f"{option_flag(name)} = {options[name]!r} is read as {parse_value(name, options[name]):g} N.m at the "
+        f"{format_option_flag(name)} = {options[name]!r} is read as "
+        f"{parse_value(name, options[name]):g} N.m at the "
         f"motor: it leaves an efficiency of {efficiency:.1%} at rated torque, expected at least "
         f"{MIN_EFFICIENCY:.0%}, which is up to about {highest:.2g} N.m; check the unit, as in 50mN.m"
     )
@@ -116,8 +119,8 @@ def _set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
     temperature_text = f"{kelvin - CELSIUS_ZERO_IN_KELVIN:g} degrees C"
     facts = {"starting_torque": (dry, "N.m", f"at the wave generator, at {temperature_text}")}
     wet = float(
-        friction_limits(drive, CATALOGUE_SPEED, 0.0, kelvin)[0]
-        + viscous_torque(drive, CATALOGUE_SPEED, kelvin)
+        friction_limits(drive, CATALOGUE_MOTOR_SPEED, 0.0, kelvin)[0]
+        + viscous_torque(drive, CATALOGUE_MOTOR_SPEED, kelvin)
     )
     facts["running_torque"] = (wet, "N.m", f"the same at 2000 rev/min, at {temperature_text}")
     if "efficiency" in joint.facts:
@@ -159,12 +162,14 @@ def _friction_parameters(
     if options["fixed"] == "wave-generator":
         if stated:
             raise ValueError(
-                f"{option_flag(stated[0])} is of the wave generator, which stands with --fixed wave-generator"
+                f"{format_option_flag(stated[0])} is of the wave generator, which stands with --fixed "
+                "wave-generator"
             )
         return {}
     if "starting_torque" not in sourced_numbers and stated:
         raise ValueError(
-            f"{option_flag(stated[0])} needs {option_flag('starting_torque')}: without it no friction acts"
+            f"{format_option_flag(stated[0])} needs {format_option_flag('starting_torque')}: without "
+            "it no friction acts"
         )
     if "starting_torque" in stated:  # scaled numbers belong to another starting torque; others must be met
         sourced_numbers = {
@@ -204,13 +209,13 @@ def _stated_number(options: DrawingOptions, value: float) -> SourcedNumber:
     return SourcedNumber(value, kind, options["source"] or "stated")
 
 
-def _make_line_joint(
+def _make_joint_with_catalogue_law(
     sourced_numbers: dict[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], drive_name: str
 ) -> NewJoint:
     """Make a drive with the three lines of the catalogue as stiffness (law `catalogue`)."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-    from .efficiency import LOST_MOTION_RATIO, lost_motion
+    from .efficiency import LOST_MOTION_TORQUE_RATIO, lost_motion
     from .fit import catalogue
 
     _catalogue_row(sourced_numbers)  # raises ValueError for an implausible row
@@ -232,11 +237,13 @@ def _make_line_joint(
     text = f"not published; {DAMPING_TIME:g} s times K1, 2 % of critical at 60 Hz"
     sourced_numbers["d"] = SourcedNumber(DAMPING_TIME * sourced_numbers["K1"].value, "estimate", text)
     sourced_numbers |= friction_numbers
-    file = catalogue.make_line_drive(drive_name, sourced_numbers)
+    file = catalogue.make_drive_with_catalogue_law(drive_name, sourced_numbers)
     spring = HarmonicDriveSpring.tabulate(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, on the midline")
-    text = f"computed between +-{LOST_MOTION_RATIO:g} times the rated torque, in the middle of the loop"
+    text = (
+        f"computed between +-{LOST_MOTION_TORQUE_RATIO:g} times the rated torque, in the middle of the loop"
+    )
     computed_angle = lost_motion(spring)
     if printed_angle:
         relation = "below" if computed_angle < printed_angle.value else "above"
@@ -252,7 +259,7 @@ def _make_line_joint(
     return NewJoint(file, facts, notes)
 
 
-def _make_pair_joint(
+def _make_joint_with_contact_pair_law(
     sourced_numbers: Mapping[str, SourcedNumber],
     friction_numbers: Mapping[str, SourcedNumber],
     drive_name: str,
@@ -263,7 +270,7 @@ def _make_pair_joint(
     kind, ratio = sourced_numbers["rated_torque"].kind, sourced_numbers["ratio"].value
     row = _catalogue_row(sourced_numbers)
     found = catalogue.fit_contact_pair_law(
-        row, sourced_numbers=catalogue.source_numbers(row, kind, ratio, drive_name), source=drive_name
+        row, sourced_numbers=catalogue.make_sourced_numbers(row, kind, ratio, drive_name), source=drive_name
     )
     file = replace(found.parameters, name=drive_name)
     loss = sourced_numbers.get("hysteresis_loss")
@@ -284,7 +291,7 @@ def _catalogue_row(sourced_numbers: Mapping[str, SourcedNumber]) -> "CatalogueRo
     from .fit.drive import CatalogueRow
 
     return CatalogueRow(
-        **{name: sourced_numbers[name].value for name in STIFFNESS_NAMES},
+        **{name: sourced_numbers[name].value for name in STIFFNESS_COLUMN_NAMES},
         rated=sourced_numbers["rated_torque"].value,
     )
 

@@ -8,13 +8,18 @@ from jointfmu.contact.interface import evaluate_at_largest_spot
 from jointfmu.contact.laws import hu2023 as hu
 from jointfmu.contact.laws import kogut_etsion
 from jointfmu.contact.surface import hardness_coefficient
-from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
+from jointfmu.joints.harmonic_drive.law import (
+    HarmonicDriveParameters,
+    drive_stiffness,
+    pair_stiffness,
+    peak_pressure,
+)
 
 from ...studies.published.computed import CalibrationFit, PublishedNumbers
 
 
 def K_TS(
-    drive: HarmonicDrive, torque: float, deformation: float | None = None, eccentricity: float = 0.0
+    drive: HarmonicDriveParameters, torque: float, deformation: float | None = None, eccentricity: float = 0.0
 ) -> float:
     """Stiffness K_TS [N.m/rad] of the contact pair, on the scale of the paper.
 
@@ -27,27 +32,27 @@ def K_TS(
     return float(pair_stiffness(changed, torque)[0] / drive.drive_scale)
 
 
-def smallest_K_TS(drive: HarmonicDrive, torque: float, lower: float, upper: float) -> float:
+def smallest_K_TS(drive: HarmonicDriveParameters, torque: float, lower: float, upper: float) -> float:
     """Smallest K_TS [N.m/rad] at a torque [N.m], over 41 radial deformations from `lower` to `upper` [m]."""
     return min(K_TS(drive, torque, w) for w in np.linspace(lower, upper, 41).tolist())
 
 
-def relative_K_TS_change(drive: HarmonicDrive, torque: float, eccentricity: float) -> float:
+def relative_K_TS_change(drive: HarmonicDriveParameters, torque: float, eccentricity: float) -> float:
     """Relative change [%] of K_TS by an eccentricity [m], at a torque [N.m] and the nominal deformation."""
     return 100.0 * (K_TS(drive, torque, eccentricity=eccentricity) / K_TS(drive, torque) - 1.0)
 
 
-def K_WTS(drive: HarmonicDrive, torque: float) -> float:
+def K_WTS(drive: HarmonicDriveParameters, torque: float) -> float:
     """Stiffness K_WTS [N.m/rad] of the drive at a torque [N.m]."""
     return float(drive_stiffness(drive, torque)[0])
 
 
-def drive_peak_pressure(drive: HarmonicDrive, torque: float) -> float:
+def drive_peak_pressure(drive: HarmonicDriveParameters, torque: float) -> float:
     """Peak contact pressure [Pa] at a torque [N.m]."""
     return float(peak_pressure(drive, torque)[0])
 
 
-def kogut_etsion_constant(drive: HarmonicDrive, product: str, stage: int) -> float:
+def kogut_etsion_constant(drive: HarmonicDriveParameters, product: str, stage: int) -> float:
     """Constant [1] of an elastic-plastic stage of Kogut and Etsion, written as a function of the spot area.
 
     product : "load" or "stiffness": factor of the power law; "area": area at the end of the stage over that
@@ -62,7 +67,7 @@ def kogut_etsion_constant(drive: HarmonicDrive, product: str, stage: int) -> flo
     return powers.load_factor if product == "load" else powers.stiffness_factor
 
 
-def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
+def plastic_onset_pressure(drive: HarmonicDriveParameters, nu: float) -> float:
     """Mean pressure over hardness [1] of a spot at the onset of full plasticity, by Kogut and Etsion.
 
     nu : Poisson's ratio [1]
@@ -72,7 +77,7 @@ def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
     return float(2.0 / 3.0 * hardness_coefficient(nu) * load_per_area)
 
 
-def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
+def shear_over_friction(drive: HarmonicDriveParameters, stage: str) -> float:
     """Tangential force over friction limit, t/(mu f) [1], of a spot at the end of a stage.
 
     The shear stress on the spot is tau_b = sigma_s/sqrt(3).
@@ -98,7 +103,7 @@ def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
     return float(law.sigma_y / np.sqrt(3.0) / (law.mu * pressure))
 
 
-def smallest_mean_pressure(drive: HarmonicDrive) -> float:
+def smallest_mean_pressure(drive: HarmonicDriveParameters) -> float:
     """Mean pressure F_r/S_r [Pa] on the spots, if the largest spot has the critical area s_ec.
 
     Then all spots are elastic. This is the smallest F_r/S_r of all larger spots.
@@ -109,7 +114,7 @@ def smallest_mean_pressure(drive: HarmonicDrive) -> float:
 
 PUBLISHED_NUMBERS = PublishedNumbers(
     papers=("hu2023",),
-    observables={
+    observable_functions={
         "K_TS": K_TS,
         "K_TS_least": smallest_K_TS,
         "K_TS_change": relative_K_TS_change,

@@ -20,18 +20,18 @@ from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 from ...inputs.catalogue import CatalogueEntry, SourcedNumber
 from ...pages.report.figure import (
     ROLE_INDEPENDENT,
+    ROLE_PARAMETER_SOURCE,
     ROLE_PREDICTED,
-    ROLE_SET,
     ComparisonRow,
     Figure,
     Panel,
     Series,
 )
 from ...pages.report.load_history import LoadHistory
-from .catalogue import COLUMNS, STIFFNESS_NAMES, find_drive
+from .catalogue import CATALOGUE_COLUMNS, STIFFNESS_COLUMN_NAMES, find_drive
 from .efficiency import DriveTestRig, hysteresis_loss, lost_motion, make_test_rig
 from .fit.drive import CatalogueRow
-from .friction import CATALOGUE_SPEED, FRICTION_COLUMNS, PARAMETER_OF_COLUMN
+from .friction import CATALOGUE_MOTOR_SPEED, FRICTION_COLUMNS, PARAMETER_OF_COLUMN
 
 MOTOR_SPEEDS = (500, 2000, 3500)
 """Motor speeds [rev/min] in the figure of the efficiency."""
@@ -39,7 +39,7 @@ LUBRICANT_TEMPERATURES = (263.15, REFERENCE_TEMPERATURE, 333.15)
 """Temperatures of the lubricant [K]: lower limit of catalogues, reference temperature, and a warm drive."""
 _CURVE_POINTS = 41
 """Number of points of a plotted curve."""
-_BACK_DRIVING_LIMIT_RATIO = 10.0
+_MAX_BACK_DRIVING_TORQUE_RATIO = 10.0
 """End of the search for the back-driving torque over the rated torque [1]."""
 
 
@@ -56,11 +56,11 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
         Series(f"{rpm} rev/min", loads, [bench.efficiency(rpm * math.pi / 30.0, x) for x in loads])
         for rpm in MOTOR_SPEEDS
     ]
-    back_driving_torque = bench.back_driving_torque(_BACK_DRIVING_LIMIT_RATIO * drive.rated_torque)
+    back_driving_torque = bench.back_driving_torque(_MAX_BACK_DRIVING_TORQUE_RATIO * drive.rated_torque)
     torque_text = (
         f"{back_driving_torque:.4g} N m"
         if math.isfinite(back_driving_torque)
-        else f"none up to {_BACK_DRIVING_LIMIT_RATIO * drive.rated_torque:g} N m"
+        else f"none up to {_MAX_BACK_DRIVING_TORQUE_RATIO * drive.rated_torque:g} N m"
     )
     text = (
         f"Starting torque of the motor without load: {bench.starting_torque():.4g} N m. Torque at the output "
@@ -106,7 +106,9 @@ _LOOP_QUANTITIES = {
     "hysteresis_loss": (hysteresis_loss, ROLE_INDEPENDENT),
     "lost_motion": (lost_motion, ROLE_PREDICTED),
 }
-_FRICTION_UNITS = {column.name: column.unit for column in COLUMNS if column.name in FRICTION_COLUMNS}
+_FRICTION_UNITS = {
+    column.name: column.unit for column in CATALOGUE_COLUMNS if column.name in FRICTION_COLUMNS
+}
 
 
 def compare_with_catalogue(model: Model, parameter_file: ParameterFile) -> list[ComparisonRow]:
@@ -115,11 +117,11 @@ def compare_with_catalogue(model: Model, parameter_file: ParameterFile) -> list[
     The drive is identified by the name of the file, or by the source of its ratio. Estimates are omitted,
     upper limits are included. All values hold at REFERENCE_TEMPERATURE.
     """
-    item = _find_entry(parameter_file)
+    item = _find_catalogue_entry(parameter_file)
     return [] if item is None else list(_comparison_rows(model, replace(parameter_file, inputs={}), item))
 
 
-def _find_entry(parameter_file: ParameterFile) -> CatalogueEntry | None:
+def _find_catalogue_entry(parameter_file: ParameterFile) -> CatalogueEntry | None:
     for name in (parameter_file.name, parameter_file.sources.get("ratio", "").partition(":")[0]):
         try:
             return find_drive(name)
@@ -135,7 +137,7 @@ def _comparison_rows(
     yield from _wind_up_rows(
         spring,
         printed,
-        ROLE_SET if _is_stiffness_from_catalogue(parameter_file, printed) else ROLE_INDEPENDENT,
+        ROLE_PARAMETER_SOURCE if _is_stiffness_from_catalogue(parameter_file, printed) else ROLE_INDEPENDENT,
     )
     for column, (measured, role) in _LOOP_QUANTITIES.items():
         number = printed[column]
@@ -146,7 +148,7 @@ def _comparison_rows(
         assert bench is not None
         number, (parameter, text) = printed[column], PARAMETER_OF_COLUMN[column]
         is_set = parameter_file.sources.get(parameter, "").startswith(f"{number.source}; {text}")
-        role = ROLE_SET if is_set else ROLE_PREDICTED
+        role = ROLE_PARAMETER_SOURCE if is_set else ROLE_PREDICTED
         value = _compute_friction_value(bench, column, printed)
         yield ComparisonRow(
             column, _FRICTION_UNITS[column], number.value, number.bound, value, role, number.source
@@ -157,7 +159,7 @@ def _wind_up_rows(
     spring: HarmonicDriveSpring, sourced_numbers: Mapping[str, SourcedNumber], role: str
 ) -> Iterator[ComparisonRow]:
     """Compare the wind-up at T1, T2, rated and peak torque: catalogue, and drive without hysteresis."""
-    lines = {name: sourced_numbers[name].value for name in STIFFNESS_NAMES}
+    lines = {name: sourced_numbers[name].value for name in STIFFNESS_COLUMN_NAMES}
     torques = {
         name: sourced_numbers[name]
         for name in ("T1", "T2", "rated_torque", "peak_torque")
@@ -186,10 +188,10 @@ def _compute_friction_value(
     if column == "starting_torque":
         return test_rig.starting_torque()
     if column == "running_torque":
-        return test_rig.motor_torque(CATALOGUE_SPEED, 0.0)
+        return test_rig.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0)
     if column == "efficiency":
-        return test_rig.efficiency(CATALOGUE_SPEED, sourced_numbers["rated_torque"].value)
-    return test_rig.back_driving_torque(_BACK_DRIVING_LIMIT_RATIO * sourced_numbers[column].value)
+        return test_rig.efficiency(CATALOGUE_MOTOR_SPEED, sourced_numbers["rated_torque"].value)
+    return test_rig.back_driving_torque(_MAX_BACK_DRIVING_TORQUE_RATIO * sourced_numbers[column].value)
 
 
 REPORT_FIGURES = {"HarmonicDriveSpring": friction_figures}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from jointfmu.joints.harmonic_drive import KIND
-from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS, Drive
+from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS, DriveParameters
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
@@ -21,7 +21,7 @@ def make_transmission(file: ParameterFile) -> Transmission:
     """
     if file.joint != KIND.name:
         raise ValueError(f"{file.name} is a {file.joint}, no drive of a motor; allowed is a {KIND.name}")
-    drive: Drive = file.values
+    drive: DriveParameters = file.values
     spring = HarmonicDriveSpring.tabulate(drive)
 
     def wind_up(torques: ArrayLike) -> Array:
@@ -47,7 +47,7 @@ def make_transmission(file: ParameterFile) -> Transmission:
     )
 
 
-def _list_missing_effects(drive: Drive) -> Iterator[str]:
+def _list_missing_effects(drive: DriveParameters) -> Iterator[str]:
     """Effects of the drive that the model `Transmission` lacks, as text."""
     if drive.load_loss or drive.effective_load_loss_back:
         loss, back = (

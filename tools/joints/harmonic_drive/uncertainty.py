@@ -4,7 +4,7 @@ from jointfmu.joints.harmonic_drive import KIND
 
 from ...studies.uncertainty.curves import LoadCurves
 
-CURVES = LoadCurves(
+UNCERTAINTY_CURVES = LoadCurves(
     model="HarmonicDriveCompliance",
     load=KIND.variables["tau"],
     outputs=tuple(KIND.variables[name] for name in ("K_WTS", "phi_rel")),

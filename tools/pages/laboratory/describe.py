@@ -35,7 +35,7 @@ from ...studies.published.reference import ROLES, read_points
 from .joint_additions import LaboratoryModel
 
 _LABORATORY_SOURCE_NAME = "laboratory.c"
-_MAP_SOURCE_NAME = "map.c"
+_CONTACT_MAP_SOURCE_NAME = "map.c"
 _CODE_GENERATION_LOCK = Lock()
 
 
@@ -50,21 +50,23 @@ class PageModule:
     parameter_files: Sequence[ParameterFile]
 
     @property
-    def map_source(self) -> Path | None:
+    def contact_map_source(self) -> Path | None:
         """Path of the C source for the map of the contact; None if the joint has no module `laboratory`.
 
         The file need not exist.
         """
         module = load_tool_module(KINDS[self.model.joint], "laboratory")
-        return Path(str(module.__file__)).with_name(_MAP_SOURCE_NAME) if module else None
+        return Path(str(module.__file__)).with_name(_CONTACT_MAP_SOURCE_NAME) if module else None
 
     def collect_sources(self) -> dict[str, str]:
         """Collect all C sources, of the FMU and of the functions that the page calls: {file name: text}."""
         # imported here because it needs casadi, which pages of the report do not need
-        from jointfmu_fmu_src.native.code.generate import generate_sources, read_token
+        from jointfmu_fmu_src.native.code.generate import generate_sources, read_instantiation_token
 
         files = generate_sources(self.model.name, self.parameter_files[0])
-        return files | self._page_sources() | {"token.h": f'#define TOKEN "{read_token(files)}"\n'}
+        return (
+            files | self._page_sources() | {"token.h": f'#define TOKEN "{read_instantiation_token(files)}"\n'}
+        )
 
     def compile_module(self) -> bytes:
         """Compile the module to WebAssembly (a WASI reactor without imports), or read it from the cache.
@@ -82,7 +84,11 @@ class PageModule:
         """C sources of the functions that the page calls: {file name: text}."""
         paths = [
             Path(__file__).with_name(_LABORATORY_SOURCE_NAME),
-            *([self.map_source] if self.map_source and self.map_source.is_file() else []),
+            *(
+                [self.contact_map_source]
+                if self.contact_map_source and self.contact_map_source.is_file()
+                else []
+            ),
         ]
         return {path.name: path.read_text(encoding="utf-8") for path in paths}
 
@@ -96,7 +102,10 @@ class PageModule:
 def list_modules() -> list[PageModule]:
     """List the modules of all joints and shipped parameter files, in display order."""
     return [
-        module for kind in KINDS.values() for model in kind.models for module in _group_by_code(kind, model)
+        module
+        for kind in KINDS.values()
+        for model in kind.models
+        for module in _group_files_by_c_code(kind, model)
     ]
 
 
@@ -106,7 +115,7 @@ def compile_modules(page_modules: Sequence[PageModule]) -> list[bytes]:
         return list(pool.map(PageModule.compile_module, page_modules))
 
 
-def _group_by_code(joint_kind: JointKind, model: Model) -> Iterator[PageModule]:
+def _group_files_by_c_code(joint_kind: JointKind, model: Model) -> Iterator[PageModule]:
     """Group the shipped files of a joint into modules.
 
     Files share the C code if they have the same law and the same values of all parameters that the FMU does
@@ -143,7 +152,7 @@ def describe_module(module: PageModule) -> dict[str, object]:
     bound = set(_list_compiled_parameters(first))
     curves = (*find_ramp_panels(model), *bench.panels)  # the panels of the documentation come first
     rows = [
-        _variable_document(v, model, bench) | {"bound": v.name in bound} for v in list_variables(model, first)
+        _variable_to_json(v, model, bench) | {"bound": v.name in bound} for v in list_variables(model, first)
     ]
     return {
         "name": model.name,
@@ -151,20 +160,20 @@ def describe_module(module: PageModule) -> dict[str, object]:
         "title": kind.title,
         "law": first.law,
         "default": first.law == next(iter(kind.laws)),
-        "entries": _entry_documents(model, first),
+        "entries": _entries_to_json(model, first),
         "fixed": list(split_parameters(model, first).data_values),
         "height": next(filter(is_combined_height, first.values_by_name), None),
         "doc": model.doc,
         "variables": rows,
         "surfaces": [surface.parameter_prefix for surface in kind.surfaces],
-        "sets": [_parameter_set_document(file, model) for file in module.parameter_files],
+        "sets": [_parameter_set_to_json(file, model) for file in module.parameter_files],
         "ramp": {"input": model.ramp.input_name, "end": model.ramp.end_value},
         "panels": [{"over": p.abscissa, "quantities": list(p.quantities)} for p in curves],
         "pairs": pair_conjugate_variables(model),
         "path": list(bench.path_inputs or (model.ramp.input_name,)),
         "points": list(_published_points(model, bench)),
         "measured": [m._asdict() for m in bench.measured_curves],
-        "map": _map_document(bench, first),
+        "map": _contact_map_to_json(bench, first),
         "turn": bench.transmission and bench.transmission._asdict(),
         "example": bench.example and bench.example._asdict(),
     }
@@ -192,7 +201,7 @@ def _laboratory_model(model: Model) -> LaboratoryModel:
     return benches.get(model.name, LaboratoryModel())
 
 
-def _variable_document(
+def _variable_to_json(
     variable: ListedVariable, model: Model, laboratory_model: LaboratoryModel
 ) -> dict[str, object]:
     unit = variable.attributes.get("unit", "1")
@@ -264,7 +273,7 @@ def _list_compiled_parameters(file: ParameterFile) -> Iterator[str]:
                 yield name
 
 
-def _entry_documents(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
+def _entries_to_json(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
     """Entries that a parameter file may have: {structured name: {unit, value, default, interval}}.
 
     value    : value in the module's first file; roughnesses and start values of inputs have none
@@ -286,17 +295,17 @@ def _entry_documents(model: Model, file: ParameterFile) -> dict[str, dict[str, o
         elif section == "inputs":
             row["default"] = variables[leaf].start
         if "interval" in meta and name not in exposed and "series" not in meta:
-            row["interval"] = _interval_ends(meta["interval"])
+            row["interval"] = _interval_to_json(meta["interval"])
     return rows
 
 
-def _interval_ends(interval: Interval) -> list[float | bool | None]:
+def _interval_to_json(interval: Interval) -> list[float | bool | None]:
     """JSON of an interval: lower end, upper end (None if infinite), whether each of them is excluded."""
     ends = [end if math.isfinite(end) else None for end in (interval.low, interval.high)]
     return [*ends, interval.low_open, interval.high_open]
 
 
-def _parameter_set_document(file: ParameterFile, model: Model) -> dict[str, object]:
+def _parameter_set_to_json(file: ParameterFile, model: Model) -> dict[str, object]:
     """JSON object of a parameter file: values of exposed parameters, start values of inputs, TOML text."""
     names = model.parameter_fields()
     values = {name: value for name, value in file.values_by_name.items() if name in names}
@@ -333,7 +342,7 @@ def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterat
             }
 
 
-def _map_document(laboratory_model: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
+def _contact_map_to_json(laboratory_model: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
     picture = laboratory_model.contact_map
     if picture is None:
         return None

@@ -8,7 +8,7 @@ from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
 from ...common.plots import BLUE, GREEN, GREY, RED
-from ...studies.published.reference import ROLES, UNTESTED_ROLES, Point
+from ...studies.published.reference import ROLES, UNTESTED_ROLES, PublishedPoint
 from ..laboratory.assemble import read_web_file
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def _read_asset(name: str) -> str:
     return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
-ROLE_SET, ROLE_INDEPENDENT, ROLE_PREDICTED = "set by it", "set independently", "predicted"
+ROLE_PARAMETER_SOURCE, ROLE_INDEPENDENT, ROLE_PREDICTED = "set by it", "set independently", "predicted"
 """Roles of a published number: a parameter was set from it; a parameter has the same meaning, but another
 source; no parameter was set from it, so the joint predicts it."""
 
@@ -75,7 +75,7 @@ class Figure(NamedTuple):
     table: Sequence[Sequence[str]] = ()
 
 
-def published_series(points: Sequence[Point], argument: str) -> list[Series]:
+def published_series(points: Sequence[PublishedPoint], argument: str) -> list[Series]:
     """Series of published numbers over an argument, one for each role.
 
     Marks are empty if numbers of this role are no independent check.
@@ -89,9 +89,9 @@ def published_series(points: Sequence[Point], argument: str) -> list[Series]:
     return series
 
 
-def draw_panels(canvas: "Canvas", panels: Sequence[Panel]) -> None:
+def draw_panels(matplotlib_figure: "Canvas", panels: Sequence[Panel]) -> None:
     """Draw panels side by side with matplotlib."""
-    for axes, panel in zip(canvas.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
+    for axes, panel in zip(matplotlib_figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
         for series, color in zip(panel.series, _SERIES_COLOURS, strict=False):
             style = {"ls": "", "marker": "o", "mfc": "white" if series.marks == "empty" else color}
             axes.plot(

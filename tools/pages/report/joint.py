@@ -21,7 +21,13 @@ from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
 from ...common.pressure import judge_joint_stiffness
-from ...common.shown import FileEntry, choose_display_unit, format_quantity, format_unit, list_entries
+from ...common.shown import (
+    ParameterFileEntry,
+    choose_display_unit,
+    format_quantity,
+    format_unit,
+    list_parameter_file_entries,
+)
 from ...run.ramps.loops import HysteresisLoops
 from .figure import ComparisonRow, Figure, Panel, Series, page_script, style_sheet
 from .load_history import LoadHistory
@@ -32,7 +38,7 @@ _CONSTANT_STIFFNESS_RATIO = 0.02
 
 
 def summarise_joint(
-    load_history: LoadHistory, loops: HysteresisLoops | None, entries: Sequence[FileEntry]
+    load_history: LoadHistory, loops: HysteresisLoops | None, entries: Sequence[ParameterFileEntry]
 ) -> str:
     """Summarise a joint in a few sentences: stiffness, hysteresis, estimated parameters.
 
@@ -41,9 +47,9 @@ def summarise_joint(
     """
     lines = [f"A {KINDS[load_history.file.joint].title}.", _describe_stiffness(load_history)]
     if loops:
-        lines.append(_describe_loss(loops))
-    count = Counter(entry.kind for entry in entries)
-    uncertain = [f"{count[kind]} {text}" for kind, text in _UNCERTAIN_ORIGINS.items() if count[kind]]
+        lines.append(_describe_energy_loss(loops))
+    count = Counter(entry.origin for entry in entries)
+    uncertain = [f"{count[kind]} {text}" for kind, text in _ESTIMATED_ORIGINS.items() if count[kind]]
     if uncertain:
         total = sum(count.values())
         lines.append(
@@ -52,7 +58,7 @@ def summarise_joint(
     return " ".join(line for line in lines if line)
 
 
-_UNCERTAIN_ORIGINS = {"estimate": "are estimates", "calibration": "were fitted"}
+_ESTIMATED_ORIGINS = {"estimate": "are estimates", "calibration": "were fitted"}
 """{origin of an uncertain parameter: text}."""
 
 
@@ -90,7 +96,7 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
     )
 
 
-def _describe_loss(loops: HysteresisLoops) -> str:
+def _describe_energy_loss(loops: HysteresisLoops) -> str:
     """Describe the energy loss of the largest loop in a sentence."""
     row = max(loops.compute_loop_results(), key=lambda row: row["motion"])
     if not row["loss"]:
@@ -172,7 +178,7 @@ def _render_page(model: Model, file: ParameterFile) -> str:
         file=file,
         version=__version__,
         figures=[(figure, encode_panels(figure.panels)) for figure in figures],
-        opening=summarise_joint(course, loops, list_entries(file)),
+        opening=summarise_joint(course, loops, list_parameter_file_entries(file)),
         beside=_comparison_rows(compared),
         drawings=draw_further_charts(course.model, course.spring),
         rows=rows,
@@ -190,12 +196,14 @@ def _render_page(model: Model, file: ParameterFile) -> str:
 def _report_rows(file: ParameterFile) -> list[_ReportRow]:
     """Rows of all entries of the parameter file."""
     return [
-        _ReportRow(e.name, *format_quantity(e.value, e.unit), _format_si_value(e), e.doc, e.kind, e.source)
-        for e in list_entries(file)
+        _ReportRow(
+            e.name, *format_quantity(e.value, e.unit), _format_si_value(e), e.meaning, e.origin, e.source
+        )
+        for e in list_parameter_file_entries(file)
     ]
 
 
-def _format_si_value(entry: FileEntry) -> str:
+def _format_si_value(entry: ParameterFileEntry) -> str:
     """Format the value in SI units; empty if the display unit is the SI unit, or if there is no unit."""
     if entry.unit is None or isinstance(entry.value, bool | str | tuple):
         return ""

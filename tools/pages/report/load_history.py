@@ -16,7 +16,7 @@ _LOAD_CYCLE = CyclicPath(points=80)
 """Load cycle: points per cycle, shape, number of cycles."""
 AMPLITUDE_RATIOS = (0.25, 0.5, 1.0)
 """Amplitudes of the load cycles over the largest amplitude [1]."""
-_MAX_DOUBLINGS, _BISECTIONS = 10, 12
+_MAX_LOAD_DOUBLINGS, _LAW_LIMIT_BISECTIONS = 10, 12
 """Doublings of the load in the search for the end of the law, and bisections to locate it."""
 _GROSS_SLIP_RATIO = 0.95
 """Force over the force at gross slip [1] above which the joint counts as slipping."""
@@ -68,7 +68,7 @@ class LoadHistory:
         ]
         return loops_from_results(results, loop.input_name, output, swing)
 
-    def _largest_amplitude(self, output: str) -> float:
+    def _largest_amplitude(self, conjugate_output: str) -> float:
         """Largest amplitude of the load cycles.
 
         The smaller one of the amplitude in `Model.load_cycle` and twice the displacement at gross slip.
@@ -79,13 +79,15 @@ class LoadHistory:
 
         def force_range(amplitude: float) -> float:
             points = self.loop_inputs[loop.input_name] + np.array([0.0, amplitude])
-            return float(np.ptp(self._compute_along_path(loop.input_name, points, {}).columns[output]))
+            return float(
+                np.ptp(self._compute_along_path(loop.input_name, points, {}).columns[conjugate_output])
+            )
 
         end = force_range(largest)
         if _GROSS_SLIP_RATIO * force_range(2.0 * largest) > end:
             return largest
         low, high = 0.0, largest
-        for _ in range(_BISECTIONS):
+        for _ in range(_LAW_LIMIT_BISECTIONS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if force_range(middle) > _GROSS_SLIP_RATIO * end else (middle, high)
         return min(largest, float(f"{2.0 * high:.2g}"))
@@ -103,23 +105,23 @@ class LoadHistory:
         """
         model = self.model
 
-        def warnings_at(input_value: float) -> dict[int, str]:
+        def list_warnings_at(input_value: float) -> dict[int, str]:
             columns = self._engine.follow({model.ramp.input_name: input_value}, each_from_rest=True).columns
             return model.find_warnings(
                 self.spring, {name: float(column[0]) for name, column in columns.items()}
             )
 
-        before = warnings_at(0.0)
+        before = list_warnings_at(0.0)
 
-        def new_warnings(input_value: float) -> list[str]:
-            return [text for number, text in warnings_at(input_value).items() if number not in before]
+        def list_new_warnings(input_value: float) -> list[str]:
+            return [text for number, text in list_warnings_at(input_value).items() if number not in before]
 
-        low, high = 0.0, 2.0**-_MAX_DOUBLINGS * model.ramp.end_value
-        while not new_warnings(high):
+        low, high = 0.0, 2.0**-_MAX_LOAD_DOUBLINGS * model.ramp.end_value
+        while not list_new_warnings(high):
             low, high = high, 2.0 * high
-            if high > 2.0**_MAX_DOUBLINGS * model.ramp.end_value:
+            if high > 2.0**_MAX_LOAD_DOUBLINGS * model.ramp.end_value:
                 return None
-        for _ in range(_BISECTIONS):
+        for _ in range(_LAW_LIMIT_BISECTIONS):
             middle = 0.5 * (low + high)
-            low, high = (low, middle) if new_warnings(middle) else (middle, high)
-        return high, new_warnings(high)[0]
+            low, high = (low, middle) if list_new_warnings(middle) else (middle, high)
+        return high, list_new_warnings(high)[0]

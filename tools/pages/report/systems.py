@@ -21,7 +21,7 @@ from ...systems.system import System
 from ...systems.wiring import find_model, find_signals
 from .figure import Figure, Panel, Series
 
-RESONANCE_SIZE, DECAY_SIZE = (9.6, 4.0), (11.4, 3.8)
+RESONANCE_FIGURE_SIZE, DECAY_FIGURE_SIZE = (9.6, 4.0), (11.4, 3.8)
 """Sizes [inch] of the pictures of resonance and of free decay."""
 _ENVELOPE_SIDES = ((1.0, "above"), (-1.0, "below"))
 """Sign and name of both envelopes."""
@@ -50,7 +50,7 @@ def _vibrating_systems(joint: str) -> list[tuple[str, VibratingJoint]]:
 def _resonance_figure(
     name: str, vibrating_joint: VibratingJoint, vibrations: Sequence[FreeVibration], folder: Path
 ) -> Figure:
-    body, moving = vibrating_joint.test, vibrating_joint.moving_body.name
+    body, moving = vibrating_joint.vibration_test, vibrating_joint.moving_body.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load_axis.name}",
         f"The {moving} vibrates freely about a working point, {body.support_description}. First chart: "
@@ -72,7 +72,7 @@ def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list
 
 
 def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
-    body, moving, (point, *_) = vibrating_joint.test, vibrating_joint.moving_body.name, decays
+    body, moving, (point, *_) = vibrating_joint.vibration_test, vibrating_joint.moving_body.name, decays
     has_law = point.half_eta_loop is not None
     deflection = (
         f"{body.deflection_axis.display_factor * body.slip_deflection.deflection:g} "
@@ -101,7 +101,7 @@ def resonance_panels(
     vibrations: Sequence[FreeVibration], vibrating_joint: VibratingJoint, folder: Path
 ) -> list[Panel]:
     """Panels: resonance over the load, and one free decay with the envelopes of the stated damping."""
-    vibrations, body = sorted(vibrations, key=lambda point: point.load), vibrating_joint.test
+    vibrations, body = sorted(vibrations, key=lambda point: point.load), vibrating_joint.vibration_test
     x = [body.load_axis.display_factor * point.load for point in vibrations]
     hertz = 0.5 / np.pi
     loads, expected = frequency_curve(vibrating_joint, folder, vibrations)

@@ -14,7 +14,7 @@ import numpy as np
 from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO
 
 from ..host import Instance, open_instance, read_description
-from .task import Rows, Task, make_output_reader
+from .task import ExperimentTask, OutputRows, make_output_reader
 
 MAX_SOLVER_STEPS = 100_000
 """Maximum number of solver steps between two communication points."""
@@ -23,7 +23,7 @@ EVENT_TIME_TOLERANCE = 1e-9
 coincide."""
 
 
-def has_solver() -> bool:
+def has_cvode_solver() -> bool:
     """Whether fmpy contains its solver CVode for this platform."""
     from fmpy import __file__ as package
     from fmpy import platform_tuple
@@ -31,21 +31,25 @@ def has_solver() -> bool:
     return Path(package).parent.joinpath("sundials", platform_tuple).is_dir()
 
 
-def run_fmpy_exchange(task: Task, messages: list[str]) -> Rows:
+def run_fmpy_exchange(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows:
     """Execute an experiment for model exchange in fmpy with CVode (FMI 2.0 and 3.0).
 
     messages : list to which the warnings and errors of the FMU are appended
     """
     with open_instance(
-        task.folder, read_description(task.fmu), task.fmu, messages, model_exchange=True
+        experiment_task.folder,
+        read_description(experiment_task.fmu),
+        experiment_task.fmu,
+        messages,
+        model_exchange=True,
     ) as instance:
-        instance.enter_initialization(task.times[0])
-        instance.set_values({**task.settings, **task.inputs_at(0)})
+        instance.enter_initialization(experiment_task.times[0])
+        instance.set_values({**experiment_task.settings, **experiment_task.inputs_at(0)})
         instance.fmu.exitInitializationMode()
-        motion = _ExchangeSimulation(instance, task)
-        read = make_output_reader(instance, task.outputs)
-        rows: Rows = [read()]
-        for i in range(len(task.times) - 1):
+        motion = _ExchangeSimulation(instance, experiment_task)
+        read = make_output_reader(instance, experiment_task.outputs)
+        rows: OutputRows = [read()]
+        for i in range(len(experiment_task.times) - 1):
             motion.advance(i)
             rows.append(read())
     return rows
@@ -60,18 +64,18 @@ class _ExchangeSimulation:
     first_failure   : first exception in a call by the solver, or None
     """
 
-    def __init__(self, instance: Instance, task: Task) -> None:
+    def __init__(self, instance: Instance, experiment_task: ExperimentTask) -> None:
         from fmpy.sundials import CVodeSolver
 
-        self.instance, self.fmu, self.task = instance, instance.fmu, task
+        self.instance, self.fmu, self.task = instance, instance.fmu, experiment_task
         model, variables = instance.description, instance.variables
         self.needs_completed_step = model.modelExchange.needsCompletedIntegratorStep
         self.continuous_inputs = [
             name
-            for name in task.inputs
-            if task.variable_kinds[name] == "real" and variables[name].variability != "discrete"
+            for name in experiment_task.inputs
+            if experiment_task.variable_kinds[name] == "real" and variables[name].variability != "discrete"
         ]
-        self.interval_index, self.time = 0, task.times[0]
+        self.interval_index, self.time = 0, experiment_task.times[0]
         self.first_failure: Exception | None = None
         self._iterate_event()
         rates = "Derivatives" if instance.version == 2 else "ContinuousStateDerivatives"
@@ -87,8 +91,8 @@ class _ExchangeSimulation:
             if self.continuous_inputs
             else self._c_callback("SetTime"),
             input=_EmptySolverInput,
-            startTime=task.times[0],
-            relativeTolerance=task.tolerance,
+            startTime=experiment_task.times[0],
+            relativeTolerance=experiment_task.tolerance,
             maxNumSteps=MAX_SOLVER_STEPS,
         )
 
@@ -134,12 +138,12 @@ class _ExchangeSimulation:
         self.next_event_time = float(next_event) if has_next_event else np.inf
         self.fmu.enterContinuousTimeMode()
 
-    def _has_input_event(self, i: int) -> bool:
+    def _has_input_event(self, point_index: int) -> bool:
         """Whether an input jumps, or a discrete input changes, at communication point i."""
-        previous, new = self.task.inputs_at(i - 1), self.task.inputs_at(i)
+        previous, new = self.task.inputs_at(point_index - 1), self.task.inputs_at(point_index)
         left_limits = {
             **previous,
-            **{name: self.task.inputs_before[name][i] for name in self.continuous_inputs},
+            **{name: self.task.inputs_before_jump[name][point_index] for name in self.continuous_inputs},
         }
         return left_limits != new
 
@@ -150,7 +154,7 @@ class _ExchangeSimulation:
         begin, end = self.task.times[i : i + 2]
         fraction = (time - begin) / (end - begin)
         for name in self.continuous_inputs:
-            first, last = self.task.inputs[name][i], self.task.inputs_before[name][i + 1]
+            first, last = self.task.inputs[name][i], self.task.inputs_before_jump[name][i + 1]
             value = first if first == last else (1.0 - fraction) * first + fraction * last
             self.instance.set_values({name: value})
 
@@ -179,7 +183,7 @@ class _ExchangeSimulation:
 
         return call
 
-    def _wrap_callback(self, call: Callable[..., object]) -> Callable[..., None]:
+    def _wrap_callback(self, python_function: Callable[..., object]) -> Callable[..., None]:
         """Wrap a Python function as a solver callback; its first exception is kept in `first_failure`.
 
         The solver is C code and does not pass exceptions on.
@@ -187,7 +191,7 @@ class _ExchangeSimulation:
 
         def callback(*arguments: object) -> None:
             try:
-                call(*arguments)
+                python_function(*arguments)
             except Exception as failure:  # fmpy raises bare Exception
                 self.first_failure = self.first_failure or failure
 

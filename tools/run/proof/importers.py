@@ -11,36 +11,44 @@ from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 
 from ..host import open_instance, read_description
 from . import exchange
-from .task import ExecuteFunction, Rows, Task, make_output_reader
+from .task import ExecuteFunction, ExperimentTask, OutputRows, make_output_reader
 
 
-def run_fmpy(task: Task, messages: list[str]) -> Rows:
+def run_fmpy(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows:
     """Execute an experiment for co-simulation in fmpy (FMI 2.0 and 3.0).
 
     messages : list to which the warnings and errors of the FMU are appended
     """
-    with open_instance(task.folder, read_description(task.fmu), task.fmu, messages) as slave:
-        slave.enter_initialization(task.times[0])
-        slave.set_values({**task.settings, **task.inputs_at(0)})
+    with open_instance(
+        experiment_task.folder, read_description(experiment_task.fmu), experiment_task.fmu, messages
+    ) as slave:
+        slave.enter_initialization(experiment_task.times[0])
+        slave.set_values({**experiment_task.settings, **experiment_task.inputs_at(0)})
         slave.fmu.exitInitializationMode()
-        read = make_output_reader(slave, task.outputs)
-        rows: Rows = [read()]
-        for i, time in enumerate(task.times[:-1]):
-            slave.set_values(task.inputs_at(i))
-            slave.do_step(time, task.times[i + 1] - time)
+        read = make_output_reader(slave, experiment_task.outputs)
+        rows: OutputRows = [read()]
+        for i, time in enumerate(experiment_task.times[:-1]):
+            slave.set_values(experiment_task.inputs_at(i))
+            slave.do_step(time, experiment_task.times[i + 1] - time)
             rows.append(read())
     return rows
 
 
-def read_start_values(task: Task, messages: list[str]) -> list[list[Any]]:
+def read_start_values(experiment_task: ExperimentTask, messages: list[str]) -> list[list[Any]]:
     """Read the start values of the variables `task.outputs`, of any type, in fmpy: one row."""
-    exchanged = task.interface == MODEL_EXCHANGE
-    with open_instance(task.folder, read_description(task.fmu), task.fmu, messages, exchanged) as slave:
+    exchanged = experiment_task.interface == MODEL_EXCHANGE
+    with open_instance(
+        experiment_task.folder,
+        read_description(experiment_task.fmu),
+        experiment_task.fmu,
+        messages,
+        exchanged,
+    ) as slave:
         slave.enter_initialization()
-        return [[slave.get_value(name) for name in task.outputs]]
+        return [[slave.get_value(name) for name in experiment_task.outputs]]
 
 
-def run_ecos(task: Task, messages: list[str]) -> Rows:
+def run_ecos(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows:
     """Execute an experiment for co-simulation in ecos (FMI 2.0 and 3.0).
 
     Errors of the FMU appear only in the log of ecos, see `worker`.
@@ -48,12 +56,12 @@ def run_ecos(task: Task, messages: list[str]) -> Rows:
     from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
     from ecospy.EcosParameterSet import EcosParameterSet
 
-    size = task.step
-    _check_types(task)
+    size = experiment_task.step_size
+    _check_variable_types(experiment_task)
     EcosLib.set_log_level("debug")
     structure, start = EcosSimulationStructure(), EcosParameterSet()
-    structure.add_model("fmu", task.fmu)
-    for name, value in {**task.settings, **task.inputs_at(0)}.items():
+    structure.add_model("fmu", experiment_task.fmu)
+    for name, value in {**experiment_task.settings, **experiment_task.inputs_at(0)}.items():
         add = {bool: start.add_bool, int: start.add_int, str: start.add_string}.get(
             type(value), start.add_real
         )
@@ -62,16 +70,18 @@ def run_ecos(task: Task, messages: list[str]) -> Rows:
     with EcosSimulation(structure=structure, step_size=size) as simulation:
         suffixes = {"real": "real", "integer": "integer", "boolean": "bool"}
         setters = {
-            name: getattr(simulation, f"set_{suffixes[task.variable_kinds[name]]}") for name in task.inputs
+            name: getattr(simulation, f"set_{suffixes[experiment_task.variable_kinds[name]]}")
+            for name in experiment_task.inputs
         }
         getters = {
-            name: getattr(simulation, f"get_{suffixes[task.variable_kinds[name]]}") for name in task.outputs
+            name: getattr(simulation, f"get_{suffixes[experiment_task.variable_kinds[name]]}")
+            for name in experiment_task.outputs
         }
         if not simulation.init(parameter_set="start"):
             raise RuntimeError(EcosLib.get_last_error())
-        rows: Rows = [[float(get(f"fmu::{name}")) for name, get in getters.items()]]
-        for i in range(len(task.times) - 1):
-            for name, value in task.inputs_at(i).items():
+        rows: OutputRows = [[float(get(f"fmu::{name}")) for name, get in getters.items()]]
+        for i in range(len(experiment_task.times) - 1):
+            for name, value in experiment_task.inputs_at(i).items():
                 setters[name](f"fmu::{name}", value)
             simulation.step(1)
             rows.append([float(get(f"fmu::{name}")) for name, get in getters.items()])
@@ -79,7 +89,7 @@ def run_ecos(task: Task, messages: list[str]) -> Rows:
     return rows
 
 
-def run_libcosim(task: Task, messages: list[str]) -> Rows:
+def run_libcosim(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows:
     """Execute an experiment for co-simulation in libcosim (FMI 2.0).
 
     libcosim gives no outputs before the first step: the first row is None. Its step size is a whole number of
@@ -91,36 +101,38 @@ def run_libcosim(task: Task, messages: list[str]) -> Rows:
     from libcosimpy.CosimObserver import CosimObserver
     from libcosimpy.CosimSlave import CosimLocalSlave
 
-    _check_types(task)
-    nanoseconds = round(task.step * 1e9)
-    if nanoseconds < 1 or abs(nanoseconds - task.step * 1e9) > 1e-3:
-        raise ValueError(f"has a step of {task.step!r} s, libcosim takes whole nanoseconds")
+    _check_variable_types(experiment_task)
+    nanoseconds = round(experiment_task.step_size * 1e9)
+    if nanoseconds < 1 or abs(nanoseconds - experiment_task.step_size * 1e9) > 1e-3:
+        raise ValueError(f"has a step of {experiment_task.step_size!r} s, libcosim takes whole nanoseconds")
     execution = CosimExecution.from_step_size(step_size=nanoseconds)
-    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=task.fmu, instance_name="fmu"))
+    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=experiment_task.fmu, instance_name="fmu"))
     observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
     if not (execution.add_observer(observer) and execution.add_manipulator(manipulator)):
         raise RuntimeError(get_last_error_message())
     reference = {v.name.decode(): v.reference for v in execution.slave_variables(slave)}
-    for name, value in {**task.settings, **task.inputs_at(0)}.items():
+    for name, value in {**experiment_task.settings, **experiment_task.inputs_at(0)}.items():
         kinds = {bool: "boolean", int: "integer", str: "string"}
         setter = getattr(execution, f"{kinds.get(type(value), 'real')}_initial_value")
         if not setter(slave, reference[name], value):
             raise RuntimeError(f"{name} = {value!r}: {get_last_error_message()}")
-    rows: Rows = [None]
-    for i in range(len(task.times) - 1):
-        inputs = task.inputs_at(i)
-        for kind in set(task.variable_kinds.values()):
-            if names := [name for name in inputs if task.variable_kinds[name] == kind]:
+    rows: OutputRows = [None]
+    for i in range(len(experiment_task.times) - 1):
+        inputs = experiment_task.inputs_at(i)
+        for kind in set(experiment_task.variable_kinds.values()):
+            if names := [name for name in inputs if experiment_task.variable_kinds[name] == kind]:
                 setter = getattr(manipulator, f"slave_{kind}_values")
                 setter(slave, [reference[name] for name in names], [inputs[name] for name in names])
         if not execution.step():
             raise RuntimeError(get_last_error_message())
         row: dict[str, float] = {}
-        for kind in set(task.variable_kinds.values()):
-            if names := [name for name in task.outputs if task.variable_kinds[name] == kind]:
+        for kind in set(experiment_task.variable_kinds.values()):
+            if names := [
+                name for name in experiment_task.outputs if experiment_task.variable_kinds[name] == kind
+            ]:
                 getter = getattr(observer, f"last_{kind}_values")
                 row |= zip(names, map(float, getter(slave, [reference[name] for name in names])), strict=True)
-        rows.append([row[name] for name in task.outputs])
+        rows.append([row[name] for name in experiment_task.outputs])
     return rows
 
 
@@ -136,10 +148,10 @@ def load_importer(importer: str) -> None:
         CosimExecution.from_step_size(step_size=1e9)
 
 
-def _check_types(task: Task) -> None:
+def _check_variable_types(experiment_task: ExperimentTask) -> None:
     """Raise ValueError if a variable is an Enumeration or Int64: ecos and libcosim do not support them."""
-    variables = {v.name: v for v in read_description(task.fmu).modelVariables}
-    for name in (*task.settings, *task.inputs, *task.outputs):
+    variables = {v.name: v for v in read_description(experiment_task.fmu).modelVariables}
+    for name in (*experiment_task.settings, *experiment_task.inputs, *experiment_task.outputs):
         if variables[name].type in ("Enumeration", "Int64"):
             raise ValueError(f"{name} is of type {variables[name].type}, which this importer does not take")
 
@@ -154,10 +166,10 @@ IMPORTER_PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
 """{importer: Python package}."""
 SYSTEM_LIBRARIES = {"ecos": "libtbb12", "libcosim": "libatomic1"}
 """{importer: Debian package of a library that the importer loads}."""
-FMI_VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
+SUPPORTED_FMI_VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 """{importer: major versions of FMI that it supports}; libcosim crashes with other versions."""
 
 
 def list_interfaces(importer: str) -> list[str]:
     """FMI interfaces that an importer supports on this platform; model exchange needs the solver of fmpy."""
-    return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.has_solver()]
+    return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.has_cvode_solver()]

@@ -18,7 +18,7 @@ from jointfmu.files.writing import ensure_folder, write_bytes
 
 from .. import host
 from .manifest import Experiment
-from .outcome import Outcome, Proof
+from .outcome import ExperimentOutcome, Proof
 from .plan import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ FMI2_PLATFORMS = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 """Platform names of the cross-check rules for FMI 2.0. For FMI 3.0 the names in the FMU are used."""
 
 
-def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
+def write_listing(proof: Proof, output_folder: Path, overwrite: bool = False) -> list[Path]:
     """Write the files of a passed proof into one folder for each platform of the FMU, and return the folders.
 
     force : overwrite files also in a folder whose README.md was not written by jointfmu
@@ -38,7 +38,7 @@ def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
     Raises ValueError if no experiment is suitable, or if a file must not or cannot be written.
     """
     described = host.read_description(proof.fmu)
-    files = _make_listing_files(proof, _select_outcome(proof), described)
+    files = _make_listing_files(proof, _select_listed_outcome(proof), described)
     tool, _, version = (described.generationTool or "unknown").rpartition(" ")
     subfolders = [
         _safe_file_name(tool or version),
@@ -47,9 +47,10 @@ def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
     ]
     version = described.fmiVersion[:3]
     folders = [
-        out.joinpath("fmus", version, "cs", p, *subfolders) for p in _list_platforms(proof.fmu, version)
+        output_folder.joinpath("fmus", version, "cs", p, *subfolders)
+        for p in _list_platforms(proof.fmu, version)
     ]
-    check_outputs((folder / README_NAME for folder in folders), LISTING_FILE_KIND, force)
+    check_outputs((folder / README_NAME for folder in folders), LISTING_FILE_KIND, overwrite)
     for folder in folders:
         with ensure_folder(folder):
             for name, content in files.items():
@@ -57,7 +58,7 @@ def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
     return folders
 
 
-def _select_outcome(proof: Proof) -> Outcome:
+def _select_listed_outcome(proof: Proof) -> ExperimentOutcome:
     """Select the outcome to be listed: the first validation, else the first listable experiment.
 
     Raises ValueError if no experiment is listable.
@@ -98,7 +99,9 @@ def _time_range(experiment: Experiment) -> tuple[float, float]:
     return experiment.start or 0.0, stop
 
 
-def _make_listing_files(proof: Proof, outcome: Outcome, description: "ModelDescription") -> dict[str, bytes]:
+def _make_listing_files(
+    proof: Proof, outcome: ExperimentOutcome, description: "ModelDescription"
+) -> dict[str, bytes]:
     """Files of the listing, {name: content}, for the chosen outcome."""
     experiment, name = outcome.experiment, _safe_file_name(description.modelName)
     assert experiment.references is not None
@@ -122,7 +125,7 @@ def _make_listing_files(proof: Proof, outcome: Outcome, description: "ModelDescr
     }
 
 
-def _format_readme(proof: Proof, outcome: Outcome, description: "ModelDescription") -> str:
+def _format_readme(proof: Proof, outcome: ExperimentOutcome, description: "ModelDescription") -> str:
     """Text of README.md for the chosen outcome."""
     experiment, worst, name = outcome.experiment, outcome.worst_point, _safe_file_name(description.modelName)
     assert worst is not None
@@ -139,19 +142,19 @@ These are the files of the experiment "{experiment.name}" in `{REFERENCE_FOLDER}
 and relative tolerance. Nothing else is set.
 
 Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(outcome.worst_points)} outputs at
-{outcome.compared_points} times `{worst.output}` is furthest off, by
-{worst.error:.1e}; allowed is {worst.tolerance:.1e}.
+{outcome.compared_time_count} times `{worst.output}` is furthest off, by
+{worst.absolute_error:.1e}; allowed is {worst.tolerance:.1e}.
 
 <!-- {PROGRAM_MARK} -->
 """
 
 
-def _list_platforms(fmu: Path, version: str) -> list[str]:
+def _list_platforms(fmu: Path, fmi_version: str) -> list[str]:
     """Platforms for which an FMU contains a binary; for FMI 2.0 only those of FMI2_PLATFORMS."""
     with archives.open_archive(fmu) as archive:
         names = archive.namelist()
         platforms = {match[1] for name in names if (match := re.match(r"binaries/([^/]+)/.", name))}
-    return sorted(platforms & set(FMI2_PLATFORMS) if version.startswith("2") else platforms)
+    return sorted(platforms & set(FMI2_PLATFORMS) if fmi_version.startswith("2") else platforms)
 
 
 def _safe_file_name(name: str) -> str:

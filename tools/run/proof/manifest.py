@@ -32,7 +32,7 @@ from . import checksum
 
 SSV_NAMESPACE = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 """XML namespace of SSV files."""
-_OTHER_EXPERIMENT_TYPES = ("application/x-ma-ls-experiments", "application/octet-stream")
+_OTHER_EXPERIMENT_MIME_TYPES = ("application/x-ma-ls-experiments", "application/octet-stream")
 """Other MIME types accepted for files of experiments: in the example of the standard, and its default."""
 
 
@@ -127,7 +127,7 @@ class RelatedFiles:
     def _read_experiments(self, file_element: Element, purpose: str) -> list[Experiment]:
         """Experiments of a related file; if its type is not supported, one experiment with the reason."""
         source, kind = file_element.get("source", ""), file_element.get("type", EXPERIMENTS_TYPE)
-        if kind not in (EXPERIMENTS_TYPE, *_OTHER_EXPERIMENT_TYPES):
+        if kind not in (EXPERIMENTS_TYPE, *_OTHER_EXPERIMENT_MIME_TYPES):
             return [
                 Experiment(
                     source, purpose, unsupported_reason=f"is of type {kind}, {EXPERIMENTS_TYPE} is read"
@@ -172,29 +172,35 @@ class RelatedFiles:
             for tag in ("Stimuli", "References")
         )
         settings = self._read_settings(files["Parameters"]) if "Parameters" in files and not unfit else {}
-        numbers, scales = (start, stop, step, tolerance), self._read_scales(path, name, element)
+        numbers, scales = (start, stop, step, tolerance), self._read_output_scales(path, name, element)
         return Experiment(name, purpose, *numbers, settings, stimuli, references, interfaces, scales, unfit)
 
-    def _read_scales(self, path: str, experiment: str, element: Element) -> dict[str, float]:
+    def _read_output_scales(self, path: str, experiment_name: str, element: Element) -> dict[str, float]:
         """Scales {output: scale} in the annotation of an experiment; ValueError if one is not positive."""
         scales = {}
         for scale in element.iterfind(f"Annotations/Annotation[@type='{SCALES_TYPE}']/Scale"):
             output = scale.get("name", "")
-            value = self._parse_number(path, experiment, f"scale of {output}", scale.get("value", ""))
+            value = self._parse_number(path, experiment_name, f"scale of {output}", scale.get("value", ""))
             if value is None or not 0.0 < value < float("inf"):
                 text = (
-                    f"experiment {experiment!r} has scale of {output} = {value}, expected a positive number"
+                    f"experiment {experiment_name!r} has scale of {output} = {value}, expected a positive "
+                    "number"
                 )
                 raise ValueError(f"{self.fmu}: {path}: {text}")
             scales[output] = value
         return scales
 
-    def _parse_number(self, path: str, experiment: str, key: str, value: str | None) -> float | None:
+    def _parse_number(
+        self, path: str, experiment_name: str, value_label: str, value: str | None
+    ) -> float | None:
         """Parse a number of an experiment; None if it is not stated."""
         try:
             return None if value is None else float(value)
         except ValueError:
-            text = f"{self.fmu}: {path}: experiment {experiment!r} has {key} = {value!r}, expected a number"
+            text = (
+                f"{self.fmu}: {path}: experiment {experiment_name!r} has {value_label} = {value!r}, "
+                "expected a number"
+            )
             raise ValueError(text) from None
 
     def _read_settings(self, path: str) -> dict[str, StartSetting]:

@@ -20,23 +20,23 @@ class WorstPoint:
 
     output: str
     time: float
-    value: float
-    reference: float
+    computed_value: float
+    reference_value: float
     tolerance: float
 
     @property
-    def error(self) -> float:
+    def absolute_error(self) -> float:
         """Absolute error."""
-        return abs(self.value - self.reference)
+        return abs(self.computed_value - self.reference_value)
 
     @property
     def is_finite(self) -> bool:
-        return bool(np.isfinite(self.value))
+        return bool(np.isfinite(self.computed_value))
 
     @property
     def error_ratio(self) -> float:
         """Error over tolerance [1]; infinite if the value is not finite."""
-        return self.error / self.tolerance if self.is_finite else np.inf
+        return self.absolute_error / self.tolerance if self.is_finite else np.inf
 
     @property
     def is_within_tolerance(self) -> bool:
@@ -44,7 +44,7 @@ class WorstPoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ExperimentOutcome:
     """Outcome of an experiment: the worst point of each output, or an error.
 
     interface : FMI interface in which the experiment was executed; empty if it was not executed
@@ -56,8 +56,8 @@ class Outcome:
     experiment: Experiment
     interface: str
     worst_points: Sequence[WorstPoint] = ()
-    compared_points: int = 0
-    error: str = ""
+    compared_time_count: int = 0
+    error_message: str = ""
 
     @property
     def name(self) -> str:
@@ -78,7 +78,7 @@ class Outcome:
     @property
     def has_passed(self) -> bool:
         """Whether there is no error and all outputs are within their tolerance."""
-        return not self.error and all(point.is_within_tolerance for point in self.worst_points)
+        return not self.error_message and all(point.is_within_tolerance for point in self.worst_points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,12 +96,12 @@ class Proof:
     fmu: Path
     importer: str
     interfaces: Sequence[str]
-    compared_start_count: int
-    start_differences: Sequence[str]
-    outcomes: Sequence[Outcome]
+    compared_start_value_count: int
+    start_value_differences: Sequence[str]
+    outcomes: Sequence[ExperimentOutcome]
 
     @property
-    def run_count(self) -> int:
+    def executed_experiment_count(self) -> int:
         """Number of executed experiments, counted for each interface."""
         return sum(bool(outcome.interface) for outcome in self.outcomes)
 
@@ -118,21 +118,22 @@ class Proof:
     @property
     def failures(self) -> list[str]:
         """Failures, one line each: start values, errors, experiments with their worst output."""
-        lines = list(self.start_differences)
-        if self.outcomes and not self.run_count:
+        lines = list(self.start_value_differences)
+        if self.outcomes and not self.executed_experiment_count:
             lines.append(f"{self.importer} executes none of the experiments")
         for outcome in self.outcomes:
             name = outcome.name
-            if outcome.error:
-                lines.append(f"{name}: {outcome.error}")
+            if outcome.error_message:
+                lines.append(f"{name}: {outcome.error_message}")
             missed = sorted(
                 (p for p in outcome.worst_points if not p.is_within_tolerance), key=lambda p: -p.error_ratio
             )
             if missed:
                 worst, *others = missed  # sorted by error over tolerance
                 lines.append(
-                    f"{name}: {worst.output} = {worst.value:.10g} at {worst.time:g} s, reference "
-                    f"{worst.reference:.10g}, off by {worst.error:.2g}, allowed {worst.tolerance:.2g}"
+                    f"{name}: {worst.output} = {worst.computed_value:.10g} at {worst.time:g} s, reference "
+                    f"{worst.reference_value:.10g}, off by {worst.absolute_error:.2g}, allowed "
+                    f"{worst.tolerance:.2g}"
                     + (f"; also {', '.join(p.output for p in others)}" if others else "")
                 )
         return lines

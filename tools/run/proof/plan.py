@@ -11,8 +11,8 @@ from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO, MODEL_EXCHANGE, SOL
 from jointfmu.quantity import Array
 
 from .manifest import Experiment
-from .outcome import Outcome, WorstPoint
-from .values import convert_setting, input_values, variable_kind
+from .outcome import ExperimentOutcome, WorstPoint
+from .values import convert_start_setting, input_values, variable_kind
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -22,7 +22,7 @@ DEFAULT_TOLERANCE = 1e-3
 """Default relative tolerance of an experiment that states none [1]."""
 TIME_TOLERANCE = 1e-6
 """Time difference over the step size [1], below which two times count as equal."""
-DEFAULT_STEPS, MAX_STEPS = 500, 10_000_000
+DEFAULT_STEP_COUNT, MAX_STEP_COUNT = 500, 10_000_000
 """Number of steps of an experiment that states no step size, and maximum number of steps."""
 
 
@@ -39,11 +39,11 @@ class ExperimentPlan:
     experiment: Experiment
     interface: str
     nominal_values: Mapping[str, float]
-    task: dict[str, Any]
+    experiment_task_fields: dict[str, Any]
     refusal_reason: str = ""
 
     @classmethod
-    def create(
+    def plan_experiment(
         cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: "ModelDescription"
     ) -> "ExperimentPlan":
         """Plan an experiment with an FMU that is unpacked in `folder`."""
@@ -59,10 +59,10 @@ class ExperimentPlan:
                     raise ValueError(f"the FMU has no variable {name!r}")
             times = _communication_points(experiment, description)
             if stimuli and interface == MODEL_EXCHANGE:
-                times = _insert_corners(times, stimuli.time)
+                times = _insert_corner_times(times, stimuli.time)
             values: dict[str, object] = {
                 "settings": {
-                    n: convert_setting(variables[n], value) for n, value in experiment.settings.items()
+                    n: convert_start_setting(variables[n], value) for n, value in experiment.settings.items()
                 },
                 "variable_kinds": {n: variable_kind(variables[n]) for n in (*inputs, *outputs)},
             }
@@ -79,29 +79,29 @@ class ExperimentPlan:
         if experiment.references:
             values["comparison_times"] = experiment.references.time.tolist()
         nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
-        return cls(experiment, interface, nominal, task_fields(fmu, folder, interface, **values))
+        return cls(experiment, interface, nominal, make_task_fields(fmu, folder, interface, **values))
 
-    def evaluate_answer(self, answer: Mapping[str, Any] | None) -> Outcome:
+    def evaluate_importer_answer(self, importer_answer: Mapping[str, Any] | None) -> ExperimentOutcome:
         """Compare the answer of an importer with the reference results.
 
         answer : {"rows"} or {"error"} from a `worker`; None if the experiment was not executed
         """
-        if answer is None:
-            return Outcome(self.experiment, self.interface, error=self.refusal_reason)
-        if "error" in answer:
-            return Outcome(self.experiment, self.interface, error=answer["error"])
+        if importer_answer is None:
+            return ExperimentOutcome(self.experiment, self.interface, error_message=self.refusal_reason)
+        if "error" in importer_answer:
+            return ExperimentOutcome(self.experiment, self.interface, error_message=importer_answer["error"])
         expected = self.experiment.references
         if expected is None:
-            return Outcome(self.experiment, self.interface)
-        available = [i for i, row in enumerate(answer["rows"]) if row is not None]
-        times = np.array([self.task["times"][i] for i in available])
-        table = np.array([answer["rows"][i] for i in available])
+            return ExperimentOutcome(self.experiment, self.interface)
+        available = [i for i, row in enumerate(importer_answer["rows"]) if row is not None]
+        times = np.array([self.experiment_task_fields["times"][i] for i in available])
+        table = np.array([importer_answer["rows"][i] for i in available])
         rises = np.diff(expected.time) > 0.0
         compared = (expected.time >= times[0]) & (expected.time <= times[-1] * (1.0 + 1e-12))
         compared &= np.append(True, rises) & np.append(rises, True)  # at a jump both sides are valid: skip it
         if not np.any(compared):
             error = "no reference result lies at a time that was computed"
-            return Outcome(self.experiment, self.interface, error=error)
+            return ExperimentOutcome(self.experiment, self.interface, error_message=error)
         t, tolerance = expected.time[compared], _find_tolerance(self.experiment)
         points = []
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
@@ -112,7 +112,7 @@ class ExperimentPlan:
                 error_ratio = np.where(np.isfinite(y), np.abs(y - y_ref) / allowed, np.inf)
             i = int(np.argmax(error_ratio))
             points.append(WorstPoint(name, float(t[i]), float(y[i]), float(y_ref[i]), float(allowed[i])))
-        return Outcome(self.experiment, self.interface, points, int(np.sum(compared)))
+        return ExperimentOutcome(self.experiment, self.interface, points, int(np.sum(compared)))
 
 
 def _find_tolerance(experiment: Experiment) -> float:
@@ -120,10 +120,10 @@ def _find_tolerance(experiment: Experiment) -> float:
     return DEFAULT_TOLERANCE if experiment.tolerance is None else experiment.tolerance
 
 
-def _insert_corners(times: Array, corners: Array) -> Array:
+def _insert_corner_times(times: Array, corner_times: Array) -> Array:
     """Add the corner times of the inputs [s] to communication points [s]; a corner replaces an equal time."""
     equal = TIME_TOLERANCE * float(np.min(np.diff(times)))
-    inner = np.unique(corners[(corners > times[0] + equal) & (corners < times[-1] - equal)])
+    inner = np.unique(corner_times[(corner_times > times[0] + equal) & (corner_times < times[-1] - equal)])
     positions = np.searchsorted(inner, times)
     bounds = np.concatenate([[-np.inf], inner, [np.inf]])
     distinct = np.minimum(times - bounds[positions], bounds[positions + 1] - times) > equal
@@ -145,15 +145,15 @@ def _communication_points(experiment: Experiment, description: "ModelDescription
     if not stop > start:
         raise ValueError(f"its stop time is {stop:g} s; expected a time after {start:g} s")
     step = _first_not_none(
-        experiment.step, getattr(default, "stepSize", None), (stop - start) / DEFAULT_STEPS
+        experiment.step, getattr(default, "stepSize", None), (stop - start) / DEFAULT_STEP_COUNT
     )
-    if not step > 0.0 or (stop - start) / step > MAX_STEPS:
-        raise ValueError(f"its step is {step:g} s; expected at least {(stop - start) / MAX_STEPS:g} s")
+    if not step > 0.0 or (stop - start) / step > MAX_STEP_COUNT:
+        raise ValueError(f"its step is {step:g} s; expected at least {(stop - start) / MAX_STEP_COUNT:g} s")
     count = int(np.ceil((stop - start) / step * (1.0 - 1e-12)))
     return np.append(start + step * np.arange(count), stop)
 
 
-def task_fields(fmu: Path, folder: str, interface: str, **other_fields: object) -> dict[str, object]:
+def make_task_fields(fmu: Path, folder: str, interface: str, **other_fields: object) -> dict[str, object]:
     """Fields of a `Task`, as a JSON object."""
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **other_fields}
 

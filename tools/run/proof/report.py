@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from jointfmu_fmu_src.proof.standard import EXPERIMENT_PURPOSES
 
 from ...common.shown import align_columns
-from .outcome import Outcome, Proof, WorstPoint
+from .outcome import ExperimentOutcome, Proof, WorstPoint
 
 _POINT_COLUMN_HEADINGS = ("time [s]", "value", "reference", "off by", "allowed")
 _EXPERIMENT_TABLE_HEADINGS = (
@@ -25,11 +25,15 @@ def format_lines(proof: Proof) -> Iterator[str]:
     Both tables state the worst point of each row.
     """
     experiments: list[tuple[str, ...]] = [_EXPERIMENT_TABLE_HEADINGS]
-    worst: dict[str, tuple[Outcome, WorstPoint]] = {}
+    worst: dict[str, tuple[ExperimentOutcome, WorstPoint]] = {}
     for outcome in proof.outcomes:
         point = outcome.worst_point
-        verdict = _format_verdict(outcome), str(outcome.compared_points or ""), point.output if point else ""
-        cells = _format_cells(point) if point else ("",) * len(_POINT_COLUMN_HEADINGS)
+        verdict = (
+            _format_verdict(outcome),
+            str(outcome.compared_time_count or ""),
+            point.output if point else "",
+        )
+        cells = _format_worst_point_cells(point) if point else ("",) * len(_POINT_COLUMN_HEADINGS)
         experiments.append((outcome.experiment.name, outcome.interface, *verdict, *cells))
         for output_point in outcome.worst_points:
             name = output_point.output
@@ -41,7 +45,9 @@ def format_lines(proof: Proof) -> Iterator[str]:
         yield from align_columns(experiments, len(_EXPERIMENT_TABLE_HEADINGS) - len(_POINT_COLUMN_HEADINGS))
     if worst:
         yield ""
-        rows = [(n, o.experiment.name, o.interface, *_format_cells(p)) for n, (o, p) in worst.items()]
+        rows = [
+            (n, o.experiment.name, o.interface, *_format_worst_point_cells(p)) for n, (o, p) in worst.items()
+        ]
         yield from align_columns(
             [_OUTPUT_TABLE_HEADINGS, *rows], len(_OUTPUT_TABLE_HEADINGS) - len(_POINT_COLUMN_HEADINGS)
         )
@@ -56,7 +62,7 @@ def format_counts(proof: Proof) -> str:
     purposes = [experiment.purpose for experiment in experiments]
     ordered = (*EXPERIMENT_PURPOSES, *sorted({*purposes} - {*EXPERIMENT_PURPOSES}))
     counts = [f"{purposes.count(p)} {p}" for p in ordered if p in purposes]
-    return f"{', '.join(counts) or 'no experiment executed'}; {proof.compared_start_count} start values"
+    return f"{', '.join(counts) or 'no experiment executed'}; {proof.compared_start_value_count} start values"
 
 
 def format_summary(proof: Proof) -> str:
@@ -67,52 +73,55 @@ def format_summary(proof: Proof) -> str:
         return "it does not start, nothing was executed"
     passed = len(proof.outcomes) - excluded - missed
     words = [f"{passed} passed", f"{missed} missed", *([f"{excluded} not executed"] if excluded else [])]
-    if count := len(proof.start_differences):
+    if count := len(proof.start_value_differences):
         words.append(f"{count} start {'value differs' if count == 1 else 'values differ'}")
     return ", ".join(words)
 
 
-def build_document(proof: Proof) -> dict[str, object]:
+def proof_to_json(proof: Proof) -> dict[str, object]:
     """Result of a proof as one JSON object, with the worst point of each output of each experiment."""
     return {
         "fmu": str(proof.fmu),
         "importer": proof.importer,
         "interfaces": list(proof.interfaces),
         "passed": proof.has_passed,
-        "start_values": {"compared": proof.compared_start_count, "differing": list(proof.start_differences)},
-        "experiments": [_experiment_document(outcome) for outcome in proof.outcomes],
+        "start_values": {
+            "compared": proof.compared_start_value_count,
+            "differing": list(proof.start_value_differences),
+        },
+        "experiments": [_experiment_to_json(outcome) for outcome in proof.outcomes],
         "misses": proof.failures,
     }
 
 
-def _experiment_document(outcome: Outcome) -> dict[str, object]:
+def _experiment_to_json(outcome: ExperimentOutcome) -> dict[str, object]:
     """Outcome of an experiment as a JSON object."""
     return {
         "name": outcome.experiment.name,
         "interface": outcome.interface or None,
         "purpose": outcome.experiment.purpose,
         "verdict": _format_verdict(outcome),
-        "error": outcome.error or outcome.exclusion_reason or None,
-        "points": outcome.compared_points,
-        "outputs": [_point_document(point) for point in outcome.worst_points],
+        "error": outcome.error_message or outcome.exclusion_reason or None,
+        "points": outcome.compared_time_count,
+        "outputs": [_worst_point_to_json(point) for point in outcome.worst_points],
     }
 
 
-def _point_document(point: WorstPoint) -> Mapping[str, object]:
+def _worst_point_to_json(point: WorstPoint) -> Mapping[str, object]:
     """Worst point of an output as a JSON object."""
-    value = point.value if point.is_finite else None
+    value = point.computed_value if point.is_finite else None
     return {
         "output": point.output,
         "time": point.time,
         "value": value,
-        "reference": point.reference,
-        "error": None if value is None else point.error,
+        "reference": point.reference_value,
+        "error": None if value is None else point.absolute_error,
         "allowed": point.tolerance,
         "passed": point.is_within_tolerance,
     }
 
 
-def _format_verdict(outcome: Outcome) -> str:
+def _format_verdict(outcome: ExperimentOutcome) -> str:
     """Verdict on an experiment, as text."""
     if outcome.exclusion_reason:
         return f"not executed: {outcome.exclusion_reason}"
@@ -121,7 +130,7 @@ def _format_verdict(outcome: Outcome) -> str:
     return "passed" if outcome.worst_points else "runs, no reference"
 
 
-def _format_cells(point: WorstPoint) -> tuple[str, ...]:
+def _format_worst_point_cells(point: WorstPoint) -> tuple[str, ...]:
     """Cells of a table row: time, value, reference, error and tolerance of a point."""
-    numbers = (f"{point.time:g}", f"{point.value:.10g}", f"{point.reference:.10g}")
-    return (*numbers, f"{point.error:.1e}", f"{point.tolerance:.1e}")
+    numbers = (f"{point.time:g}", f"{point.computed_value:.10g}", f"{point.reference_value:.10g}")
+    return (*numbers, f"{point.absolute_error:.1e}", f"{point.tolerance:.1e}")

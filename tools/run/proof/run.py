@@ -15,10 +15,10 @@ from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu.progress import track_progress
 
 from ..host import unpack_fmu
-from .importers import FMI_VERSIONS, IMPORTER_PACKAGES, SYSTEM_LIBRARIES, list_interfaces
+from .importers import IMPORTER_PACKAGES, SUPPORTED_FMI_VERSIONS, SYSTEM_LIBRARIES, list_interfaces
 from .manifest import Experiment, RelatedFiles
 from .outcome import Proof
-from .plan import ExperimentPlan, task_fields
+from .plan import ExperimentPlan, make_task_fields
 from .values import has_start_value, read_start_value
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ExpectedContents:
+class ExpectedFmuContents:
     """Expected contents of an FMU, from another source than the FMU itself.
 
     source  : name of the source, for messages
@@ -39,19 +39,21 @@ class ExpectedContents:
     member_contents: Mapping[str, bytes]
 
 
-def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None = None) -> Proof:
+def prove(fmu: Path, importer: str = "fmpy", expected_contents: ExpectedFmuContents | None = None) -> Proof:
     """Execute all experiments in the manifest of an FMU, or in the manifest of `expected`.
 
     Raises ValueError, one line: no FMU, an FMU that does not run on this platform, no manifest, a broken
     manifest, an importer that is not installed or does not support the FMI version of the FMU.
     """
-    experiments = RelatedFiles(fmu, expected.member_contents if expected else None).read_experiments()
+    experiments = RelatedFiles(
+        fmu, expected_contents.member_contents if expected_contents else None
+    ).read_experiments()
     _check_importer(importer)
     with unpack_fmu(fmu, model_exchange=True) as (folder, description):
-        if description.fmiVersion[0] not in FMI_VERSIONS[importer]:
+        if description.fmiVersion[0] not in SUPPORTED_FMI_VERSIONS[importer]:
             raise ValueError(
                 f"{fmu}: is of FMI {description.fmiVersion}, {importer} takes "
-                f"{' and '.join(f'{digit}.0' for digit in FMI_VERSIONS[importer])}"
+                f"{' and '.join(f'{digit}.0' for digit in SUPPORTED_FMI_VERSIONS[importer])}"
             )
         offered = _offered_interfaces(description)
         common = [name for name in list_interfaces(importer) if name in offered]
@@ -61,16 +63,16 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
                 f"{' and '.join(list_interfaces(importer))}"
             )
         plans = [
-            ExperimentPlan.create(fmu, folder, experiment, interface, description)
+            ExperimentPlan.plan_experiment(fmu, folder, experiment, interface, description)
             for experiment in experiments
             for interface in _usable_interfaces(experiment, common)
         ]
         started = [v for v in description.modelVariables if has_start_value(v)]
         start_task = {
-            **task_fields(fmu, folder, offered[0], outputs=[v.name for v in started]),
+            **make_task_fields(fmu, folder, offered[0], outputs=[v.name for v in started]),
             "start": True,
         }
-        tasks = [plan.task for plan in plans if plan.task]
+        tasks = [plan.experiment_task_fields for plan in plans if plan.experiment_task_fields]
         answers = _run_worker("fmpy", [start_task, *(tasks if importer == "fmpy" else [])])
         first = next(answers)
         if "error" in first:
@@ -81,11 +83,14 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
             for v in started
             if starts[v.name] != read_start_value(v)
         ]
-        differences += _list_start_value_differences(starts, expected) if expected else []
+        differences += _list_start_value_differences(starts, expected_contents) if expected_contents else []
         if importer != "fmpy":
             answers = _run_worker(importer, tasks)
         tracked_plans = track_progress(plans, fmu.stem, len(plans))
-        outcomes = [plan.evaluate_answer(next(answers) if plan.task else None) for plan in tracked_plans]
+        outcomes = [
+            plan.evaluate_importer_answer(next(answers) if plan.experiment_task_fields else None)
+            for plan in tracked_plans
+        ]
     return Proof(fmu, importer, common, len(started), differences, outcomes)
 
 
@@ -108,7 +113,7 @@ def _check_importer(importer: str) -> None:
 
 
 def _list_start_value_differences(
-    start_values: Mapping[str, object], expected: ExpectedContents
+    start_values: Mapping[str, object], expected_contents: ExpectedFmuContents
 ) -> list[str]:
     """A line for each start value of the FMU that differs from the expected one.
 
@@ -117,8 +122,8 @@ def _list_start_value_differences(
     missing = "is not an FMU parameter"
     found = {name: f"starts at {_format_value(value)}" for name, value in start_values.items()}
     return [
-        f"{name} {found.get(name, missing)}, {expected.source} says {_format_value(value)}"
-        for name, value in expected.start_values.items()
+        f"{name} {found.get(name, missing)}, {expected_contents.source} says {_format_value(value)}"
+        for name, value in expected_contents.start_values.items()
         if name not in start_values or start_values[name] != value
     ]
 

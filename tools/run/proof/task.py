@@ -12,7 +12,7 @@ REAL_TYPES = ("Real", "Float64")
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class ExperimentTask:
     """Experiment with an FMU, ready to be executed by an importer.
 
     fmu, folder : path of the FMU, and of the folder where it is unpacked
@@ -33,18 +33,18 @@ class Task:
     settings: Mapping[str, object] = field(default_factory=dict)
     times: Sequence[float] = ()
     inputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    inputs_before: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    inputs_before_jump: Mapping[str, Sequence[float]] = field(default_factory=dict)
     outputs: Sequence[str] = ()
     variable_kinds: Mapping[str, str] = field(default_factory=dict)
     tolerance: float = 1e-5
     comparison_times: Sequence[float] = ()
 
-    def inputs_at(self, i: int) -> dict[str, float]:
+    def inputs_at(self, point_index: int) -> dict[str, float]:
         """{input: value} at the communication point i; at a jump the value after it."""
-        return {name: values[i] for name, values in self.inputs.items()}
+        return {name: values[point_index] for name, values in self.inputs.items()}
 
     @property
-    def step(self) -> float:
+    def step_size(self) -> float:
         """Constant step size [s], for importers that support no other.
 
         Raises ValueError if step sizes differ, or if the experiment does not start at zero.
@@ -56,7 +56,7 @@ class Task:
             raise ValueError("has steps of different size, this importer has one")
         return size
 
-    def mask_rows(self, rows: "Rows") -> "Rows":
+    def mask_unneeded_rows(self, rows: "OutputRows") -> "OutputRows":
         """Replace rows that are not needed for the comparison by None.
 
         Rows next to a comparison time, and the first and the last row, are kept.
@@ -70,14 +70,14 @@ class Task:
         return [row if i in needed else None for i, row in enumerate(rows)]
 
 
-Rows = list[list[float] | None]
+OutputRows = list[list[float] | None]
 """Outputs at each communication point; None if the importer gives none, or they are not needed."""
-ExecuteFunction = Callable[[Task, list[str]], Rows]
+ExecuteFunction = Callable[[ExperimentTask, list[str]], OutputRows]
 """Function of an importer: (task, messages) -> rows; it appends the messages of the FMU."""
 
 
 def make_output_reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
     """Function that reads the outputs of an instance; if all are real variables, in one call."""
     if all(instance.variables[name].type in REAL_TYPES for name in outputs):
-        return instance.group_reals(outputs).get_values
+        return instance.group_real_variables(outputs).get_values
     return lambda: [float(instance.get_value(name)) for name in outputs]

@@ -29,15 +29,15 @@ def variable_kind(variable: "ScalarVariable") -> str:
     return VARIABLE_KINDS[variable.type]
 
 
-def convert_setting(variable: "ScalarVariable", setting: StartSetting) -> object:
+def convert_start_setting(variable: "ScalarVariable", start_setting: StartSetting) -> object:
     """Convert a stated start value to the type of its variable.
 
     Raises ValueError if its unit is not that of the variable, or if it is not a value of this type.
     """
     unit = variable.unit or "1"
-    if setting.unit and setting.unit != unit:
-        raise ValueError(f"{variable.name} is given in {setting.unit!r}, expected {unit!r}")
-    value = setting.value
+    if start_setting.unit and start_setting.unit != unit:
+        raise ValueError(f"{variable.name} is given in {start_setting.unit!r}, expected {unit!r}")
+    value = start_setting.value
     items = variable.declaredType.items or () if variable.type == "Enumeration" else ()
     value = next((item.value for item in items if item.name == value), value)
     if variable.type == "String":
@@ -45,7 +45,9 @@ def convert_setting(variable: "ScalarVariable", setting: StartSetting) -> object
     try:
         return convert_value(variable, float(value))
     except ValueError:
-        raise ValueError(f"{variable.name} = {setting.value!r} is not of type {variable.type}") from None
+        raise ValueError(
+            f"{variable.name} = {start_setting.value!r} is not of type {variable.type}"
+        ) from None
 
 
 def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
@@ -59,7 +61,7 @@ def convert_value(variable: "ScalarVariable", value: float) -> float | int | boo
 
 
 def input_values(
-    variable: "ScalarVariable", stimuli: TimeSeries, times: Array, is_left_limit: bool
+    variable: "ScalarVariable", stimuli: TimeSeries, times: Array, takes_value_before_jump: bool
 ) -> list[Any]:
     """Values of an input at times (n) [s]: real inputs are interpolated linearly, others are held.
 
@@ -72,7 +74,7 @@ def input_values(
         ]
     values = (
         stimuli.interpolate_left(variable.name, times)
-        if is_left_limit
+        if takes_value_before_jump
         else stimuli.interpolate(variable.name, times)
     )
     return list(values.tolist())

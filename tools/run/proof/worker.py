@@ -14,9 +14,9 @@ import tempfile
 from typing import Any, TextIO
 
 from . import importers
-from .task import Task
+from .task import ExperimentTask
 
-_REFUSAL_PATTERN = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>\S.*)")
+_FMU_REFUSAL_PATTERN = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>\S.*)")
 """Line in the log of ecos for a call that an FMU refused."""
 
 
@@ -37,7 +37,7 @@ def main() -> None:
             replies.flush()
 
 
-def _execute_task(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, Any]:
+def _execute_task(execute_experiment: Any, task_fields: dict[str, Any], log_file: TextIO) -> dict[str, Any]:
     """Execute a task and return the answer: {"rows", "messages"} or {"error", "messages"}.
 
     execute : function of the importer
@@ -45,21 +45,21 @@ def _execute_task(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, 
 
     An error is one line: the message of the FMU if there is one, else that of the importer.
     """
-    begin, messages = log.seek(0, os.SEEK_END), list[str]()
+    begin, messages = log_file.seek(0, os.SEEK_END), list[str]()
     error = ""
     rows: Any = []
     try:
-        job = Task(**task)
-        rows = job.mask_rows(execute(job, messages))
+        job = ExperimentTask(**task_fields)
+        rows = job.mask_unneeded_rows(execute_experiment(job, messages))
     except Exception as failure:  # importers raise bare Exception
         error = " ".join(str(failure).split()) or type(failure).__name__
-    log.seek(begin)
-    refused = _REFUSAL_PATTERN.search(log.read())
+    log_file.seek(begin)
+    refused = _FMU_REFUSAL_PATTERN.search(log_file.read())
     if refused:
         error = refused["reason"]
     elif error and messages:
         error = messages[0]
-    error = error.removeprefix(f"{task['fmu']}: ")
+    error = error.removeprefix(f"{task_fields['fmu']}: ")
     return {"messages": messages} | ({"error": error} if error else {"rows": rows})
 
 

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 WAVEFORMS = ("triangle", "sine")
 """Waveforms of load cycles."""
-DEFAULT_POINTS, DEFAULT_CYCLES = 200, 2
-MIN_POINTS, MAX_POINTS = 8, 1_000_000
-MAX_CYCLES = 1000
-RELATIVE_WORK_ROUNDING = 1e-12
+DEFAULT_POINTS_PER_CYCLE, DEFAULT_CYCLE_COUNT = 200, 2
+MIN_POINTS_PER_CYCLE, MAX_POINTS_PER_CYCLE = 8, 1_000_000
+MAX_CYCLE_COUNT = 1000
+WORK_ROUND_OFF_RATIO = 1e-12
 """Work over the area of the loop's bounding box [1] below which the work is round-off."""
 ENERGY_UNIT = units.base_exponents("J")
 FORCE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
@@ -43,18 +43,19 @@ class CyclicPath:
 
     centre: float = 0.0
     shape: str = WAVEFORMS[0]
-    points: int = DEFAULT_POINTS
-    cycles: int = DEFAULT_CYCLES
+    points: int = DEFAULT_POINTS_PER_CYCLE
+    cycles: int = DEFAULT_CYCLE_COUNT
 
     def __post_init__(self) -> None:
         if not np.isfinite(self.centre):
             raise ValueError(f"about = {self.centre:g} is outside (-inf, inf): must be finite")
-        if self.points % 4 or not MIN_POINTS <= self.points <= MAX_POINTS:
+        if self.points % 4 or not MIN_POINTS_PER_CYCLE <= self.points <= MAX_POINTS_PER_CYCLE:
             raise ValueError(
-                f"points = {self.points}, allowed are multiples of 4 from {MIN_POINTS} to {MAX_POINTS}"
+                f"points = {self.points}, allowed are multiples of 4 from {MIN_POINTS_PER_CYCLE} to "
+                f"{MAX_POINTS_PER_CYCLE}"
             )
-        if not 1 <= self.cycles <= MAX_CYCLES:
-            raise ValueError(f"cycles = {self.cycles} is outside [1, {MAX_CYCLES}]")
+        if not 1 <= self.cycles <= MAX_CYCLE_COUNT:
+            raise ValueError(f"cycles = {self.cycles} is outside [1, {MAX_CYCLE_COUNT}]")
 
     def input_values(self, amplitude: float) -> Array:
         """Values of the input: first loading to an amplitude, then full cycles from there."""
@@ -95,7 +96,7 @@ class HysteresisLoop:
         """Energy loss [J] of the last cycle, by the trapezoidal rule; 0 if it is round-off."""
         motion, force = self._last_cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
-        return work if abs(work) > RELATIVE_WORK_ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
+        return work if abs(work) > WORK_ROUND_OFF_RATIO * float(np.ptp(motion) * np.ptp(force)) else 0.0
 
     def compute_results(self) -> dict[str, float]:
         """Results of the loop: {name: value}.

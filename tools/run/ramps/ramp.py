@@ -171,7 +171,10 @@ def _simulate_paths(
             fmu.enter_initialization()
             fmu.set_values({**settings, **dict(zip(inputs, points[0].tolist(), strict=True))})
             fmu.fmu.exitInitializationMode()
-            driven, read = fmu.group_reals([*inputs]), fmu.group_reals([v.name for v in outputs])
+            driven, read = (
+                fmu.group_real_variables([*inputs]),
+                fmu.group_real_variables([v.name for v in outputs]),
+            )
             for i, values in enumerate(track_progress(points.tolist(), Path(fmu_label).stem, len(points))):
                 driven.set_values(*values)
                 if i:

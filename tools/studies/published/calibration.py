@@ -16,7 +16,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
 
 from .computed import CalibrationFit, load_published_numbers
-from .reference import Point, read_points
+from .reference import PublishedPoint, read_points
 
 
 def calibrate(start_file: ParameterFile) -> ParameterFile:
@@ -38,9 +38,9 @@ def calibrate(start_file: ParameterFile) -> ParameterFile:
 
 
 def _fit_unknowns(
-    start_file: ParameterFile, fit: CalibrationFit, calibration_points: Sequence[Point]
+    start_file: ParameterFile, calibration_fit: CalibrationFit, calibration_points: Sequence[PublishedPoint]
 ) -> ParameterFile:
-    names = list(fit.unknowns)
+    names = list(calibration_fit.unknowns)
     source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
     def make_parameter_file(log_unknowns: Any) -> ParameterFile:
@@ -48,9 +48,11 @@ def _fit_unknowns(
         return start_file.with_values(values, "calibration", source)
 
     residuals = _residual_function(
-        make_parameter_file, load_published_numbers(KINDS[start_file.joint]).observables, calibration_points
+        make_parameter_file,
+        load_published_numbers(KINDS[start_file.joint]).observable_functions,
+        calibration_points,
     )
-    first = np.log(list(fit.unknowns.values()))
+    first = np.log(list(calibration_fit.unknowns.values()))
     solution = least_squares(residuals, first, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=400)
     worst = float(np.max(np.abs(solution.fun)))
     if worst > 1e-8:
@@ -62,12 +64,14 @@ def _fit_unknowns(
 
 def _residual_function(
     make_parameter_file: Callable[[object], ParameterFile],
-    observables: Mapping[str, Callable[..., float | bool]],
-    calibration_points: Sequence[Point],
+    observable_functions: Mapping[str, Callable[..., float | bool]],
+    calibration_points: Sequence[PublishedPoint],
 ) -> Callable[[object], list[float]]:
     def residuals(log_unknowns: object) -> list[float]:
         values = make_parameter_file(log_unknowns).values
-        return [observables[p.quantity](values, **p.where) / p.value - 1.0 for p in calibration_points]
+        return [
+            observable_functions[p.quantity](values, **p.where) / p.value - 1.0 for p in calibration_points
+        ]
 
     return residuals
 

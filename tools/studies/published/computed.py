@@ -33,7 +33,7 @@ class PublishedNumbers:
     """
 
     papers: Sequence[str] = ()
-    observables: Mapping[str, Callable[..., float | bool]] = field(default_factory=dict)
+    observable_functions: Mapping[str, Callable[..., float | bool]] = field(default_factory=dict)
     calibration: Sequence[CalibrationFit] = ()
 
 

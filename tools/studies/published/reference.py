@@ -28,9 +28,9 @@ GUESS_ROLES = ("interpolation", "prediction")
 CALIBRATION_TOLERANCE = 1e-6
 """Relative tolerance of a calibration point [1]: the fits are exact apart from rounding."""
 
-_POINTS_PER_RULE = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
+_POINTS_PER_GUESS_RULE = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
 """{rule of a trivial guess: number of points that it needs}."""
-_POWER_RULES = ("power law", "growth")
+_POWER_LAW_GUESS_RULES = ("power law", "growth")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,13 +48,13 @@ class Guess:
     over: str = ""
 
     def __post_init__(self) -> None:
-        if self.rule not in _POINTS_PER_RULE:
-            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_POINTS_PER_RULE)}")
-        if len(self.points) != _POINTS_PER_RULE[self.rule]:
+        if self.rule not in _POINTS_PER_GUESS_RULE:
+            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_POINTS_PER_GUESS_RULE)}")
+        if len(self.points) != _POINTS_PER_GUESS_RULE[self.rule]:
             raise ValueError(
-                f"guess: {len(self.points)} points, a {self.rule} takes {_POINTS_PER_RULE[self.rule]}"
+                f"guess: {len(self.points)} points, a {self.rule} takes {_POINTS_PER_GUESS_RULE[self.rule]}"
             )
-        if bool(self.over) != (self.rule in _POWER_RULES):
+        if bool(self.over) != (self.rule in _POWER_LAW_GUESS_RULES):
             raise ValueError(
                 f"guess: over = {self.over!r}, a {self.rule} takes {'a name' if not self.over else 'none'}"
             )
@@ -72,7 +72,7 @@ class Guess:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Point:
+class PublishedPoint:
     """Published number or claim.
 
     quantity  : name of the computed quantity, a key of `PublishedNumbers.observables`
@@ -116,19 +116,19 @@ class Point:
             )
 
 
-def read_points(paper: str) -> list[Point]:
+def read_points(paper: str) -> list[PublishedPoint]:
     """Read the published numbers of a paper, in the order of its file."""
     text = (files("jointfmu_models") / "reference" / f"{paper}.toml").read_text(encoding="utf-8")
     document = tomllib.loads(text)
     return [_make_point(paper, document["joint"], entry) for entry in document["point"]]
 
 
-def _make_point(paper: str, joint: str, entry: dict[str, Any]) -> Point:
+def _make_point(paper: str, joint: str, entry: dict[str, Any]) -> PublishedPoint:
     guess = {"guess": Guess(**entry["guess"])} if "guess" in entry else {}
-    return Point(paper=paper, joint=joint, **(entry | guess))
+    return PublishedPoint(paper=paper, joint=joint, **(entry | guess))
 
 
-def compute_trivial_guesses(points: Sequence[Point]) -> dict[str, float]:
+def compute_trivial_guesses(points: Sequence[PublishedPoint]) -> dict[str, float]:
     """Trivial guesses of the published numbers of one paper, from calibration points: {id: guess}.
 
     Raises ValueError if a guess names a point that is no calibration point and has no guess.
@@ -145,9 +145,9 @@ def compute_trivial_guesses(points: Sequence[Point]) -> dict[str, float]:
             )
         return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
 
-    def evaluate_guess(point: Point, rule: Guess, requesting_ids: tuple[str, ...]) -> float:
+    def evaluate_guess(point: PublishedPoint, rule: Guess, requesting_ids: tuple[str, ...]) -> float:
         a, *more = (find_value(name, requesting_ids) for name in rule.points)
-        if rule.rule in _POWER_RULES:
+        if rule.rule in _POWER_LAW_GUESS_RULES:
             x, x_a, *others = (p.where[rule.over] for p in (point, *(known[name] for name in rule.points)))
             (y, z), (x_y, x_z) = (a, *more)[-2:], (x_a, *others)[-2:]
             power = np.log(z / y) / np.log(x_z / x_y)

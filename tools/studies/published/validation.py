@@ -11,7 +11,7 @@ from jointfmu.parameters import ParameterFile, load_default
 
 from ...common.shown import align_columns
 from .computed import load_published_numbers
-from .reference import ROLES, UNTESTED_ROLES, Point, compute_trivial_guesses, read_points
+from .reference import ROLES, UNTESTED_ROLES, PublishedPoint, compute_trivial_guesses, read_points
 
 _TABLE_HEADINGS = (
     *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
@@ -33,7 +33,7 @@ class ValidatedPoint:
     guess_error    : error of the trivial guess, as `error`
     """
 
-    point: Point
+    point: PublishedPoint
     computed_value: float | bool
     error: float
     has_passed: bool
@@ -62,7 +62,9 @@ class ValidatedPoint:
         }
 
 
-def compare_point(point: Point, computed_value: float | bool, guess: float | None = None) -> ValidatedPoint:
+def compare_point(
+    point: PublishedPoint, computed_value: float | bool, guess: float | None = None
+) -> ValidatedPoint:
     """Compare a computed value, and the trivial guess if there is one, with the published number."""
     if isinstance(point.value, bool):
         error = float(computed_value is not point.value)
@@ -72,7 +74,7 @@ def compare_point(point: Point, computed_value: float | bool, guess: float | Non
     return ValidatedPoint(point, computed_value, error, abs(error) <= point.tolerance, guess, guessed)
 
 
-def _point_error(point: Point, value: float) -> float:
+def _point_error(point: PublishedPoint, value: float) -> float:
     return (value - point.value) / (1.0 if point.absolute else abs(point.value))
 
 
@@ -86,7 +88,7 @@ def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[
         own = load_published_numbers(kind)
         for paper in own.papers:
             values = (given.get(kind.name) or load_default(kind.name)).values
-            observables, known = own.observables, read_points(paper)
+            observables, known = own.observable_functions, read_points(paper)
             guessed = compute_trivial_guesses(known)
             rows += [
                 compare_point(p, observables[p.quantity](values, **p.where), guessed.get(p.id)) for p in known
@@ -185,20 +187,20 @@ def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
     )
 
 
-def format_error(point: Point, error: float) -> str:
+def format_error(point: PublishedPoint, error: float) -> str:
     """Format an error: in per cent, or in the unit of the point if its tolerance is absolute."""
     scale, unit = _error_scale(point)
     small = abs(error) <= _MAX_ROUNDING_RATIO * point.tolerance
     return ("0" if small else f"{scale * error:+.3g}") + unit
 
 
-def format_tolerance(point: Point) -> str:
+def format_tolerance(point: PublishedPoint) -> str:
     """Format a tolerance, in the unit of `format_error`."""
     scale, unit = _error_scale(point)
     return f"{scale * point.tolerance:.3g}{unit}"
 
 
-def _error_scale(point: Point) -> tuple[float, str]:
+def _error_scale(point: PublishedPoint) -> tuple[float, str]:
     """Factor and unit text of errors and tolerances; percentage points for a number in per cent."""
     if not point.absolute:
         return 100.0, " %"

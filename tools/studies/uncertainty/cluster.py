@@ -30,14 +30,14 @@ def run_on_cluster(
     has no worker, or a worker cannot evaluate the study at all.
     """
     with _connect(scheduler) as client:
-        from .plugin import StudyDistribution
+        from .plugin import EvaluatorPlugin
 
         try:
             client.wait_for_workers(1, timeout=60)
         except TimeoutError:
             raise RuntimeError(f"{scheduler}: has had no worker for 60 s") from None
         key = f"jointfmu-{uuid4()}"
-        client.register_plugin(StudyDistribution(key, evaluator.pack()), name=key)
+        client.register_plugin(EvaluatorPlugin(key, evaluator.include_files()), name=key)
         try:
             yield from _submit_jobs(client, key, jobs)
         finally:

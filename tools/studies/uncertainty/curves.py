@@ -41,7 +41,7 @@ class DerivedOutput:
     """
 
     variable: Variable
-    compute: Callable[[JointSample, Array], Array]
+    compute_values: Callable[[JointSample, Array], Array]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,8 +64,8 @@ class LoadCurves:
     model: str
     load: Variable
     outputs: Sequence[Variable]
-    knots: int | None = None
-    derived: Sequence[DerivedOutput] = ()
+    knot_count: int | None = None
+    derived_outputs: Sequence[DerivedOutput] = ()
     default_end: Callable[[Any], float]
     max_load: Callable[[Any], float]
     load_loss: Callable[[Any], float] = lambda parameters: 0.0
@@ -75,7 +75,9 @@ class LoadCurves:
     @property
     def units(self) -> dict[str, str]:
         """{quantity: unit}."""
-        return {v.name: v.unit for v in (*self.outputs, *(quantity.variable for quantity in self.derived))}
+        return {
+            v.name: v.unit for v in (*self.outputs, *(quantity.variable for quantity in self.derived_outputs))
+        }
 
 
 def load_curves(kind: JointKind) -> LoadCurves:
@@ -86,7 +88,7 @@ def load_curves(kind: JointKind) -> LoadCurves:
     module = load_tool_module(kind, "uncertainty")
     if module is None:
         raise ValueError(f"joint = {kind.name!r} states no quantities along a load ramp")
-    curves: LoadCurves = module.CURVES
+    curves: LoadCurves = module.UNCERTAINTY_CURVES
     return curves
 
 

@@ -24,9 +24,9 @@ from jointfmu.files.text import check_text, replace_unprintable
 from jointfmu.files.writing import ensure_folder, write_text
 
 STUDY_FILE, RUNS_FILE, BANDS_FILE = "study.json", "runs.jsonl", "bands.csv"
-INDEX_RUNS_FILE = "index_runs.jsonl"
+SOBOL_RUNS_FILE = "index_runs.jsonl"
 """Further runs, for Sobol' indices."""
-LOCK_POSITION = 1 << 40
+LOCKED_BYTE_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
 
@@ -35,7 +35,7 @@ def sha256_text(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
+def claim_folder(folder: Path, study_record: Mapping[str, object]) -> None:
     """Write a study into its folder, or check that the folder already holds this study.
 
     Raises ValueError if the folder holds another study (the message names a difference) or other files.
@@ -46,7 +46,7 @@ def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
             raise ValueError(
                 f"{folder}: contains other files than those of a study; state a new or empty folder"
             )
-        write_text(path, json.dumps(study, indent=1) + "\n")
+        write_text(path, json.dumps(study_record, indent=1) + "\n")
         return
     data = read_bytes(path, "a study")
     try:
@@ -55,10 +55,10 @@ def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
         raise ValueError(f"{path}: is not a study ({error}); expected another folder") from None
     if not isinstance(present, dict):
         raise ValueError(f"{path}: is not a study (no JSON object); expected another folder")
-    if present == json.loads(json.dumps(study)):
+    if present == json.loads(json.dumps(study_record)):
         return
-    changed = sorted(key for key in {*present, *study} if present.get(key) != study.get(key))
-    old, new = (json.dumps(record.get(changed[0])) for record in (present, study))
+    changed = sorted(key for key in {*present, *study_record} if present.get(key) != study_record.get(key))
+    old, new = (json.dumps(record.get(changed[0])) for record in (present, study_record))
     raise ValueError(
         f"{folder}: holds another study ({replace_unprintable(changed[0])[:60]} = {old[:60]}, now "
         f"{new[:60]}); repeat that study, or state another folder"
@@ -66,14 +66,14 @@ def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
 
 
 @contextmanager
-def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
+def open_claimed_folder(folder: Path, study_record: Mapping[str, object]) -> Iterator[None]:
     """Context manager that claims the folder of a study, see `claim_folder`.
 
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """
     new = not (folder / STUDY_FILE).exists()
     with ensure_folder(folder):
-        claim_folder(folder, study)
+        claim_folder(folder, study_record)
         try:
             yield
         except ValueError:
@@ -132,7 +132,7 @@ class Journal:
     ) -> None:
         self.file.close()
 
-    def add(self, *entries: Mapping[str, Any]) -> None:
+    def append_entries(self, *entries: Mapping[str, Any]) -> None:
         """Append the entries of finished runs, except of runs that are already in the file."""
         for entry in entries:
             if entry["run"] not in self.finished_runs:
@@ -244,7 +244,7 @@ def _lock_file(handle: int) -> None:
         import msvcrt
 
         os.lseek(
-            handle, LOCK_POSITION, os.SEEK_SET
+            handle, LOCKED_BYTE_POSITION, os.SEEK_SET
         )  # locked bytes cannot be read: lock a byte beyond all runs
         msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
     else:

@@ -20,7 +20,7 @@ def run_on_dask_worker(key: str, runs: Sequence[Run]) -> list[Entry]:
     return [evaluator.run(index, settings) for index, settings in runs]
 
 
-class StudyDistribution(WorkerPlugin):  # type: ignore[misc]
+class EvaluatorPlugin(WorkerPlugin):  # type: ignore[misc]
     """Dask plugin that installs the evaluator of a study on every worker, and deletes its files at the end.
 
     Workers that start later receive it, too.
@@ -31,7 +31,7 @@ class StudyDistribution(WorkerPlugin):  # type: ignore[misc]
 
     def setup(self, worker: Any) -> None:
         folder = Path(tempfile.mkdtemp(prefix="study-", dir=worker.local_directory))
-        EVALUATORS[self.key] = self.evaluator.install(folder), folder
+        EVALUATORS[self.key] = self.evaluator.install_files(folder), folder
 
     def teardown(self, worker: Any) -> None:
         if installed := EVALUATORS.pop(self.key, None):

@@ -10,13 +10,13 @@ import numpy as np
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Variable
 from jointfmu.parameters import ParameterFile, format_parameter_file
-from jointfmu.quantity import Array, Interval, find_problem, flat_fields
+from jointfmu.quantity import Array, Interval, find_problem, flatten_fields
 from jointfmu.quantity.refusal import InputRefusal
 
 from .curves import LoadCurves, load_curves
 from .journal import sha256_text
 from .study import UncertainParameter, draw_samples, is_relative, split_settings
-from .worker import LOAD_LIMIT_TEXT, JointRamp, RampEvaluator
+from .worker import LOAD_INTERVAL_MEANING, JointRamp, RampEvaluator
 
 INTERVAL_SETTING = "interval"
 """Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
@@ -27,7 +27,7 @@ _INTERVAL_PATTERN = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class UncertaintyProblem:
     """Uncertainty study of a joint or an FMU.
 
     title     : kind of the joint, or name of the FMU file
@@ -41,18 +41,18 @@ class Problem:
     """
 
     title: str
-    load: Variable
+    ramped_input: Variable
     loads: Array
     units: Mapping[str, str]
     uncertain_parameters: tuple[UncertainParameter, ...]
     settings: Mapping[str, Any]
     evaluator: RampEvaluator
-    record: Mapping[str, Any]
+    identifying_record: Mapping[str, Any]
 
     @property
     def variable_units(self) -> dict[str, str]:
         """{load or output: unit}."""
-        return {self.load.name: self.load.unit, **self.units}
+        return {self.ramped_input.name: self.ramped_input.unit, **self.units}
 
     def list_runs(self, points: Array) -> list[dict[str, Any]]:
         """Settings of the runs for points (n, d) of the unit cube."""
@@ -64,12 +64,12 @@ class Problem:
         """JSON object that identifies the study, for its folder."""
         distributions = {parameter.name: parameter.text for parameter in self.uncertain_parameters}
         counts = {"samples": count, "seed": seed}
-        return {**self.record, **counts, "parameters": {**distributions, **self.settings}}
+        return {**self.identifying_record, **counts, "parameters": {**distributions, **self.settings}}
 
 
 def state_problem(
-    file: ParameterFile, settings: Mapping[str, object], ramp_end: float | None, points: int
-) -> Problem:
+    file: ParameterFile, settings: Mapping[str, object], ramp_end: float | None, ramp_point_count: int
+) -> UncertaintyProblem:
     """State the problem of a parameter file and settings.
 
     settings : {name: value or text of a distribution}
@@ -82,7 +82,7 @@ def state_problem(
     Raises ValueError for an unknown name, a value outside its interval, or a distribution of a parameter that
     cannot be uncertain.
     """
-    curves, declared = load_curves(KINDS[file.joint]), dict(flat_fields(type(file.values)))
+    curves, declared = load_curves(KINDS[file.joint]), dict(flatten_fields(type(file.values)))
     base = dict(file.values_by_name)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     settable = [*(base.keys() - lists), curves.load.name]
@@ -118,7 +118,7 @@ def state_problem(
     end = (
         ramp_end if ramp_end is not None or single is not None else file.start_value(curves.load.name) or None
     )
-    loads = _ramp_loads(curves, nominal.values, single, end, points, load)
+    loads = _ramp_loads(curves, nominal.values, single, end, ramp_point_count, load)
     record = {
         "joint": file.joint,
         "parameter_file_sha256": sha256_text(format_parameter_file(nominal).encode()),
@@ -130,7 +130,7 @@ def state_problem(
     exposed = {*model.parameter_fields(), curves.load.name}
     reopens = any(parameter.name not in exposed for parameter in order)
     ramp = JointRamp(nominal, loads, relative, reopens)
-    return Problem(file.joint, curves.load, loads, curves.units, order, {}, ramp, record)
+    return UncertaintyProblem(file.joint, curves.load, loads, curves.units, order, {}, ramp, record)
 
 
 def _load_interval(curves: LoadCurves, file: ParameterFile) -> str:
@@ -172,21 +172,23 @@ def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
     return f"{match[1]}..{match[2]}"
 
 
-def _check_uncertain(parameter: UncertainParameter, item: Any) -> None:
+def _check_uncertain(parameter: UncertainParameter, parameter_field: Any) -> None:
     """Raise ValueError if a parameter cannot be uncertain, or its distribution exceeds its interval.
 
     item : dataclass field that declares the parameter
     """
-    if "allowed" in item.metadata:
+    if "allowed" in parameter_field.metadata:
         raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")
-    if item.metadata["whole"]:
+    if parameter_field.metadata["whole"]:
         raise ValueError(f"{parameter.name} = {parameter.text}: is a whole number and cannot be uncertain")
     for value in (
         *(end for end in parameter.support if np.isfinite(end)),
         float(parameter.distribution.median()),
     ):
-        tolerated = value == 0.0 and parameter.support[0] == 0.0 and item.metadata["interval"].low == 0.0
-        if not tolerated and (text := find_problem(parameter.name, value, item)):
+        tolerated = (
+            value == 0.0 and parameter.support[0] == 0.0 and parameter_field.metadata["interval"].low == 0.0
+        )
+        if not tolerated and (text := find_problem(parameter.name, value, parameter_field)):
             raise ValueError(f"{parameter.name} = {parameter.text}: {text}")
 
 
@@ -222,11 +224,11 @@ def _ramp_loads(
         for value in (float(single_load), *ends):
             if not allowed.contains(value):
                 text = f"{curves.load.name} = {value:g} {curves.load.unit}"
-                raise ValueError(f"{text} is outside {allowed}: {LOAD_LIMIT_TEXT}")
+                raise ValueError(f"{text} is outside {allowed}: {LOAD_INTERVAL_MEANING}")
         return np.array([float(single_load)])
     end = curves.default_end(values) if ramp_end is None else ramp_end
     if not allowed.contains(end):
-        raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_LIMIT_TEXT}")
+        raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_INTERVAL_MEANING}")
     if not 2 <= points <= 10_000:
         raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
     return np.linspace(0.0, end, points)

@@ -13,9 +13,9 @@ from scipy.stats import sobol_indices
 
 from jointfmu.quantity import Array
 
-from .journal import INDEX_RUNS_FILE
-from .problem import Problem
-from .runs import IN_MEMORY, Execution, Mask, SampledOutputs, SinglePrecisionArray, evaluate_runs
+from .journal import SOBOL_RUNS_FILE
+from .problem import UncertaintyProblem
+from .runs import IN_MEMORY_EXECUTION, Execution, Mask, SampledOutputs, SinglePrecisionArray, evaluate_runs
 from .study import RefusedSamples, draw_samples, unit_cube_points
 from .worker import JointRamp
 
@@ -43,14 +43,14 @@ class Bands:
     mean: Mapping[str, Array]
     standard_deviation: Mapping[str, Array]
     nominal: Mapping[str, Array]
-    samples: SampledOutputs
-    refusals: RefusedSamples
+    sampled_outputs: SampledOutputs
+    refused_samples: RefusedSamples
     units: Mapping[str, str]
 
     @property
     def sample_count(self) -> int:
         """Number of samples drawn."""
-        return self.samples.accepted.size
+        return self.sampled_outputs.accepted.size
 
     @property
     def nonzero_outputs(self) -> list[str]:
@@ -65,7 +65,9 @@ class Bands:
         )
 
 
-def compute_bands(problem: Problem, points: Array, execution: Execution = IN_MEMORY) -> Bands:
+def compute_bands(
+    problem: UncertaintyProblem, points: Array, execution: Execution = IN_MEMORY_EXECUTION
+) -> Bands:
     """Bands of all outputs, from points (n, d) of the unit cube.
 
     Raises RuntimeError if the law refuses all samples; ValueError, RuntimeError as `evaluate_runs`.
@@ -89,8 +91,8 @@ def compute_bands(problem: Problem, points: Array, execution: Execution = IN_MEM
         mean={name: value[0] for name, value in statistics.items()},
         standard_deviation={name: value[1] for name, value in statistics.items()},
         nominal=nominal,
-        samples=samples,
-        refusals=refused,
+        sampled_outputs=samples,
+        refused_samples=refused,
         units=problem.units,
     )
 
@@ -105,7 +107,7 @@ def _statistics(row: SinglePrecisionArray, accepted: Mask) -> Array:
     return np.array([values.mean(), values.std(), *np.interp(positions, np.arange(values.size), values)])
 
 
-def summarise_refusals(problem: Problem, points: Array, samples: SampledOutputs) -> RefusedSamples:
+def summarise_refusals(problem: UncertaintyProblem, points: Array, samples: SampledOutputs) -> RefusedSamples:
     """Refused samples: their number, and the first one with the error message of the law."""
     if not samples.errors:
         return RefusedSamples(0, {}, "")
@@ -116,7 +118,7 @@ def summarise_refusals(problem: Problem, points: Array, samples: SampledOutputs)
     )
 
 
-def sample_designs(problem: Problem, count: int, seed: int) -> tuple[Array, Array]:
+def sample_designs(problem: UncertaintyProblem, count: int, seed: int) -> tuple[Array, Array]:
     """Two independent sets of points (count, d) of the unit cube: for bands and indices, for indices only."""
     d = len(problem.uncertain_parameters)
     both = unit_cube_points(count, 2 * d, seed)
@@ -153,7 +155,7 @@ class Sensitivity:
     loads: Array
     parameter_names: tuple[str, ...]
     outputs: Mapping[str, SobolIndices]
-    base_samples: int
+    base_sample_count: int
 
 
 def sobol_indices_of(f_A: Array, f_B: Array, f_AB: Array) -> SobolIndices:
@@ -185,7 +187,7 @@ def sobol_indices_of(f_A: Array, f_B: Array, f_AB: Array) -> SobolIndices:
 
 
 def compute_sensitivity(
-    problem: Problem, bands: Bands, A: Array, B: Array, execution: Execution = IN_MEMORY
+    problem: UncertaintyProblem, bands: Bands, A: Array, B: Array, execution: Execution = IN_MEMORY_EXECUTION
 ) -> Sensitivity:
     """Sobol' indices of all quantities of a joint along the load ramp.
 
@@ -203,17 +205,17 @@ def compute_sensitivity(
         sets.append(mixed)
     assert isinstance(problem.evaluator, JointRamp)
     found = evaluate_runs(
-        replace(problem.evaluator, rows=load_indices),
+        replace(problem.evaluator, load_indices=load_indices),
         problem.list_runs(np.concatenate(sets)),
         problem.units,
         loads.size,
         execution,
-        INDEX_RUNS_FILE,
+        SOBOL_RUNS_FILE,
         "indices",
     ).outputs
     by_output = {}
     for name, value in found.items():
-        f_A = bands.samples.outputs[name][load_indices, :n].astype(np.float64)
+        f_A = bands.sampled_outputs.outputs[name][load_indices, :n].astype(np.float64)
         f = value.astype(np.float64).reshape(loads.size, d + 1, n)
         by_output[name] = sobol_indices_of(f_A, f[:, 0], np.moveaxis(f[:, 1:], 1, 0))
     return Sensitivity(

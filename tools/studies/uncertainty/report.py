@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...common import columns, plots
-from .problem import Problem
+from .problem import UncertaintyProblem
 from .propagate import QUANTILES, Bands, Sensitivity
 
 if TYPE_CHECKING:
@@ -18,22 +18,22 @@ MAX_TABLE_ROWS = 6
 """Maximum number of loads in the printed table."""
 
 
-def table_loads(problem: Problem) -> list[float]:
+def select_table_loads(problem: UncertaintyProblem) -> list[float]:
     """Loads above zero in the printed table."""
-    return [float(load) for load in problem.loads[_table_indices(problem.loads)] if load > 0.0]
+    return [float(load) for load in problem.loads[_select_table_indices(problem.loads)] if load > 0.0]
 
 
-def _table_indices(values: Any) -> Any:
+def _select_table_indices(values: Any) -> Any:
     """Indices of at most MAX_TABLE_ROWS equally spaced values of a ramp."""
     return np.unique(np.linspace(0, values.size - 1, MAX_TABLE_ROWS).astype(int))
 
 
-def format_bands_csv(problem: Problem, bands: Bands) -> str:
+def format_bands_csv(problem: UncertaintyProblem, bands: Bands) -> str:
     """CSV text of the bands: one row for each load; nominal value, mean, standard deviation, quantiles.
 
     Numbers are written without rounding.
     """
-    load = problem.load
+    load = problem.ramped_input
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
         statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.standard_deviation))
@@ -45,7 +45,7 @@ def format_bands_csv(problem: Problem, bands: Bands) -> str:
     return columns.format_table(heads, values)
 
 
-def as_json(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
+def as_json(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
     """Bands, refused samples and Sobol' indices as one JSON object."""
     outputs = {
         name: {
@@ -59,13 +59,17 @@ def as_json(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> 
         }
         for name, unit in bands.units.items()
     }
-    refused, load = bands.refusals, problem.load
+    refused, load = bands.refused_samples, problem.ramped_input
     return {
         "fmu" if problem.title.endswith(".fmu") else "joint": problem.title,
         "parameters": {parameter.name: parameter.text for parameter in problem.uncertain_parameters},
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.sample_count,
-        "refused": {"count": refused.count, "example": dict(refused.example), "reason": refused.reason},
+        "refused": {
+            "count": refused.count,
+            "example": dict(refused.first_refused_sample),
+            "reason": refused.reason,
+        },
         "outputs": outputs,
         "indices": None if sensitivity is None else _indices_json(sensitivity),
     }
@@ -74,7 +78,7 @@ def as_json(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> 
 def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
     numbers = ("first", "first_half", "total", "total_half")
     return {
-        "rows": sensitivity.base_samples,
+        "rows": sensitivity.base_sample_count,
         "loads": sensitivity.loads.tolist(),
         "outputs": {
             output: {
@@ -86,13 +90,13 @@ def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
     }
 
 
-def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
+def format_table(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     """Printed table: bands at a few loads, and Sobol' indices at the end of the ramp."""
     lines = []
-    load_indices = _table_indices(bands.loads)
+    load_indices = _select_table_indices(bands.loads)
     quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
     for name in bands.nonzero_outputs:
-        head = f"{problem.load.name} [{problem.load.unit}]"
+        head = f"{problem.ramped_input.name} [{problem.ramped_input.unit}]"
         lines.append(f"{name} [{bands.units[name]}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
         for j in load_indices:
@@ -103,20 +107,22 @@ def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None
     if sensitivity is not None:
         lines += _indices_table(problem, sensitivity, bands.nonzero_outputs)
     varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in problem.uncertain_parameters)
-    lines.append(f"over {problem.load.name}: {problem.load.doc}")
+    lines.append(f"over {problem.ramped_input.name}: {problem.ramped_input.doc}")
     lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on it'}")
     if zero := [name for name in bands.units if name not in bands.nonzero_outputs]:
         lines.append(f"zero at all loads: {', '.join(zero)}")
-    lines.append(f"{bands.sample_count} samples, {bands.refusals.count} refused by the law")
-    if bands.refusals.count:
-        example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refusals.example.items())
-        lines.append(f"the first refused: {example}: {bands.refusals.reason}")
+    lines.append(f"{bands.sample_count} samples, {bands.refused_samples.count} refused by the law")
+    if bands.refused_samples.count:
+        example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refused_samples.first_refused_sample.items())
+        lines.append(f"the first refused: {example}: {bands.refused_samples.reason}")
     return "\n".join(lines)
 
 
-def _indices_table(problem: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
+def _indices_table(
+    problem: UncertaintyProblem, sensitivity: Sensitivity, outputs: Sequence[str]
+) -> list[str]:
     """Lines of a table: Sobol' indices at the end of the load ramp."""
-    load = f"{problem.load.name} = {sensitivity.loads[-1]:g} {problem.load.unit}"
+    load = f"{problem.ramped_input.name} = {sensitivity.loads[-1]:g} {problem.ramped_input.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
     width = max(len(name) for name in sensitivity.parameter_names) + 2
     lines.append(" " * width + "".join(f"{name:>32}" for name in outputs))

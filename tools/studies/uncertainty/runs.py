@@ -34,7 +34,7 @@ class Execution:
     workers: int | None = None
 
 
-IN_MEMORY = Execution()
+IN_MEMORY_EXECUTION = Execution()
 """Runs on this machine that are not kept."""
 
 
@@ -49,7 +49,7 @@ class SampledOutputs:
 
     outputs: Mapping[str, SinglePrecisionArray]
     errors: Mapping[int, str]
-    new_runs: int
+    new_run_count: int
 
     @property
     def accepted(self) -> Mask:
@@ -62,9 +62,9 @@ class SampledOutputs:
 def evaluate_runs(
     evaluator: RampEvaluator,
     runs: Sequence[Settings],
-    names: Iterable[str],
+    output_names: Iterable[str],
     row_count: int,
-    execution: Execution = IN_MEMORY,
+    execution: Execution = IN_MEMORY_EXECUTION,
     file_name: str = journal.RUNS_FILE,
     progress_label: str = "samples",
 ) -> SampledOutputs:
@@ -79,10 +79,10 @@ def evaluate_runs(
     Raises ValueError if dask is missing, the scheduler does not answer or the folder cannot be used,
     RuntimeError if the workers of the scheduler cannot do any run.
     """
-    outputs = {name: np.full((row_count, len(runs)), np.nan, np.float32) for name in names}
+    outputs = {name: np.full((row_count, len(runs)), np.nan, np.float32) for name in output_names}
     errors: dict[int, str] = {}
 
-    def collect(entry: Entry) -> None:
+    def collect_entry(entry: Entry) -> None:
         if "error" in entry:
             errors[entry["run"]] = entry["error"]
             return
@@ -98,11 +98,11 @@ def evaluate_runs(
         if kept:
             finished |= kept.finished_runs
             for entry in journal.read_entries(kept.path.parent, file_name):
-                collect(entry)
+                collect_entry(entry)
         pending = [(i, settings) for i, settings in enumerate(runs) if i not in finished]
-        with closing(_execute(evaluator, pending, execution)) as entries:
-            for entry in track_progress(_keep(entries, kept), progress_label, len(pending)):
-                collect(entry)
+        with closing(_execute_runs(evaluator, pending, execution)) as entries:
+            for entry in track_progress(_write_to_journal(entries, kept), progress_label, len(pending)):
+                collect_entry(entry)
     return SampledOutputs(outputs, dict(sorted(errors.items())), len(pending))
 
 
@@ -115,20 +115,22 @@ def _open_journal(folder: Path | None, run_count: int, file_name: str) -> Iterat
             yield kept
 
 
-def _keep(jobs: Iterable[Sequence[Entry]], kept: journal.Journal | None) -> Iterator[Entry]:
+def _write_to_journal(
+    jobs: Iterable[Sequence[Entry]], journal_file: journal.Journal | None
+) -> Iterator[Entry]:
     """Write the entries of each finished job to the journal, and yield them."""
     for entries in jobs:
-        if kept:
-            kept.add(*entries)
+        if journal_file:
+            journal_file.append_entries(*entries)
         yield from entries
 
 
-def _execute(
-    evaluator: RampEvaluator, pending: Sequence[Run], execution: Execution
+def _execute_runs(
+    evaluator: RampEvaluator, pending_runs: Sequence[Run], execution: Execution
 ) -> Generator[Sequence[Entry]]:
     """Do runs, and yield the journal entries of each job when it ends."""
     size = evaluator.runs_per_job
-    jobs = [pending[i : i + size] for i in range(0, len(pending), size)]
+    jobs = [pending_runs[i : i + size] for i in range(0, len(pending_runs), size)]
     if not jobs:
         return
     if execution.scheduler is None:
@@ -148,7 +150,7 @@ def _run_locally(
     """
     processes = workers or os.cpu_count() or 1
     with TemporaryDirectory(prefix="study-") as folder:
-        installed = evaluator.install(Path(folder))
+        installed = evaluator.install_files(Path(folder))
         if share := evaluator.runs_per_process:
             processes = min(processes, math.ceil(sum(map(len, jobs)) / share))
             if processes == 1:

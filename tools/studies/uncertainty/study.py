@@ -37,7 +37,7 @@ DISTRIBUTION_FORMS = (
     "VALUE, LOW..HIGH, VALUE+-PERCENT%, loguniform(LOW, HIGH), normal(MEAN, SD), "
     "lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH)"
 )
-_CALL_PATTERN = re.compile(r"(\w+)\((.*)\)")
+_DISTRIBUTION_CALL_PATTERN = re.compile(r"(\w+)\((.*)\)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def _parse_distribution(text: str, file_value: float | None) -> Any:
         m = _parse_number(middle) if middle.strip() else _require_file_value(file_value)
         half_width = abs(m) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
         return _uniform(m - half_width, m + half_width)
-    if call := _CALL_PATTERN.fullmatch(text):
+    if call := _DISTRIBUTION_CALL_PATTERN.fullmatch(text):
         if call[1] not in _DISTRIBUTION_PARSERS:
             raise ValueError(f"there is no distribution {call[1]!r}")
         return _DISTRIBUTION_PARSERS[call[1]](
@@ -108,7 +108,7 @@ def _loguniform(texts: list[str], file_value: float | None) -> object:
 
 
 def _normal(texts: list[str], file_value: float | None) -> object:
-    mean, spread = _centre_and_spread(texts, file_value)
+    mean, spread = _parse_centre_and_spread(texts, file_value)
     sd = abs(mean) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if sd <= 0.0:
         raise ValueError(f"standard deviation = {sd:g} is outside (0, inf)")
@@ -116,7 +116,7 @@ def _normal(texts: list[str], file_value: float | None) -> object:
 
 
 def _lognormal(texts: list[str], file_value: float | None) -> object:
-    median, spread = _centre_and_spread(texts, file_value)
+    median, spread = _parse_centre_and_spread(texts, file_value)
     factor = 1.0 + _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if median <= 0.0:
         raise ValueError(f"median = {median:g} is outside (0, inf)")
@@ -142,7 +142,7 @@ _DISTRIBUTION_PARSERS = {
 }
 
 
-def _centre_and_spread(texts: list[str], file_value: float | None) -> tuple[float, str]:
+def _parse_centre_and_spread(texts: list[str], file_value: float | None) -> tuple[float, str]:
     """Centre, and text of the spread, from one or two arguments; one percentage: about the file's value."""
     if len(texts) == 1 and _is_percent(texts[0]):
         return _require_file_value(file_value), texts[0]
@@ -197,7 +197,7 @@ def _require_file_value(file_value: float | None) -> float:
 def is_relative(text: str) -> bool:
     """Whether the text of a distribution is a percentage without a value, relative to another value."""
     text = text.strip()
-    call = _CALL_PATTERN.fullmatch(text)
+    call = _DISTRIBUTION_CALL_PATTERN.fullmatch(text)
     return text.startswith("+-") or bool(call and "," not in call[2] and _is_percent(call[2]))
 
 
@@ -292,5 +292,5 @@ class RefusedSamples:
     """
 
     count: int
-    example: Mapping[str, float]
+    first_refused_sample: Mapping[str, float]
     reason: str

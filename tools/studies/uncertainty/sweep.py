@@ -20,13 +20,13 @@ from ...common import columns
 from ...run.host import unpack_fmu
 from ...run.ramps import ramp
 from . import journal
-from .problem import INTERVAL_SETTING, Problem, resolve_interval
+from .problem import INTERVAL_SETTING, UncertaintyProblem, resolve_interval
 from .propagate import QUANTILES
 from .study import split_settings
 from .worker import FmuRamp, LoadRamp
 
 
-def state_fmu_problem(fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object]) -> Problem:
+def state_fmu_problem(fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object]) -> UncertaintyProblem:
     """State the problem of an FMU and settings.
 
     settings : {name: value or text of a distribution} of parameters and inputs
@@ -46,7 +46,7 @@ def state_fmu_problem(fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, obj
         if name == load_ramp.input:
             raise ValueError(f"{fmu}: {name} is the input of the ramp; do not set it too")
     if INTERVAL_SETTING in settings.values():
-        file = _parameter_file_of(fmu)
+        file = _load_contained_parameter_file(fmu)
         settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
     real = [name for name in settable if variables[name].type in ("Real", "Float64")]
     plain, uncertain = split_settings(settings, {name: float(variables[name].start or 0.0) for name in real})
@@ -66,10 +66,10 @@ def state_fmu_problem(fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, obj
     driven = variables[load_ramp.input]
     load = Variable(driven.name, driven.unit or "1", driven.description or "")
     units = {v.name: v.unit or "1" for v in variables.values() if v.causality == "output"}
-    return Problem(fmu.name, load, loads, units, uncertain, plain, FmuRamp(fmu, load_ramp), record)
+    return UncertaintyProblem(fmu.name, load, loads, units, uncertain, plain, FmuRamp(fmu, load_ramp), record)
 
 
-def _parameter_file_of(fmu: Path) -> ParameterFile:
+def _load_contained_parameter_file(fmu: Path) -> ParameterFile:
     """Load the parameter file that an FMU contains with its experiments.
 
     Raises ValueError if the FMU contains none.

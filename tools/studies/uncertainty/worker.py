@@ -23,9 +23,9 @@ from ...run.host import is_needed_to_run
 from ...run.ramps import ramp
 from .curves import LoadCurves, load_curves, spline_weights
 
-KILLED_MESSAGE = "the process of the run died"
+KILLED_RUN_MESSAGE = "the process of the run died"
 """Error message in the journal for a run whose process died."""
-LOAD_LIMIT_TEXT = "up to the end of the tabulated law"
+LOAD_INTERVAL_MEANING = "up to the end of the tabulated law"
 """Meaning of the load interval, for error messages."""
 
 Settings: TypeAlias = Mapping[str, Any]
@@ -50,10 +50,10 @@ class RampEvaluator(Protocol):
     @property
     def runs_per_process(self) -> int: ...
 
-    def pack(self) -> "RampEvaluator":
+    def include_files(self) -> "RampEvaluator":
         """Copy of the evaluator that contains its files, to be sent to another machine."""
 
-    def install(self, folder: Path) -> "RampEvaluator":
+    def install_files(self, folder: Path) -> "RampEvaluator":
         """Copy of the evaluator whose files are in a folder of this machine."""
 
     def run(self, index: int, settings: Settings) -> Entry:
@@ -80,7 +80,7 @@ def _failed_entry(index: int, settings: Settings, error: str) -> Entry:
 
 def killed_entry(index: int, settings: Settings) -> Entry:
     """Journal entry of a run whose process died."""
-    return _failed_entry(index, settings, KILLED_MESSAGE)
+    return _failed_entry(index, settings, KILLED_RUN_MESSAGE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,22 +107,22 @@ class FmuRamp:
 
     fmu: Path
     load_ramp: LoadRamp
-    content: bytes | None = None
+    fmu_content: bytes | None = None
 
-    def pack(self) -> "FmuRamp":
+    def include_files(self) -> "FmuRamp":
         """Copy of the evaluator with the bytes of its FMU."""
-        return replace(self, content=self.fmu.read_bytes())
+        return replace(self, fmu_content=self.fmu.read_bytes())
 
-    def install(self, folder: Path) -> "FmuRamp":
+    def install_files(self, folder: Path) -> "FmuRamp":
         """Write a copy of the FMU with only the files that a run needs; each run then unpacks it faster."""
         full, slim = self.fmu, folder / self.fmu.name
-        if self.content is not None:
+        if self.fmu_content is not None:
             full = folder / f"{slim.name}.full"
-            full.write_bytes(self.content)
+            full.write_bytes(self.fmu_content)
         write_slim_fmu(full, slim)
-        if self.content is not None:
+        if self.fmu_content is not None:
             full.unlink()
-        return replace(self, fmu=slim, content=None)
+        return replace(self, fmu=slim, fmu_content=None)
 
     def run(self, index: int, settings: Settings) -> Entry:
         """Run the FMU along the ramp; the settings are start values of parameters and inputs."""
@@ -160,21 +160,21 @@ class JointRamp:
     file: ParameterFile
     loads: Array
     load_is_relative: bool = False
-    reopens: bool = False
-    rows: Array | None = None
-    key: str = field(default_factory=lambda: str(uuid4()))
+    reopens_joint: bool = False
+    load_indices: Array | None = None
+    study_key: str = field(default_factory=lambda: str(uuid4()))
 
     @property
     def runs_per_job(self) -> int:
         """Runs that a worker does at once: 1 if each run opens the joint."""
-        return 1 if self.reopens else 32
+        return 1 if self.reopens_joint else 32
 
     @property
     def runs_per_process(self) -> int:
         """Runs per process; unlimited (no other process) for a joint registered only in this process."""
         if not KINDS[self.file.joint].package.startswith("jointfmu."):
             return sys.maxsize
-        return 4 if self.reopens else 512
+        return 4 if self.reopens_joint else 512
 
     def __getstate__(self) -> dict[str, Any]:
         """State for pickle: a parameter set may hold functions in its cached properties."""
@@ -187,11 +187,11 @@ class JointRamp:
         """Quantities along the ramp."""
         return load_curves(KINDS[self.file.joint])
 
-    def pack(self) -> "JointRamp":
+    def include_files(self) -> "JointRamp":
         """The evaluator itself: it has no files."""
         return self
 
-    def install(self, folder: Path) -> "JointRamp":
+    def install_files(self, folder: Path) -> "JointRamp":
         """The evaluator itself: it has no files."""
         return self
 
@@ -221,14 +221,14 @@ class JointRamp:
         if not allowed.contains(loads[-1]):
             sample.follow({curves.load.name: np.zeros(1)})  # a refused parameter is stated first
             text = f"{curves.load.name} = {loads[-1]:g} {curves.load.unit}"
-            raise ValueError(f"{text} is outside {allowed}: {LOAD_LIMIT_TEXT}")
-        rows = np.arange(loads.size) if self.rows is None else self.rows
+            raise ValueError(f"{text} is outside {allowed}: {LOAD_INTERVAL_MEANING}")
+        rows = np.arange(loads.size) if self.load_indices is None else self.load_indices
         outputs = self._evaluate_outputs(sample, loads, rows)
         columns = {curves.load.name: loads[rows], **outputs}
         is_loaded = loads[rows] > 0.0
-        for quantity in curves.derived:
+        for quantity in curves.derived_outputs:
             column = np.zeros(rows.size)
-            column[is_loaded] = quantity.compute(sample, loads[rows][is_loaded])
+            column[is_loaded] = quantity.compute_values(sample, loads[rows][is_loaded])
             columns[quantity.variable.name] = column
         return columns
 
@@ -237,7 +237,7 @@ class JointRamp:
 
         A spline goes over log(load), of log(output), or of output/load if the output has zeros.
         """
-        name, count = self.curves.load.name, self.curves.knots
+        name, count = self.curves.load.name, self.curves.knot_count
         loaded = loads[loads > 0.0]
         if count is None or loaded.size <= count:
             found = sample.follow({name: loads[rows]})
@@ -285,14 +285,14 @@ def _make_unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
     return instance
 
 
-_opened = local()
+_thread_local_joint = local()
 """Joint that this thread has open: `key` of its study, and `joint`."""
 
 
 def _open_joint(ramp: JointRamp) -> VariableJoint:
     """Open the joint of a study, once in a thread."""
-    if getattr(_opened, "key", None) != ramp.key:
+    if getattr(_thread_local_joint, "key", None) != ramp.study_key:
         model = KINDS[ramp.file.joint].find_model(ramp.curves.model)
-        _opened.key, _opened.joint = ramp.key, VariableJoint(model, ramp.file)
-    joint: VariableJoint = _opened.joint
+        _thread_local_joint.key, _thread_local_joint.joint = ramp.study_key, VariableJoint(model, ramp.file)
+    joint: VariableJoint = _thread_local_joint.joint
     return joint

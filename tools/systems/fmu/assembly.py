@@ -8,7 +8,7 @@ from ..system import System
 from ..wiring import find_connections, find_model, find_signals
 from .model import LAG_PARAMETERS, InputSource, SystemComponent, SystemModel
 
-MIN_INTERVAL = 1e-3
+MIN_COMMUNICATION_INTERVAL = 1e-3
 """Smallest communication step [s] of the default experiment: the implicit step needs no smaller one."""
 
 
@@ -43,7 +43,7 @@ def assemble_system(system: System) -> SystemModel:
     components.sort(
         key=lambda component: (component.model.state_count > 0, not component.model.is_time_dependent)
     )
-    interval = max(system.interval, MIN_INTERVAL)
+    interval = max(system.interval, MIN_COMMUNICATION_INTERVAL)
     return SystemModel(
         system.name, system.description, components, system.stop_time, interval, system.interval
     )

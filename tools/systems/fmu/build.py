@@ -6,7 +6,7 @@ from pathlib import Path
 from jointfmu_fmu_src.archive import staging_folder, write_archive
 from jointfmu_fmu_src.joint_parts.data import EMPTY_TABLES, ParameterSplit
 from jointfmu_fmu_src.licence import licence_files
-from jointfmu_fmu_src.native.build import fmu_members
+from jointfmu_fmu_src.native.build import make_common_members
 from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries, select_source_files
 from jointfmu_fmu_src.native.data import make_fmu_data
 from jointfmu_fmu_src.native.page import render_variables_page
@@ -28,7 +28,7 @@ def make_sources(system_model: SystemModel) -> tuple[dict[str, str], str]:
     """{file name: text} of all C sources of a system's FMU, with its data, and the instantiation token."""
     model, files = system_model.make_model(), generate_sources(system_model)
     parameters = system_model.make_parameters(model)
-    parameter_split = ParameterSplit((), {}, {}, model.parameters, EMPTY_TABLES)
+    parameter_split = ParameterSplit((), {}, {}, model.parameter_class, EMPTY_TABLES)
     data = make_fmu_data(model, parameters, parameter_split, files, has_parameter_file=False)
     files |= {
         "data.h": data.make_header(),
@@ -42,7 +42,7 @@ def build_system(
     out: Path,
     versions: Sequence[str] = ("2", "3"),
     platforms: Sequence[str] = tuple(ZIG_TARGETS),
-    force: bool = False,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` with reference results.
 
@@ -57,7 +57,7 @@ def build_system(
     """
     model = system_model.make_model()
     files_out = fmu_paths(model.title, out, versions)
-    check_outputs(files_out, ARCHIVE_FILE, force)
+    check_outputs(files_out, ARCHIVE_FILE, overwrite)
     parameters = system_model.make_parameters(model)
     files, token = make_sources(system_model)
     page = render_variables_page(model, parameters, Path(__file__).with_name("page.html")).encode()
@@ -68,7 +68,7 @@ def build_system(
         binaries = compile_libraries(
             model.name, files, select_source_files(sorted(files), version), platforms
         )
-        members = fmu_members(model, parameters, version, files, token, binaries) | pages
+        members = make_common_members(model, parameters, version, files, token, binaries) | pages
         with staging_folder(target) as work:
             if proof_files is None:  # the first FMU computes the reference results of both
                 runnable = {path: content for path, content in members.items() if is_needed_to_run(path)}

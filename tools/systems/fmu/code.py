@@ -18,9 +18,9 @@ from jointfmu_fmu_src.native.data import make_data_block, split_parameters
 from .model import SystemComponent, SystemModel
 
 _COMMON_FILES = list_runtime_files(("elementary",))
-_SHARED_STEMS = {path.stem for path in _COMMON_FILES} - {"joint", "variables"} | {"elementary_tables"}
+_SHARED_FILE_STEMS = {path.stem for path in _COMMON_FILES} - {"joint", "variables"} | {"elementary_tables"}
 """File names, without suffix, of the C files that all components share."""
-_JOINT_FUNCTIONS = (
+_JOINT_C_FUNCTIONS = (
     "size",
     "free_tables",
     "tabulate",
@@ -29,7 +29,7 @@ _JOINT_FUNCTIONS = (
     "find_warnings",
     "describe_warning",
 )
-_DEFINITION_PATTERN = re.compile(
+_C_DEFINITION_PATTERN = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
 )
 _MAX_WARNINGS = 32
@@ -71,7 +71,7 @@ def _component_code(component: SystemComponent) -> dict[str, str]:
     )
     files = generate_code(component.model, component.parameters, parameter_split)
     files |= {"data.h": data.make_header(), "data.c": data.make_source()}
-    return {name: text for name, text in files.items() if name.rpartition(".")[0] not in _SHARED_STEMS}
+    return {name: text for name, text in files.items() if name.rpartition(".")[0] not in _SHARED_FILE_STEMS}
 
 
 def _add_prefix(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
@@ -81,7 +81,7 @@ def _add_prefix(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
             name
             for file, text in files.items()
             if file.endswith(".c")
-            for name in _DEFINITION_PATTERN.findall(text)
+            for name in _C_DEFINITION_PATTERN.findall(text)
         }
     )
     macros = "".join(f"#define {name} {prefix}{name}\n" for name in names)
@@ -100,7 +100,7 @@ def _add_prefix(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
 def _format_model_header(system_model: SystemModel) -> str:
     """Text of model.h: sizes of the system."""
     memory = sum(load_native_definition(p.model).history_layout.size for p in system_model.components)
-    events = sum(_event_count(p) for p in system_model.components)
+    events = sum(_count_time_events(p) for p in system_model.components)
     wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in system_model.components)
     counts = {
         "N_INPUTS": len(system_model.inputs),
@@ -120,7 +120,7 @@ def _format_model_header(system_model: SystemModel) -> str:
     return f"#ifndef JOINTFMU_MODEL_H\n#define JOINTFMU_MODEL_H\n\n{body}\n\n#endif\n"
 
 
-def _event_count(component: SystemComponent) -> int:
+def _count_time_events(component: SystemComponent) -> int:
     """Number of time events of a component."""
     return (
         len(component.model.find_event_times(component.parameters.values))
@@ -143,10 +143,10 @@ def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -
         sources = [component.sources.get(v.name, (component.name, v.name)) for v in model.inputs]
         wires += [str(reference[".".join(feed)] if feed else 0) for feed in sources]
         wires += [str(reference[f"{component.name}.{v.name}"]) for v in model.outputs]
-        events = _event_count(component)
+        events = _count_time_events(component)
         if events:
             declared.append(f"void {prefix}joint_event_times(Joint *joint, double *times);\n")
-        functions = [f"{prefix}joint_{name}" for name in _JOINT_FUNCTIONS]
+        functions = [f"{prefix}joint_{name}" for name in _JOINT_C_FUNCTIONS]
         functions.append(f"{prefix}joint_event_times" if events else "NULL")
         counts = [len(model.inputs), len(model.outputs), model.state_count, events, *offset.values()]
         rows.append("{" + ", ".join([format_string(component.name), *functions, *map(str, counts)]) + "}")
@@ -175,7 +175,7 @@ def _list_declarations(prefix: str) -> list[str]:
     """C declarations of the functions of the components with a prefix."""
     text = (RUNTIME_FOLDER / "instance" / "joint.h").read_text(encoding="utf-8")
     declarations = []
-    for name in _JOINT_FUNCTIONS:
+    for name in _JOINT_C_FUNCTIONS:
         match = re.search(rf"^\w+ (joint_{name})\([^;]*;\n", text, re.M)
         assert match
         declarations.append(match[0].replace(match[1], prefix + match[1]))

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from jointfmu.joints.model import LoadRamp, Model, Variable
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flatten_fields
 from jointfmu.quantity.declaration import group_field
 
 SYSTEM_KIND = "system"
@@ -95,14 +95,14 @@ class SystemModel:
         hidden = [
             f"{p.name}.{name}"
             for p in self.components
-            for name, _ in flat_fields(type(p.parameters.values))
+            for name, _ in flatten_fields(type(p.parameters.values))
             if name not in p.variable_parameters
         ]
         return Model(
             name=self.name,
             joint=SYSTEM_KIND,
             doc=self.doc,
-            parameters=make_dataclass("SystemParameters", sets, frozen=True, kw_only=True),
+            parameter_class=make_dataclass("SystemParameters", sets, frozen=True, kw_only=True),
             tabulate=lambda values: values,
             inputs=[with_component_name(component, v) for component, v in self.inputs],
             outputs=[with_component_name(component, v) for component, v in self.outputs],
@@ -129,7 +129,7 @@ class SystemModel:
                 for name, value in getattr(p.parameters, attribute).items()
             }
 
-        values = model.parameters(**{p.name: p.parameters.values for p in self.components})
+        values = model.parameter_class(**{p.name: p.parameters.values for p in self.components})
         starts = {f"{p.name}.{v.name}": p.start_values.get(v.name, v.start) for p, v in self.inputs}
         return ParameterFile(SYSTEM_KIND, self.name, values, collect("origins"), collect("sources"), starts)
 

@@ -20,13 +20,13 @@ from jointfmu.version import __version__
 
 from ...run.host import unpack_fmu
 from ...run.proof import exchange
-from ...run.proof.task import Task
+from ...run.proof.task import ExperimentTask
 
 OUTPUT_TOLERANCE = 5e-3
 """Tolerance of an output over its scale [1], as stated in docs/systems_explanation.md."""
-SOLVER_TOLERANCE = 1e-9
+REFERENCE_SOLVER_TOLERANCE = 1e-9
 """Relative tolerance of the solver for the references [1]."""
-HOST_TOLERANCE = 1e-5
+DEFAULT_SOLVER_TOLERANCE = 1e-5
 """Default relative tolerance of the solver of an importing tool [1].
 
 The references end where results with this and with the solver tolerance differ by more than OUTPUT_TOLERANCE:
@@ -40,7 +40,7 @@ LONG_STEP_RATIO = 10
 """Long communication step over the short one [1]."""
 STEPS_PER_INTERVAL = 3
 """Integrator steps of model exchange per interval of the system [1]; each is accepted as a load step."""
-MAX_STEPS = 100_000
+MAX_INTEGRATOR_STEPS = 100_000
 """Largest number of integrator steps [1]; longer experiments are cut."""
 ROWS_PER_FILE = 200
 """Approximate number of rows of a result file [1]."""
@@ -49,12 +49,12 @@ JUMP_RATIO = 10.0
 
 The change must also exceed OUTPUT_TOLERANCE. A stiffness jumps where the motion reverses.
 """
-JUMP_DISTANCE = 3
+JUMP_NEIGHBOUR_INTERVALS = 3
 """Intervals [1] next to a jump in which results are not compared: correct steps find a reversal slightly
 earlier or later."""
 SIGNIFICANT_DIGITS = 7
 """Significant digits of results [1]."""
-_PAGE_TEXT = """\
+_PROOF_DESCRIPTION = """\
 The proof inside this FMU
 
 The folder extra/{standard} contains the system's own experiment after FMI-LS-REF
@@ -85,15 +85,19 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
     step = min(SHORT_STEP, stop / LONG_STEP_RATIO)
     substeps = max(int(np.ceil(STEPS_PER_INTERVAL * step / interval - 1e-6)), 1)
     count = LONG_STEP_RATIO * max(
-        min(int(stop / (LONG_STEP_RATIO * step) + 1e-6), MAX_STEPS // (LONG_STEP_RATIO * substeps)), 1
+        min(
+            int(stop / (LONG_STEP_RATIO * step) + 1e-6), MAX_INTEGRATOR_STEPS // (LONG_STEP_RATIO * substeps)
+        ),
+        1,
     )
     fine = step / substeps
     try:
         times = fine * np.arange(count * substeps + 1)
         results, coarse_results = (
-            _simulate(model, fmu, times, tolerance) for tolerance in (SOLVER_TOLERANCE, HOST_TOLERANCE)
+            _simulate(model, fmu, times, tolerance)
+            for tolerance in (REFERENCE_SOLVER_TOLERANCE, DEFAULT_SOLVER_TOLERANCE)
         )
-        while (difference_row := _first_difference(model, results, coarse_results)) < results.time.size:
+        while (difference_row := _find_first_difference(model, results, coarse_results)) < results.time.size:
             count = (difference_row - 1) // (LONG_STEP_RATIO * substeps) * LONG_STEP_RATIO
             if not count:
                 raise RuntimeError(
@@ -131,20 +135,20 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
         related.append(
             RelatedFile(path, standard.EXPERIMENTS_TYPE, "experiment/validation", model.doc, labels)
         )
-    page = _PAGE_TEXT.format(
+    page = _PROOF_DESCRIPTION.format(
         standard=standard.STANDARD_NAME,
         version=standard.STANDARD_VERSION,
         own=__version__,
         short=step,
         long=LONG_STEP_RATIO * step,
-        solver=SOLVER_TOLERANCE,
+        solver=REFERENCE_SOLVER_TOLERANCE,
         fine=fine,
         tolerance=OUTPUT_TOLERANCE,
         small=MIN_SCALE_RATIO,
-        near=STEPS_PER_INTERVAL * JUMP_DISTANCE * fine,
+        near=STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS * fine,
         end=count * step,
         stop=stop,
-        host=HOST_TOLERANCE,
+        host=DEFAULT_SOLVER_TOLERANCE,
     )
     return proof_members(members, related, page)
 
@@ -157,7 +161,7 @@ def _find_scales(model: Model, results: TimeSeries) -> dict[str, float]:
     }
 
 
-def _first_difference(model: Model, fine_results: TimeSeries, coarse_results: TimeSeries) -> int:
+def _find_first_difference(model: Model, fine_results: TimeSeries, coarse_results: TimeSeries) -> int:
     """Index of the first row at which two results differ by more than OUTPUT_TOLERANCE.
 
     It is the number of rows if there is no difference. Rows near jumps are not compared.
@@ -181,10 +185,10 @@ def _first_rows(results: TimeSeries, row_count: int) -> TimeSeries:
 def _simulate(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> TimeSeries:
     """Simulate all outputs at given times by model exchange; RuntimeError with the reason of a failure."""
     names, messages = [v.name for v in model.outputs], list[str]()
-    if not exchange.has_solver():
+    if not exchange.has_cvode_solver():
         raise RuntimeError("fmpy has no solver for model exchange")
     with unpack_fmu(fmu, model_exchange=True) as (folder, _):
-        task = Task(
+        task = ExperimentTask(
             str(fmu),
             folder,
             MODEL_EXCHANGE,
@@ -207,8 +211,8 @@ def _is_smooth(results: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
         change = np.abs(np.diff(column))
         neighbour_change = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
         jumps |= (change > OUTPUT_TOLERANCE * scales[name]) & (change > JUMP_RATIO * neighbour_change)
-    near = np.convolve(jumps, np.ones(2 * STEPS_PER_INTERVAL * JUMP_DISTANCE, dtype=int))[
-        STEPS_PER_INTERVAL * JUMP_DISTANCE - 1 :
+    near = np.convolve(jumps, np.ones(2 * STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS, dtype=int))[
+        STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS - 1 :
     ]
     smooth = np.asarray(near[: results.time.size] == 0)
     smooth[0] = True  # at the start nothing has changed yet

@@ -66,16 +66,20 @@ class Hu2023(CheckedParameters):
         """Hardness H = 2.8 sigma_y [Pa], below Eq. 7 (sigma_s there)."""
         return 2.8 * self.sigma_y
 
-    def spots(self) -> SpotDistribution:
+    def spot_distribution(self) -> SpotDistribution:
         """Regimes of a spot and size distribution (Eq. 17) of the chosen reading; reference area s_min."""
-        return corrected_distribution(self) if self.reading == "corrected" else printed_distribution(self)
+        return (
+            corrected_spot_distribution(self)
+            if self.reading == "corrected"
+            else spot_distribution_as_printed(self)
+        )
 
     def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities at the log-area u [1] of the largest spot.
 
         F [N] Eq. 27, or P A_0 as printed; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22.
         """
-        s = self.spots()
+        s = self.spot_distribution()
         names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
         return {symbol: s.sum_over_spots(name, largest_log_area) for symbol, name in names.items()}
 
@@ -116,7 +120,7 @@ def elastic_pressure(law: Hu2023) -> Number:
     return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * (3.0 - D) / (4.0 - D)
 
 
-def printed_distribution(law: Hu2023) -> SpotDistribution:
+def spot_distribution_as_printed(law: Hu2023) -> SpotDistribution:
     r"""Load, stiffness and area of the spots by the law as printed: all spots are elastic.
 
     With the area s_l of the largest spot
@@ -165,7 +169,7 @@ def _smallest_spot_load(law: Hu2023) -> Number:
     return 4.0 / 3.0 * E * (s_min / np.pi) ** 1.5 / curvature_radius(law)
 
 
-def corrected_distribution(law: Hu2023) -> SpotDistribution:
+def corrected_spot_distribution(law: Hu2023) -> SpotDistribution:
     """Load, stiffness and area of the spots by the corrected law: size distribution (Eq. 17), four regimes.
 
     Load and area are sums over all spots (Eqs. 18-27). The stiffness is the sum over the spots above s_min;
@@ -182,13 +186,13 @@ def corrected_distribution(law: Hu2023) -> SpotDistribution:
     stages = [eliminate_deformation(FIRST_STAGE), eliminate_deformation(SECOND_STAGE)]
 
     def make_regime_term(
-        coefficient: Number, exponent: float, regime_index: int, first_bound: Number = None
+        coefficient: Number, exponent: float, regime_index: int, first_regime_lower_log_area: Number = None
     ) -> PowerTerm:
         """Power law coefficient (s/s_ec)^exponent of a regime, as a function of s/s_min.
 
         first_bound : log-area at which regime 0 begins
         """
-        lower = bounds[regime_index] if regime_index else first_bound
+        lower = bounds[regime_index] if regime_index else first_regime_lower_log_area
         upper = bounds[regime_index + 1] if regime_index < 3 else None
         return PowerTerm(coefficient * np.exp(-exponent * edge), exponent, lower, upper)
 
@@ -212,7 +216,7 @@ def corrected_distribution(law: Hu2023) -> SpotDistribution:
     terms: dict[str, tuple[RegimeTerm, ...]] = {
         "load": (*load, make_regime_term(H * s_ec, 1.0, 3)),
         "normal": tuple(normal),
-        "tangential": _tangential_terms(law, load, bounds),
+        "tangential": _tangential_stiffness_terms(law, load, bounds),
         "area": (PowerTerm(s_min, 1.0),),
         "elastic_area": (PowerTerm(s_min, 1.0, None, bounds[1]),),
     }
@@ -223,8 +227,8 @@ def corrected_distribution(law: Hu2023) -> SpotDistribution:
     )
 
 
-def _tangential_terms(
-    law: Hu2023, load_terms: list[PowerTerm], regime_bounds: list[Number]
+def _tangential_stiffness_terms(
+    law: Hu2023, spot_load_terms: list[PowerTerm], regime_bounds: list[Number]
 ) -> tuple[RegimeTerm, ...]:
     """Tangential stiffness k_t = 8 G' r (1 - t/(mu f))^(1/3) of the three regimes that are not fully plastic.
 
@@ -250,5 +254,5 @@ def _tangential_terms(
             lower_log_area=0.0 if term.lower_log_area is None else np.maximum(term.lower_log_area, 0.0),
             upper_log_area=np.maximum(term.upper_log_area, 0.0),
         )
-        for term in load_terms
+        for term in spot_load_terms
     )

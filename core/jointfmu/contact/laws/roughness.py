@@ -13,20 +13,20 @@ import numpy as np
 
 from ...quantity import CheckedParameters, Number, group_field, quantity_field
 from ..powerlaw import PowerTerm, SpotDistribution
-from ..roughness import MAX_HEIGHT
+from ..roughness import MAX_ROUGHNESS_HEIGHT
 from ..surface import ElasticConstants, contact_modulus, contact_shear_modulus
 from .persson import bearing_curve_log_slope, contact_area_shares
 
-FEW_SPOTS_FACTOR = 0.3
+FEW_SPOTS_STIFFNESS_FACTOR = 0.3
 """Factor C [1] of the stiffness at small load, see `RoughnessLaw.spots`; fitted to boundary elements
 (studies/validity_stiffness.py roughness)."""
-ONSET_LOAD_RATIO = 1e-6
+STIFFNESS_ONSET_LOAD_RATIO = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
-MIN_LOAD_RATIO = 0.3
+MIN_VALIDATED_LOAD_RATIO = 0.3
 """Smallest load over E* h longest_wave [1] at which the law was compared with boundary elements: below, a
 single hill is in contact (docs/validity_stiffness.md).
 """
-MAX_PRESSURE_RATIO = 1.5
+MAX_VALIDATED_PRESSURE_RATIO = 1.5
 """Largest pressure over E* h/longest_wave [1] at which the law was compared with boundary elements: above,
 the longest wave is flattened."""
 _SIZE_EXPONENT = 0.25
@@ -41,7 +41,7 @@ class RoughSurfaces:
         "m",
         "combined rms height of both surfaces, of all wavelengths up to longest_wave",
         gt=0.0,
-        le=1e3 * MAX_HEIGHT,  # the law holds at any scale; this rejects wrong units
+        le=1e3 * MAX_ROUGHNESS_HEIGHT,  # the law holds at any scale; this rejects wrong units
     )
     gamma: float = quantity_field(
         "1", "approach, divided by h, over which the pressure increases by a factor of e", gt=0.0
@@ -71,7 +71,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         """Hardness H [Pa] of the softer body."""
         return self.H
 
-    def spots(self) -> SpotDistribution:
+    def spot_distribution(self) -> SpotDistribution:
         """Quantities of the nominal area A_0 as sums of powers of the pressure p; exp(u) = p/p_1.
 
         load       : [N] p A_0
@@ -82,21 +82,30 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         """
         p, A, rho = onset_pressure(self), self.A_0, self.shear_stiffness_ratio()
         many_spots = p * A / (self.gamma * self.h)
-        few_spots = FEW_SPOTS_FACTOR * p * A / self.h * ONSET_LOAD_RATIO ** (-self.hurst / (1.0 + self.hurst))
+        few_spots = (
+            FEW_SPOTS_STIFFNESS_FACTOR
+            * p
+            * A
+            / self.h
+            * STIFFNESS_ONSET_LOAD_RATIO ** (-self.hurst / (1.0 + self.hurst))
+        )
         power = 1.0 / (1.0 + self.hurst)
         return SpotDistribution(
             reference_area=A,
             size_exponent=_SIZE_EXPONENT,
             size_prefactor=1.0 / _SIZE_EXPONENT,
             regime_terms={
-                "load": (_power_term_of_sum(p * A, 1.0),),
-                "normal": (_power_term_of_sum(many_spots, 1.0), _power_term_of_sum(few_spots, power)),
-                "tangential": (
-                    _power_term_of_sum(rho * many_spots, 1.0),
-                    _power_term_of_sum(rho * few_spots, power),
+                "load": (_make_power_term_for_sum(p * A, 1.0),),
+                "normal": (
+                    _make_power_term_for_sum(many_spots, 1.0),
+                    _make_power_term_for_sum(few_spots, power),
                 ),
-                "elastic_work": (_power_term_of_sum(self.gamma * self.h * p * A, 1.0),),
-                "plastic_work": (_power_term_of_sum(0.0, 1.0),),
+                "tangential": (
+                    _make_power_term_for_sum(rho * many_spots, 1.0),
+                    _make_power_term_for_sum(rho * few_spots, power),
+                ),
+                "elastic_work": (_make_power_term_for_sum(self.gamma * self.h * p * A, 1.0),),
+                "plastic_work": (_make_power_term_for_sum(0.0, 1.0),),
             },
             onset_log_area=0.0,
             has_spot_area=False,
@@ -111,8 +120,8 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
     def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
         """Messages, one line each, if an interval of pressures [Pa] leaves the validated range."""
         scale = contact_modulus(self.side1, self.side2) * self.h
-        min_pressure = MIN_LOAD_RATIO * scale * self.longest_wave / self.A_0
-        max_pressure = MAX_PRESSURE_RATIO * scale / self.longest_wave
+        min_pressure = MIN_VALIDATED_LOAD_RATIO * scale * self.longest_wave / self.A_0
+        max_pressure = MAX_VALIDATED_PRESSURE_RATIO * scale / self.longest_wave
         messages = []
         if lowest_pressure < min_pressure:
             messages.append(
@@ -148,7 +157,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         elastic_fraction [1]; eta_n = 0 and eta_t [1] loss factors; friction_limit = mu F [N]; slip_length
         s_0 = mu gamma h/rho [m] of the contact of many spots.
         """
-        s, p = self.spots(), onset_pressure(self) * np.exp(largest_log_area)
+        s, p = self.spot_distribution(), onset_pressure(self) * np.exp(largest_log_area)
         F, K_N = s.sum_over_spots("load", largest_log_area), s.sum_over_spots("normal", largest_log_area)
         A_r, elastic = self.real_area(p)
         flowing = np.minimum((1.0 - elastic) * A_r * self.H / F, 1.0)
@@ -170,10 +179,16 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
 
 def onset_pressure(law: RoughnessLaw) -> Number:
     """Lowest pressure p_1 [Pa] of the law, at log-area u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
-    return ONSET_LOAD_RATIO * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
+    return (
+        STIFFNESS_ONSET_LOAD_RATIO
+        * contact_modulus(law.side1, law.side2)
+        * law.h
+        * law.longest_wave
+        / law.A_0
+    )
 
 
-def _power_term_of_sum(coefficient: Number, exponent: Number) -> PowerTerm:
+def _make_power_term_for_sum(coefficient: Number, exponent: Number) -> PowerTerm:
     """Power law of a spot whose sum over all spots is coefficient exp(exponent u)."""
     return PowerTerm(coefficient * (exponent - _SIZE_EXPONENT), exponent)
 
@@ -205,4 +220,4 @@ def approach(law: RoughnessLaw, pressure: Number) -> Number:
     """Approach [m] of the two bodies from zero pressure to a pressure p [Pa]: integral of dp/k."""
     x = pressure * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
     bend = law.hurst / (1.0 + law.hurst)
-    return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS_FACTOR))
+    return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS_STIFFNESS_FACTOR))

@@ -62,12 +62,12 @@ class Yu2022(CheckedParameters):
         """Hardness H = 2.8 sigma_y [Pa], Eq. 25."""
         return 2.8 * self.sigma_y
 
-    def spots(self) -> SpotDistribution:
+    def spot_distribution(self) -> SpotDistribution:
         """Regimes of a spot and size distribution (Eqs. 44, 46); reference area a_nec, the onset of yield."""
-        return self._cached_distribution
+        return self._cached_spot_distribution
 
     @cached_property
-    def _cached_distribution(self) -> SpotDistribution:
+    def _cached_spot_distribution(self) -> SpotDistribution:
         """Size distribution (lambda times Eq. 44) and the four regimes of a spot, cached.
 
         Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
@@ -143,7 +143,7 @@ class Yu2022(CheckedParameters):
 
         F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1].
         """
-        s = self.spots()
+        s = self.spot_distribution()
         area, elastic = real_area(s, largest_log_area)
         return {
             "F": s.sum_over_spots("load", largest_log_area),

@@ -49,7 +49,7 @@ class Zhao2018(CheckedParameters):
         """Hardness H [Pa] of the softer body."""
         return self.H
 
-    def spots(self) -> SpotDistribution:
+    def spot_distribution(self) -> SpotDistribution:
         """Size distribution (Eq. 2) and regimes of a spot: elastic for t > 0, plastic for t <= 0.
 
         Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
@@ -93,7 +93,7 @@ class Zhao2018(CheckedParameters):
         C_T [N.s/m] = eta_t sqrt(mass K_T). Where no spot is elastic (u <= 0) the stiffness is zero and
         eta_n infinite.
         """
-        s = self.spots()
+        s = self.spot_distribution()
         F, A_r, K_N, K_T = (
             s.sum_over_spots(name, largest_log_area) for name in ("load", "area", "normal", "tangential")
         )

@@ -1,14 +1,14 @@
 """Bolted joint: an interface under the uneven pressure of its bolts."""
 
 from ..kind import JointKind, RoughSurface
-from .law import BoltedJoint, RoughBoltedJoint, find_contradictions
+from .law import BoltedJointParameters, RoughBoltedJointParameters, find_contradictions
 from .variables import MODELS
 
 KIND = JointKind(
     name="bolted_joint",
     package=__name__,
-    default_stem="box_specimen",
-    laws={"zhao2018": BoltedJoint, "roughness": RoughBoltedJoint},
+    default_file_stem="box_specimen",
+    laws={"zhao2018": BoltedJointParameters, "roughness": RoughBoltedJointParameters},
     models=MODELS,
     surfaces=(RoughSurface("surface"),),
     working_point=("preload", "moment"),

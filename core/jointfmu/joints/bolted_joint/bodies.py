@@ -12,7 +12,7 @@ import numpy as np
 from ...quantity import Array
 from .law import MODAL_ENTRIES, ElasticBodies
 
-MODE_DECIMALS = 4
+MODAL_DISPLACEMENT_DECIMALS = 4
 """Decimals to which the displacements of a mode are rounded [1]; the displacements are at most 1."""
 POSITION_TOLERANCE = 1e-6
 """Largest distance [m] of a friction patch from its position when the modes were computed."""

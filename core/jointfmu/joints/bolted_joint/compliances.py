@@ -12,7 +12,7 @@ STIFFNESS_UNITS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N
 COMPLIANCE_COMPONENTS = ("interface", "members", "bolts")
 MIN_INTERFACE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
-RELATIVE_ROUND_OFF = 1e-9
+MIN_BOLT_STIFFNESS_RATIO = 1e-9
 """Stiffness of the bolts over that of the joint [1] that counts as zero: round-off of the bolt positions."""
 
 
@@ -80,7 +80,7 @@ class Compliances(NamedTuple):
         """Row of a table for each direction: name, unit, stiffness of joint, interface, members and bolts (0:
         none), and the shares [1] of the last three in the compliance."""
         joint = 1.0 / self.total_compliance
-        bolts = np.where(self.bolt_stiffness > RELATIVE_ROUND_OFF * joint, self.bolt_stiffness, 0.0)
+        bolts = np.where(self.bolt_stiffness > MIN_BOLT_STIFFNESS_RATIO * joint, self.bolt_stiffness, 0.0)
         each = np.stack([joint, 1.0 / self.interface_compliance, self.member_stiffness, bolts])
         return [
             (_stiffness_name(name), unit, each[:, i].tolist(), self.compliance_shares[:, i].tolist())

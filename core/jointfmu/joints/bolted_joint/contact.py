@@ -64,7 +64,7 @@ class Contact:
                           each patch has its own pressure at tightening, and opens at its own position.
     """
 
-    curve: Curve
+    pressure_curve: Curve
     points: PressureDistribution
     patches: FrictionPatches
     has_elastic_members: bool
@@ -79,13 +79,15 @@ class Contact:
 
         If all points of a patch are open: the approach of the nearest point.
         """
-        p = self.pressure_transfer @ self.curve.derivatives(approach, 0)[0]
+        p = self.pressure_transfer @ self.pressure_curve.derivatives(approach, 0)[0]
         nearest = np.max(np.where(self.pressure_transfer > 0.0, approach, -np.inf), axis=1)
-        return np.where(p > 0.0, self.curve.inverse(p), np.minimum(nearest, self.curve.displacement[0]))
+        return np.where(
+            p > 0.0, self.pressure_curve.inverse(p), np.minimum(nearest, self.pressure_curve.displacement[0])
+        )
 
     def preloaded_approach(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m]."""
-        return self.curve.inverse(preload_pressure(joint, self.points, preload, moment))
+        return self.pressure_curve.inverse(preload_pressure(joint, self.points, preload, moment))
 
     def preload_state(self, joint: AnyBoltedJoint, preload: float, moment: float) -> PreloadState:
         """State of the tightened joint under a preload [N] of each bolt and a moment [N.m]."""
@@ -93,8 +95,10 @@ class Contact:
         if self.has_elastic_members:
             patch_approach = self.patch_approach(approach)
         else:
-            patch_approach = self.curve.inverse(preload_pressure(joint, self.patches, preload, moment))
-        return PreloadState(approach, self.curve.derivatives(approach, 0)[0], patch_approach)
+            patch_approach = self.pressure_curve.inverse(
+                preload_pressure(joint, self.patches, preload, moment)
+            )
+        return PreloadState(approach, self.pressure_curve.derivatives(approach, 0)[0], patch_approach)
 
     def evaluate_normal(
         self, preload_state: PreloadState, relative_displacement: Array, elastic_opening: Array
@@ -109,7 +113,7 @@ class Contact:
             patch_approach = preload_state.patch_approach - rigid_opening(
                 self.patches.position, relative_displacement
             )
-        pressure, stiffness = self.curve.derivatives(approach, 1)
+        pressure, stiffness = self.pressure_curve.derivatives(approach, 1)
         return NormalState(approach, pressure, stiffness, patch_approach)
 
 

@@ -236,7 +236,7 @@ class LoadStep:
         force_sum += np.sum(np.abs(bolt_force_change)) + np.sum(assembly.patch_area @ np.abs(traction))
         rigid = np.max(np.abs(rigid_opening(assembly.contact.points.position, relative_displacement)))
         force_sum += (assembly.point_area @ normal.stiffness) * rigid * CANCELLATION_RATIO
-        force_sum += assembly.nominal_area * assembly.contact.curve.closing_end_load
+        force_sum += assembly.nominal_area * assembly.contact.pressure_curve.closing_end_load
         tolerance = float(RELATIVE_TOLERANCE * force_sum)
         return TrialState(modal_coordinates, normal, increment, friction, elongation, residual, tolerance)
 
@@ -266,7 +266,7 @@ class LoadStep:
     def modal_opening(self, normal_state: NormalState) -> Array:
         """Derivative (m, k) [1] of the opening of the patches with respect to the modal coordinates."""
         contact = self.assembly.contact
-        stiffness = contact.curve.derivatives(normal_state.patch_approach, 1)[1][:, None]
+        stiffness = contact.pressure_curve.derivatives(normal_state.patch_approach, 1)[1][:, None]
         closed = stiffness > 0.0
         pressure = (contact.pressure_transfer * normal_state.stiffness) @ self.assembly.modes.opening
         return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
@@ -276,7 +276,7 @@ class LoadStep:
 
         Finite differences.
         """
-        first = self.assembly.contact.curve.displacement[0]
+        first = self.assembly.contact.pressure_curve.displacement[0]
         size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first))
         traction, columns = trial_state.friction_update.traction, []
         for motion in size * np.eye(4):

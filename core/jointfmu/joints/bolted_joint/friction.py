@@ -106,7 +106,7 @@ class FrictionLaw:
     has_elastic_members  : members are elastic: slip is in the plane for any relative displacement
     """
 
-    curve: Curve
+    pressure_curve: Curve
     stiffness_ratio: float
     friction_coefficient: float
     patches: FrictionPatches
@@ -119,8 +119,8 @@ class FrictionLaw:
 
         def build_foundation(*approaches: bytes) -> Foundation:
             onset, smallest = (np.frombuffer(each) for each in approaches)
-            heights = heights_after_liftoff(slider_heights(self.curve, onset, offsets), smallest)
-            return Foundation(self.curve, self.stiffness_ratio, self.friction_coefficient, heights)
+            heights = heights_after_liftoff(slider_heights(self.pressure_curve, onset, offsets), smallest)
+            return Foundation(self.pressure_curve, self.stiffness_ratio, self.friction_coefficient, heights)
 
         return lru_cache(maxsize=4)(build_foundation)
 
@@ -153,7 +153,7 @@ class FrictionLaw:
             onset = smallest = start
         else:
             onset = history["onset_approach"]
-            was_open = history["min_approach"] < self.curve.displacement[0]
+            was_open = history["min_approach"] < self.pressure_curve.displacement[0]
             smallest = np.where(was_open, start, np.minimum(history["min_approach"], start))
         foundation = self.foundation(onset, smallest)
         state = self._slip_state(history, tangential_increment)

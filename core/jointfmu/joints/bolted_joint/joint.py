@@ -33,14 +33,14 @@ from .kinematics import NORMAL_COMPONENTS, TANGENTIAL_COMPONENTS, point_displace
 from .law import MAX_MODES, AnyBoltedJoint, ElasticBodies, with_rigid_members
 from .outputs import (
     bolt_force_name,
-    bolt_gap_sums,
-    cycle_sums,
+    correct_sums_for_bolt_gaps,
     elastic_member_sums,
     first_moments,
-    friction_sums,
     joint_outputs,
-    normal_sums,
-    tangent_sums,
+    sum_cycle_energies,
+    sum_friction_tractions,
+    sum_normal_tractions,
+    sum_tangential_stiffness,
 )
 
 MAX_POINTS = 120
@@ -262,7 +262,7 @@ class BoltedJointSpring:
                 self.patches.area_share @ friction.slider_update.dissipated_energy
             )
             tangent = continued_motion_stiffness(self.patches, friction)
-            shear = friction_sums(self.patches, friction.traction, tangent, loss / joint.A_0)
+            shear = sum_friction_tractions(self.patches, friction.traction, tangent, loss / joint.A_0)
             added, history = (0.0, 0.0), self._join_history(q, a, friction, loss)
         else:
             shear, added = self._elastic_shear_sums(preload, normal, q)
@@ -272,17 +272,17 @@ class BoltedJointSpring:
         foundation = self.friction_law.foundation()
         sums: dict[str, Number] = {
             **first_moments(points, "tightened", preload.pressure),
-            **normal_sums(points, normal.pressure, normal.stiffness, *added),
+            **sum_normal_tractions(points, normal.pressure, normal.stiffness, *added),
             "plastic": points.area_share @ plastic,
             "elastic": points.area_share @ elastic,
             **shear,
-            **cycle_sums(foundation, self.patches.area_share, normal.patch_approach, amplitude),
+            **sum_cycle_energies(foundation, self.patches.area_share, normal.patch_approach, amplitude),
         }
         elongation = assembly.elongation(q, a)
         if state is not None:
             sums |= elastic_member_sums(joint, assembly, state, bolt_force, sums["loop_energy"])
         else:
-            sums |= bolt_gap_sums(self.bolts, joint.A_0, elongation, bolt_force, sums)
+            sums |= correct_sums_for_bolt_gaps(self.bolts, joint.A_0, elongation, bolt_force, sums)
         s_rel, theta = q.reshape(2, 3).tolist()
         outputs = joint_outputs(joint, sums, s_rel, theta, inputs.rates, np.max(normal.pressure))
         if joint.has_elastic_members:
@@ -323,8 +323,8 @@ class BoltedJointSpring:
             limit, self.joint.shear_stiffness_ratio(), derivatives, u_x, u_y
         )
         none, nodes = np.zeros_like(limit), self.points.as_patches()
-        tangent = tangent_sums(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
-        sums = friction_sums(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
+        tangent = sum_tangential_stiffness(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
+        sums = sum_friction_tractions(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
         return sums, (added_pressure, added_stiffness)
 
     def _join_history(
@@ -360,7 +360,7 @@ class BoltedJointSpring:
         Below the pressure at which the contact has closed the values at that pressure are used: the law has
         hardly an elastic spot there.
         """
-        spots = self.joint.spots()
+        spots = self.joint.spot_distribution()
         u = solve_largest_spot(self.joint, np.maximum(pressure, self.curve.closing_end_load))
         return spots.sum_over_spots("plastic_work", u), spots.sum_over_spots("elastic_work", u)
 

@@ -159,7 +159,7 @@ class BoltParameters:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        check_limits(self, self.find_limits())
+        check_limits(self, self.find_parameter_limits())
         if self.has_elastic_members:
             self._check_elastic_sides()
 
@@ -180,7 +180,7 @@ class BoltParameters:
                     f"{name} = {wrong} with sides = elastic; expected {not wrong}, {why}".lower()
                 )
 
-    def find_limits(self) -> list[ParameterLimit]:
+    def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of n_bolts and row_bolts, which depend on other parameters."""
         why = (
             "each of the two rows has at most half of n_bolts; set row_bolts = 1 if all bolts are in one row"
@@ -200,7 +200,7 @@ class BoltParameters:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BoltedJoint(BoltParameters, Zhao2018):
+class BoltedJointParameters(BoltParameters, Zhao2018):
     """Parameters of the bolted joint with the law of Zhao 2018."""
 
     plastic_damping: bool = choice_field(
@@ -209,7 +209,7 @@ class BoltedJoint(BoltParameters, Zhao2018):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughBoltedJoint(BoltParameters, RoughnessLaw):
+class RoughBoltedJointParameters(BoltParameters, RoughnessLaw):
     """Parameters of the bolted joint with the law `roughness`, which has no plastic work."""
 
     plastic_damping: ClassVar[bool] = False
@@ -219,7 +219,7 @@ class RoughBoltedJoint(BoltParameters, RoughnessLaw):
     )
 
 
-AnyBoltedJoint: TypeAlias = BoltedJoint | RoughBoltedJoint
+AnyBoltedJoint: TypeAlias = BoltedJointParameters | RoughBoltedJointParameters
 """Parameter set of a bolted joint with either interface law."""
 
 

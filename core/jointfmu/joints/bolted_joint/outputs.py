@@ -15,7 +15,7 @@ from .equilibrium import JointAssembly, TrialState
 from .friction import directional_stiffness, unit_displacements
 from .law import AnyBoltedJoint
 
-SUM_NAMES = (
+CONTACT_SUM_NAMES = (
     "tightened", "tightened_x", "tightened_y",
     "normal", "normal_x", "normal_y",
     "normal_stiffness", "normal_about_x", "normal_about_y",
@@ -46,11 +46,11 @@ Rigid members: normal_stiffness and normal_about_* are without the stiffness of 
 Elastic members: they and the shear and torsional stiffness are for the complete joint, without the stiffness
 of all bolts between rigid members.
 """
-_TRACTION_SUMS, _SHEAR_STIFFNESS_SUMS = (
+_TRACTION_SUM_NAMES, _SHEAR_STIFFNESS_SUMS = (
     ("traction_x", "traction_y", "torsion"),
     ("shear_stiffness_x", "shear_stiffness_y", "torsional_stiffness"),
 )
-_ELONGATION_SUMS = SUM_NAMES[-3:]
+_ELONGATION_SUM_NAMES = CONTACT_SUM_NAMES[-3:]
 
 
 def first_moments(points: PressureDistribution, sum_name: str, point_values: Array) -> dict[str, Number]:
@@ -63,14 +63,16 @@ def first_moments(points: PressureDistribution, sum_name: str, point_values: Arr
     }
 
 
-def second_moments(points: PressureDistribution, sum_prefix: str, point_values: Array) -> dict[str, Number]:
+def second_moments(
+    points: PressureDistribution, sum_name_prefix: str, point_values: Array
+) -> dict[str, Number]:
     """Area-weighted second moments of the values (n) of the points, about x (times y^2) and y (times x^2)."""
     each = points.area_share * point_values
     x, y = points.position.T
-    return {f"{sum_prefix}about_x": each @ y**2, f"{sum_prefix}about_y": each @ x**2}
+    return {f"{sum_name_prefix}about_x": each @ y**2, f"{sum_name_prefix}about_y": each @ x**2}
 
 
-def normal_sums(
+def sum_normal_tractions(
     points: PressureDistribution,
     pressure: Array,
     stiffness: Array,
@@ -94,7 +96,7 @@ def normal_sums(
     }
 
 
-def friction_sums(
+def sum_friction_tractions(
     patches: FrictionPatches, traction: Array, tangent: Sequence[Number], loss: Number
 ) -> dict[str, Number]:
     """Area-weighted sums of the tractions (m, 3) [Pa] of the patches, with tangent and loss {name: value}.
@@ -102,16 +104,16 @@ def friction_sums(
     tangent, loss : (3) [Pa/m] and [J/m2] sums over the patches
     """
     sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
-    named = [*zip(_TRACTION_SUMS, sums, strict=True), *zip(_SHEAR_STIFFNESS_SUMS, tangent, strict=True)]
+    named = [*zip(_TRACTION_SUM_NAMES, sums, strict=True), *zip(_SHEAR_STIFFNESS_SUMS, tangent, strict=True)]
     return {**dict(named), "loss": loss}
 
 
-def tangent_sums(patches: FrictionPatches, tangent: Array) -> list[Number]:
+def sum_tangential_stiffness(patches: FrictionPatches, tangent: Array) -> list[Number]:
     """Tangential stiffness per area for s_x, s_y [Pa/m] and theta_z [Pa.m], from tangents (m, 6) [Pa/m]."""
     return [patches.area_share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
 
 
-def cycle_sums(
+def sum_cycle_energies(
     foundation: Foundation, area_share: Array, approach: Array, amplitude: Array
 ) -> dict[str, Number]:
     """Energy loss and elastic energy per area [J/m2] of friction cycles, summed over the patches.
@@ -122,7 +124,7 @@ def cycle_sums(
     return {"loop_work": area_share @ loss, "loop_energy": area_share @ stored}
 
 
-def bolt_gap_sums(
+def correct_sums_for_bolt_gaps(
     bolt_springs: BoltSprings,
     nominal_area: float,
     elongation: Array,
@@ -140,7 +142,7 @@ def bolt_gap_sums(
     )
     x, y = bolt_springs.position.T
     return {
-        **dict(zip(_ELONGATION_SUMS, [np.sum(gap), gap @ x, gap @ y], strict=True)),
+        **dict(zip(_ELONGATION_SUM_NAMES, [np.sum(gap), gap @ x, gap @ y], strict=True)),
         "normal_stiffness": contact_sums["normal_stiffness"] - np.sum(missing) / nominal_area,
         "normal_about_x": contact_sums["normal_about_x"] - (missing @ y**2) / nominal_area,
         "normal_about_y": contact_sums["normal_about_y"] - (missing @ x**2) / nominal_area,
@@ -176,7 +178,7 @@ def elastic_member_sums(
     elastic = joint.bolt_stiffness * (elongation @ elongation) - joint.bolt_stiffness * (gap @ gap)
     energy = 0.5 * (modes.stiffness @ trial_state.modal_coordinates**2 + elastic)
     return {
-        **dict(zip(_ELONGATION_SUMS, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
+        **dict(zip(_ELONGATION_SUM_NAMES, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
         "shear_stiffness_x": K[0] / area,
         "shear_stiffness_y": K[1] / area,
         "normal_stiffness": (K[2] - bolt_stiffness) / area,
@@ -223,7 +225,7 @@ def joint_outputs(
         for part in _damping_forces(area, contact_sums, C_t, C_n, rates)
     ]
     tension = _bolt_forces_and_moments(bolts, joint.pattern.bolt_position_means, displacement[2], rotation)
-    stretch_force = [joint.bolt_stiffness * contact_sums[name] for name in _ELONGATION_SUMS]
+    stretch_force = [joint.bolt_stiffness * contact_sums[name] for name in _ELONGATION_SUM_NAMES]
     f_x, f_y, m_z = (-area * contact_sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio_or_zero(contact_sums["loop_work"], 2.0 * np.pi * contact_sums["loop_energy"])
     K_zz = np.maximum(area * contact_sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off

@@ -11,10 +11,10 @@ from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .joint import BoltedJointSpring, JointInputs
-from .law import AnyBoltedJoint, BoltedJoint, working_preload
+from .law import AnyBoltedJoint, BoltedJointParameters, working_preload
 from .outputs import bolt_force_name
 
-LINEAR_FRICTION_SHARE = 0.5**0.5
+MAX_FRICTION_UTILIZATION_WITHOUT_HISTORY = 0.5**0.5
 """Shear force over friction limit [1] at which, without history, a linear force would reach the limit."""
 _MIN_RAMP_END_PRELOAD = 30e3
 """Smallest preload at the end of the ramp [N], if none is stated: bolts are tightened close to yield."""
@@ -56,7 +56,7 @@ def _max_row_moment(joint: Any, preload: Number) -> Number:
     return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
 
 
-def _make_variant(model: Model, joint: AnyBoltedJoint) -> Model:
+def _make_model_variant(model: Model, joint: AnyBoltedJoint) -> Model:
     """Model for a parameter set: outputs of bolt forces, load cycle with a preload above the embedding."""
     assert model.load_cycle
     loop = replace(
@@ -96,7 +96,7 @@ MODELS = (
         name="BoltedJoint",
         joint="bolted_joint",
         doc="Bolted joint under uneven pressure: motion in, force out",
-        parameters=BoltedJoint,
+        parameter_class=BoltedJointParameters,
         tabulate=BoltedJointSpring.for_joint,
         inputs=(
             Variable("preload", "N", "preload of each bolt (bolt force at tightening)", 1e4, minimum=0.0),
@@ -188,7 +188,10 @@ MODELS = (
             ValidityLimit("p_max", lambda j, end, v: (-math.inf, end[1]), EXTRAPOLATION_WARNING),
             ValidityLimit(
                 "slip",
-                lambda j, end, v: (-math.inf, select(j.memory, 2.0, LINEAR_FRICTION_SHARE)),
+                lambda j, end, v: (
+                    -math.inf,
+                    select(j.memory, 2.0, MAX_FRICTION_UTILIZATION_WITHOUT_HISTORY),
+                ),
                 "the shear force exceeds the friction limit (zero if the joint is open); without memory "
                 "there is no slip",
             ),
@@ -207,6 +210,6 @@ MODELS = (
             **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _NORMAL_INPUTS),
         },
         fixed_parameters=("pattern", "plate", "field", "bodies"),
-        make_variant=_make_variant,
+        make_variant=_make_model_variant,
     ),
 )

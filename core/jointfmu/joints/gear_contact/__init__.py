@@ -4,7 +4,7 @@ import math
 
 from ..kind import JointKind, RoughSurface
 from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable
-from .spring import GearContact, GearContactSpring, RoughGearContact
+from .spring import GearContactParameters, GearContactSpring, RoughGearContactParameters
 
 _RAMP_PRESSURE_RATIO = 0.05
 """Mean pressure over the hardness [1] at the end of the load ramp, or beyond: at twice a stated load."""
@@ -14,7 +14,7 @@ MODELS = (
         name="GearContact",
         joint="gear_contact",
         doc="Tooth contact of a gear: force in, motion out",
-        parameters=GearContact,
+        parameter_class=GearContactParameters,
         tabulate=GearContactSpring.tabulate,
         inputs=(Variable("f", "N", "normal load of the tooth contact", 1e3),),
         outputs=(
@@ -47,8 +47,8 @@ MODELS = (
 KIND = JointKind(
     name="gear_contact",
     package=__name__,
-    default_stem="beveloid",
-    laws={"yu2022": GearContact, "roughness": RoughGearContact},
+    default_file_stem="beveloid",
+    laws={"yu2022": GearContactParameters, "roughness": RoughGearContactParameters},
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
 )

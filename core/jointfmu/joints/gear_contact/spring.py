@@ -14,16 +14,16 @@ from ...quantity import Array, Number
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearContact(Yu2022):
+class GearContactParameters(Yu2022):
     """Parameters of the gear contact: those of the law of Yu 2022."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughGearContact(RoughnessLaw):
+class RoughGearContactParameters(RoughnessLaw):
     """Parameters of the gear contact with the law `roughness`."""
 
 
-ContactParameters: TypeAlias = GearContact | RoughGearContact
+ContactParameters: TypeAlias = GearContactParameters | RoughGearContactParameters
 """Parameter set of a gear contact with either law."""
 
 

@@ -3,7 +3,7 @@
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ..kind import JointKind, RoughSurface
 from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable, VariableValues
-from .spring import GearMesh, GearMeshSpring, RoughGearMesh
+from .spring import GearMeshParameters, GearMeshSpring, RoughGearMeshParameters
 
 _ANGLE_INPUTS = ("phi1", "phi2")
 _RAMP_DEFLECTION_RATIO = 0.3
@@ -22,7 +22,7 @@ MODELS = (
         name="GearMesh",
         joint="gear_mesh",
         doc="Mesh of two gear wheels with rough flanks and backlash: motion in, torque out",
-        parameters=GearMesh,
+        parameter_class=GearMeshParameters,
         tabulate=GearMeshSpring.tabulate,
         inputs=(
             Variable("phi1", "rad", "angle of wheel 1; wheels roll with r_b1 phi1 + r_b2 phi2 = 0"),
@@ -58,8 +58,8 @@ MODELS = (
 KIND = JointKind(
     name="gear_mesh",
     package=__name__,
-    default_stem="beveloid_pair",
-    laws={"yu2022": GearMesh, "roughness": RoughGearMesh},
+    default_file_stem="beveloid_pair",
+    laws={"yu2022": GearMeshParameters, "roughness": RoughGearMeshParameters},
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
 )

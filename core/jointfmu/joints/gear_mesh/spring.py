@@ -19,7 +19,7 @@ CLOSING_STEPS = 96
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearWheels:
+class GearWheelParameters:
     """Geometry, inertia, damping and tooth stiffness of the two wheels."""
 
     r_b1: float = quantity_field("m", "base radius of wheel 1", gt=0.0)
@@ -56,16 +56,16 @@ class GearWheels:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearMesh(GearWheels, Yu2022):
+class GearMeshParameters(GearWheelParameters, Yu2022):
     """Parameters of the gear mesh with flanks by the law of Yu 2022."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughGearMesh(GearWheels, RoughnessLaw):
+class RoughGearMeshParameters(GearWheelParameters, RoughnessLaw):
     """Parameters of the gear mesh with flanks by the law `roughness`."""
 
 
-MeshParameters: TypeAlias = GearMesh | RoughGearMesh
+MeshParameters: TypeAlias = GearMeshParameters | RoughGearMeshParameters
 """Parameter set of a gear mesh with either law."""
 
 
@@ -180,7 +180,7 @@ def mesh_outputs(
     load: Number,
     stiffness: Number,
     energy: Number,
-    closing_end: Number,
+    closing_end_deflection: Number,
 ) -> dict[str, Number]:
     """Outputs of the gear mesh at a motion (phi1, w1, phi2, w2).
 
@@ -192,7 +192,7 @@ def mesh_outputs(
     count, slope = pairs_in_contact(
         mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, mesh_phase(mesh, motion)
     )
-    contact_factor = smooth_step(np.abs(s) / closing_end)
+    contact_factor = smooth_step(np.abs(s) / closing_end_deflection)
     force = count * load * np.sign(s) + mesh.d * contact_factor * (mesh.r_b1 * w1 + mesh.r_b2 * w2)
     w = mobility(mesh.inertia1, mesh.r_b1) + mobility(mesh.inertia2, mesh.r_b2)
     at_once, side_by_side = largest_stable_steps(count * stiffness, mesh.d * contact_factor, w)

@@ -1,19 +1,19 @@
 """Harmonic drive: torsional stiffness, hysteresis, friction, lost motion and kinematic error."""
 
 from ..kind import JointKind, RoughSurface
-from .law import HarmonicDrive, RoughHarmonicDrive
-from .prescribed_midline import CatalogueDrive, TableDrive
+from .law import HarmonicDriveParameters, RoughHarmonicDriveParameters
+from .prescribed_midline import CatalogueDriveParameters, TableDriveParameters
 from .variables import MODELS
 
 KIND = JointKind(
     name="harmonic_drive",
     package=__name__,
-    default_stem="cd_14_100",
+    default_file_stem="cd_14_100",
     laws={
-        "hu2023": HarmonicDrive,
-        "roughness": RoughHarmonicDrive,
-        "catalogue": CatalogueDrive,
-        "table": TableDrive,
+        "hu2023": HarmonicDriveParameters,
+        "roughness": RoughHarmonicDriveParameters,
+        "catalogue": CatalogueDriveParameters,
+        "table": TableDriveParameters,
     },
     extract_law=lambda drive: drive.law,
     models=MODELS,

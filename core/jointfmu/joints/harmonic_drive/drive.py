@@ -39,7 +39,7 @@ MAX_TEMPERATURE_COEFFICIENT = 0.2
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drive(ABC):
+class DriveParameters(ABC):
     """Parameters of a harmonic drive except those of its midline: torque over wind-up without hysteresis."""
 
     ratio: float = quantity_field(
@@ -156,7 +156,7 @@ class Drive(ABC):
 
     def __post_init__(self) -> None:
         check_fields(self)
-        check_limits(self, self.find_limits())
+        check_limits(self, self.find_parameter_limits())
 
     @property
     @abstractmethod
@@ -192,7 +192,7 @@ class Drive(ABC):
         """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper (K_TS_pair)."""
         return 1.0
 
-    def find_limits(self) -> list[ParameterLimit]:
+    def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
         any_sign = Interval.from_bounds(gt=np.minimum(2.0 * self.ratio, 0.0))
         positive_friction = Interval.from_bounds(ge=0.0, le=self.friction_coulomb - self.friction_2)
@@ -203,17 +203,17 @@ class Drive(ABC):
             ),
         ]
 
-    def find_table_limits(self) -> list[ParameterLimit]:
+    def find_table_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of parameters, besides `find_limits`, that a table up to the last torque requires."""
         return []
 
 
-def error_amplitudes(drive: Drive) -> list[Number]:
+def error_amplitudes(drive: DriveParameters) -> list[Number]:
     """Amplitudes [rad] of the kinematic error, one for each of KINEMATIC_ERROR_HARMONICS."""
     return [getattr(drive, f"error_{n}") for n in KINEMATIC_ERROR_HARMONICS]
 
 
-def kinematic_error(drive: Drive, phi1: Number) -> tuple[Number, Number, Number]:
+def kinematic_error(drive: DriveParameters, phi1: Number) -> tuple[Number, Number, Number]:
     """Kinematic error (...) [rad] at angles phi1 (...) [rad]; its first [1] and second derivative [1/rad]."""
     error = slope = bend = 0.0
     for n, amplitude in zip(KINEMATIC_ERROR_HARMONICS, error_amplitudes(drive), strict=True):
@@ -223,7 +223,7 @@ def kinematic_error(drive: Drive, phi1: Number) -> tuple[Number, Number, Number]
     return error, slope, bend
 
 
-def lost_motion_angle(drive: Drive, torque: Number) -> tuple[Number, Number, Number]:
+def lost_motion_angle(drive: DriveParameters, torque: Number) -> tuple[Number, Number, Number]:
     """Angle phi_p (...) [rad] of the lost motion at torques (...) [N.m].
 
     Returns also its first [rad/(N.m)] and second derivative [rad/(N.m)2].

@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
 from ...quantity import Array, Number
-from .drive import FRICTION_HARMONICS, PLAY_WIDTH_RATIO, Drive
+from .drive import FRICTION_HARMONICS, PLAY_WIDTH_RATIO, DriveParameters
 from .hysteresis import slider_shares
 
 FRICTION_SLIDERS = 8
@@ -51,17 +51,17 @@ PRIOR_ROTATION_TIME = 0.1
 """Time [s] for which a drive is assumed to have rotated at its initial speed before initialization."""
 
 
-def dry_friction_factor(drive: Drive, temperature: Number) -> Number:
+def dry_friction_factor(drive: DriveParameters, temperature: Number) -> Number:
     """Factor (...) [1] by which temperatures (...) [K] change the limit of dry friction."""
     return drive.temperature_factor * _temperature_factor(drive.dry_temperature_coefficient, temperature)
 
 
-def _temperature_factor(coefficient: Number, temperature: Number) -> Number:
-    return np.exp(-coefficient * (temperature - REFERENCE_TEMPERATURE))
+def _temperature_factor(temperature_coefficient: Number, temperature: Number) -> Number:
+    return np.exp(-temperature_coefficient * (temperature - REFERENCE_TEMPERATURE))
 
 
 def friction_limits(
-    drive: Drive,
+    drive: DriveParameters,
     w1: Number,
     tau: Number,
     temperature: Number = REFERENCE_TEMPERATURE,
@@ -91,7 +91,7 @@ def friction_limits(
     return positive, negative
 
 
-def friction_ripple(drive: Drive, phi1: Number) -> Number:
+def friction_ripple(drive: DriveParameters, phi1: Number) -> Number:
     """Periodic part (...) [N.m] of the dry friction at angles phi1 (...) [rad] of the wave generator."""
     ripple = 0.0
     for n in FRICTION_HARMONICS:
@@ -100,7 +100,7 @@ def friction_ripple(drive: Drive, phi1: Number) -> Number:
     return ripple
 
 
-def viscous_torque(drive: Drive, w1: Number, temperature: Number = REFERENCE_TEMPERATURE) -> Number:
+def viscous_torque(drive: DriveParameters, w1: Number, temperature: Number = REFERENCE_TEMPERATURE) -> Number:
     """Viscous friction torque (...) [N.m] at speeds w1 (...) [rad/s] and temperatures (...) [K]."""
     factor = drive.temperature_factor * _temperature_factor(
         drive.viscous_temperature_coefficient, temperature
@@ -108,7 +108,7 @@ def viscous_torque(drive: Drive, w1: Number, temperature: Number = REFERENCE_TEM
     return factor * drive.friction_viscous * w1
 
 
-def sticking_stiffness(drive: Drive) -> Number:
+def sticking_stiffness(drive: DriveParameters) -> Number:
     """Total spring stiffness [N.m/rad] of the sliders: M/presliding.
 
     M is the larger limit at zero speed, rated torque and REFERENCE_TEMPERATURE.
@@ -121,7 +121,7 @@ class FrictionSliders(Sliders):
     """Sliders of the dry friction of a drive; `stiffness` (n) [N.m/rad], all zero without dry friction."""
 
     @classmethod
-    def for_drive(cls, drive: Drive) -> "FrictionSliders":
+    def for_drive(cls, drive: DriveParameters) -> "FrictionSliders":
         """Sliders for the parameters of a drive."""
         return cls(float(sticking_stiffness(drive)) * SLIDER_STIFFNESS_SHARES)
 

@@ -26,19 +26,22 @@ from ...mechanics.curve import Curve
 from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
 from ...quantity import Array, Number
-from .drive import Drive
-from .law import ContactPairDrive, pair_log_area
+from .drive import DriveParameters
+from .law import ContactPairDriveParameters, pair_log_area
 
 HYSTERESIS_SLIDERS = 44
 """Number of sliders: virgin curve within 0.2 % of M_f, loop area within 1 % for amplitudes above 0.1 M_f."""
-_SHARE_GRADING, _SHARE_GRADING_POWER = 3.5, 2.5
+_SLIDER_SHARE_GRADING_RATE, _SLIDER_SHARE_GRADING_EXPONENT = 3.5, 2.5
 """Grading of REMAINING_FRICTION_SHARES [1]: fine where the first sliders slip, coarse where the last do."""
 _MOBILISED_FRICTION_SHARES = np.expm1(
-    _SHARE_GRADING * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS
-) / np.expm1(_SHARE_GRADING)
+    _SLIDER_SHARE_GRADING_RATE * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS
+) / np.expm1(_SLIDER_SHARE_GRADING_RATE)
 HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDERS,), "wind_up": (), "loss": ()})
 """History variables of the hysteresis: slider torques [N.m], wind-up [rad], loss [J]."""
-REMAINING_FRICTION_SHARES = (*((1.0 - _MOBILISED_FRICTION_SHARES) ** _SHARE_GRADING_POWER).tolist(), 0.0)
+REMAINING_FRICTION_SHARES = (
+    *((1.0 - _MOBILISED_FRICTION_SHARES) ** _SLIDER_SHARE_GRADING_EXPONENT).tolist(),
+    0.0,
+)
 """Values of s [1], from 1 down to 0, that separate the sliders."""
 WIND_UP_TOLERANCE = 4e-16
 """Change of the wind-up [1], over the sum of wind-up and M_f/K_h, below which its iteration stops."""
@@ -50,38 +53,38 @@ LIMIT_TOLERANCE, MAX_LIMIT_ITERATIONS = 1e-13, 400
 would mean that the loop can hardly open as far as required."""
 
 
-def stiffness_exponent(drive: Drive) -> Number:
+def stiffness_exponent(drive: DriveParameters) -> Number:
     """Exponent m [1] of K_N ~ P^m of the contact pair at zero torque; 1 for a drive without a contact pair.
 
     m = 1 holds for rough surfaces at any pressure and for Hu's law: T_h = M_f (1 - exp(-K_h phi/M_f)), as in
     Dahl's friction model.
     """
-    if not isinstance(drive, ContactPairDrive):
+    if not isinstance(drive, ContactPairDriveParameters):
         return 1.0
-    spots, u = drive.pair_law.spots(), pair_log_area(drive, 0.0)
+    spots, u = drive.pair_law.spot_distribution(), pair_log_area(drive, 0.0)
     power = spots.log_sum_over_spots("load", 0.0)[1]
-    return spots.sum_derivative("normal", u) / (spots.sum_over_spots("normal", u) * power)
+    return spots.sum_over_spots_derivative("normal", u) / (spots.sum_over_spots("normal", u) * power)
 
 
 def slider_shares(
-    exponent: Number, remaining_shares: Sequence[float] = REMAINING_FRICTION_SHARES
+    exponent: Number, remaining_friction_shares: Sequence[float] = REMAINING_FRICTION_SHARES
 ) -> tuple[list[Number], list[Number]]:
     """Share of each slider in the stiffness K_h and in the friction limit M_f [1]; the sum of each is 1.
 
     exponent         : exponent m of K_N ~ P^m
     remaining_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
     """
-    rate = [remaining**exponent if remaining else 0.0 for remaining in remaining_shares]
+    rate = [remaining**exponent if remaining else 0.0 for remaining in remaining_friction_shares]
     used_shares = [
         1.0 - remaining - _relative_wind_up(remaining, exponent) * r if remaining else 1.0
-        for remaining, r in zip(remaining_shares, rate, strict=True)
+        for remaining, r in zip(remaining_friction_shares, rate, strict=True)
     ]
     return [a - b for a, b in pairwise(rate)], [b - a for a, b in pairwise(used_shares)]
 
 
-def _relative_wind_up(remaining_share: float, exponent: Number) -> Number:
+def _relative_wind_up(remaining_friction_share: float, exponent: Number) -> Number:
     """K_h phi/M_f [1] on the virgin curve at the remaining share s [1]: (1 - s^(1 - m))/(1 - m)."""
-    logarithm = float(np.log(remaining_share))
+    logarithm = float(np.log(remaining_friction_share))
     return -logarithm * exprel((1.0 - exponent) * logarithm)
 
 
@@ -96,7 +99,7 @@ class HysteresisSliders(Sliders):
     friction_limit: Array
 
     @classmethod
-    def for_drive(cls, drive: Drive, curve: Curve) -> "HysteresisSliders":
+    def for_drive(cls, drive: DriveParameters, curve: Curve) -> "HysteresisSliders":
         """Sliders for a drive with the odd midline `curve`.
 
         Raises ValueError if no loop through rated torque can open by hysteresis_loss.
@@ -175,7 +178,7 @@ class HysteresisSliders(Sliders):
         return phi
 
 
-def _initial_stiffness(drive: Drive, curve: Curve, half_loop_torque: float) -> float:
+def _initial_stiffness(drive: DriveParameters, curve: Curve, half_loop_torque: float) -> float:
     """Initial stiffness K_h [N.m/rad] of the hysteresis.
 
     half_loop_torque : [N.m] torque of the midline at half of hysteresis_loss
@@ -187,7 +190,7 @@ def _initial_stiffness(drive: Drive, curve: Curve, half_loop_torque: float) -> f
 
 
 def _find_limit_torque(
-    drive: Drive, curve: Curve, unit_sliders: HysteresisSliders, half_loop_torque: float
+    drive: DriveParameters, curve: Curve, sliders_with_unit_limit: HysteresisSliders, half_loop_torque: float
 ) -> float:
     """Friction limit M_f [N.m] for which the loop through rated torque opens by hysteresis_loss.
 
@@ -203,7 +206,9 @@ def _find_limit_torque(
     for _ in range(MAX_LIMIT_ITERATIONS):
         if limit == 0.0:
             return limit
-        sliders = replace(unit_sliders, friction_limit=limit * unit_sliders.friction_limit)
+        sliders = replace(
+            sliders_with_unit_limit, friction_limit=limit * sliders_with_unit_limit.friction_limit
+        )
         previous = limit
         opening = sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss)
         limit *= half_loop_torque / opening if opening > 0.0 else np.inf

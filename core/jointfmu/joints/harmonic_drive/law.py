@@ -9,16 +9,16 @@ from ...contact.laws.hu2023 import Hu2023, elastic_pressure
 from ...contact.laws.roughness import RoughnessLaw, RoughSurfaces
 from ...contact.surface import ArealSurface, ElasticConstants, ElasticPlasticConstants
 from ...quantity import Interval, Number, ParameterLimit, choice_field, group_field, quantity_field, select
-from .drive import Drive, lost_motion_angle
+from .drive import DriveParameters, lost_motion_angle
 
 SATURATION_TORQUE_RATIO = 2.0
 """T_m over rated torque [1]: the contact pressure tends to its value at T_m for larger torques."""
-_SCAN_LENGTH = 0.5e-3
+_SURFACE_SCAN_LENGTH = 0.5e-3
 """Scan length [m] of the profile in Hu 2023, section 2.3."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactPairDrive(Drive):
+class ContactPairDriveParameters(DriveParameters):
     """Parameters of a harmonic drive whose stiffness follows from the contact of flexspline and bearing.
 
     The parameters of the interface law are added by subclasses.
@@ -87,7 +87,7 @@ class ContactPairDrive(Drive):
         """Peak contact pressure (...) [Pa] at torques (...) [N.m]."""
         return peak_pressure(self, torque)[0]
 
-    def find_limits(self) -> list[ParameterLimit]:
+    def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
         no_contact = "above it the pair has no contact at zero torque"
         zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
@@ -97,7 +97,7 @@ class ContactPairDrive(Drive):
                 self.eccentricity_loss, 1e-290
             )
         return [
-            *super().find_limits(),
+            *super().find_parameter_limits(),
             ParameterLimit(
                 "rated_pressure", Interval.from_bounds(gt=zero), "it must exceed zero_torque_pressure"
             ),
@@ -118,7 +118,7 @@ class ContactPairDrive(Drive):
 
 
 @dataclass(frozen=True, kw_only=True)
-class HarmonicDrive(ContactPairDrive):
+class HarmonicDriveParameters(ContactPairDriveParameters):
     """Parameters of the harmonic drive with the law of Hu 2023, read as printed."""
 
     surface: ArealSurface = group_field("equivalent rough surface of the contact pair")
@@ -162,7 +162,7 @@ class HarmonicDrive(ContactPairDrive):
 
         Its base radius r_m is half of the scan length: with r_m of the paper no spot would have stiffness.
         """
-        surface = replace(self.surface, r_m=0.5 * _SCAN_LENGTH)
+        surface = replace(self.surface, r_m=0.5 * _SURFACE_SCAN_LENGTH)
         return replace(self.pair_law, surface=surface, A_0=self.A_0, reading="corrected")
 
     @property
@@ -178,7 +178,7 @@ class HarmonicDrive(ContactPairDrive):
         """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper: drive_scale."""
         return self.drive_scale
 
-    def find_table_limits(self) -> list[ParameterLimit]:
+    def find_table_parameter_limits(self) -> list[ParameterLimit]:
         """Intervals for which all spots stay elastic up to max_torque, as the printed law assumes."""
         highest = peak_pressure(self, self.max_torque)[0]
         law = self.pair_law
@@ -191,7 +191,7 @@ class HarmonicDrive(ContactPairDrive):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughHarmonicDrive(RoughSurfaces, ContactPairDrive):
+class RoughHarmonicDriveParameters(RoughSurfaces, ContactPairDriveParameters):
     """Parameters of the harmonic drive with the law `roughness`; K_TS has no fitted scale factor."""
 
     H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
@@ -223,7 +223,7 @@ class RoughHarmonicDrive(RoughSurfaces, ContactPairDrive):
         return self.radius**2
 
 
-def peak_pressure(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
+def peak_pressure(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
     """Peak contact pressure (...) [Pa] at torques (...) [N.m], and its derivative [Pa/(N.m)].
 
     Pressure at the major axis and the opening of the cup,
@@ -245,48 +245,48 @@ def peak_pressure(drive: ContactPairDrive, torque: Number) -> tuple[Number, Numb
     def smoothed_torque(squared_torque: Number) -> Number:
         return np.maximum(np.sqrt(squared_torque + smoothing**2), smoothing)  # if smoothing**2 underflows
 
-    def smoothed_torque_growth(squared_torque: Number) -> Number:
+    def smoothed_torque_increase(squared_torque: Number) -> Number:
         return squared_torque / (smoothed_torque(squared_torque) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
-    factor = (rated**2 - zero**2) / smoothed_torque_growth(saturate_torque(drive.rated_torque)[0])
+    factor = (rated**2 - zero**2) / smoothed_torque_increase(saturate_torque(drive.rated_torque)[0])
     square, square_slope = saturate_torque(torque)
-    unreduced = np.sqrt(zero**2 + factor * smoothed_torque_growth(square))
+    unreduced = np.sqrt(zero**2 + factor * smoothed_torque_increase(square))
     return unreduced - drive.peak_pressure_reduction, 0.5 * factor * square_slope / smoothed_torque(
         square
     ) / unreduced
 
 
-def pair_log_area(drive: ContactPairDrive, torque: Number) -> Number:
+def pair_log_area(drive: ContactPairDriveParameters, torque: Number) -> Number:
     """Log-area u (...) [1] of the largest spot, at the mean pressure of the pair at torques (...) [N.m]."""
     law = drive.pair_law
-    start, power = law.spots().log_sum_over_spots("load", 0.0)
+    start, power = law.spot_distribution().log_sum_over_spots("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
 
 
-def pair_stiffness(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
+def pair_stiffness(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_TS (...) [N.m/rad] of the contact pair at torques (...) [N.m], and dK_TS/dT [1/rad].
 
     Computed from the mean pressure: the tangential stiffness of a point is nearly proportional to its
     pressure.
     """
     peak, pressure_slope = peak_pressure(drive, torque)
-    spots, u = drive.pair_law.spots(), pair_log_area(drive, torque)
+    spots, u = drive.pair_law.spot_distribution(), pair_log_area(drive, torque)
     power = spots.log_sum_over_spots("load", 0.0)[1]
-    slope = spots.sum_derivative("tangential", u) / (power * peak)
+    slope = spots.sum_over_spots_derivative("tangential", u) / (power * peak)
     return drive.pair_stiffness_factor * spots.sum_over_spots(
         "tangential", u
     ), drive.pair_stiffness_factor * slope * pressure_slope
 
 
-def drive_stiffness(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
+def drive_stiffness(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
     pair, growth = pair_stiffness(drive, torque)
     total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)
     return total, (total / pair) ** 2 * growth
 
 
-def stiffness_with_play(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
+def stiffness_with_play(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_WTS (...) [N.m/rad] of the law and the lost motion in series, and dK_WTS/dT [1/rad]."""
     K, growth = drive_stiffness(drive, torque)
     _, compliance, change = lost_motion_angle(drive, torque)

@@ -22,12 +22,12 @@ from ...quantity import (
     select,
     series_field,
 )
-from .drive import PLAY_WIDTH_RATIO, Drive, lost_motion_angle
+from .drive import PLAY_WIDTH_RATIO, DriveParameters, lost_motion_angle
 
-DEFAULT_CORNER_RATIO = 0.04
+DEFAULT_CORNER_HALF_WIDTH_RATIO = 0.04
 """Default half-width of a smoothed corner over its wind-up [1]: for catalogue drives the angle at a corner is
 then within 0.4 % of the lines."""
-MIN_CORNER_RATIO = 1e-6
+MIN_CORNER_HALF_WIDTH_RATIO = 1e-6
 """Smallest half-width [1], used if `corner` is 0: the angle at a corner is within 1e-7 of the lines."""
 MAX_STIFFNESS = 1e12
 """Largest stiffness of a drive [N.m/rad]: more than that of a solid steel shaft of its size."""
@@ -55,12 +55,12 @@ class SplineNode(NamedTuple):
     angle: Number
     torque: Number
     stiffness: Number
-    slope_before: Number = 0.0
-    slope_after: Number = 0.0
+    stiffness_slope_before: Number = 0.0
+    stiffness_slope_after: Number = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class PrescribedDrive(Drive):
+class PrescribedDriveParameters(DriveParameters):
     """Harmonic drive with a spline for its midline: torque over wind-up without hysteresis.
 
     The parts K_FTS and K_TS of the stiffness are unknown. K_FTS is set to twice the largest K_WTS: so K_TS
@@ -68,7 +68,7 @@ class PrescribedDrive(Drive):
     """
 
     @abstractmethod
-    def make_nodes(self) -> Sequence[SplineNode]:
+    def make_midline_nodes(self) -> Sequence[SplineNode]:
         """Nodes of the midline from zero wind-up on; the midline is odd."""
 
     @property
@@ -87,7 +87,7 @@ class PrescribedDrive(Drive):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CatalogueDrive(PrescribedDrive):
+class CatalogueDriveParameters(PrescribedDriveParameters):
     """Parameters of a harmonic drive with the stiffnesses K1, K2, K3 of its catalogue.
 
     The angle theta(T) has the slope 1/K1 up to the torque T1, 1/K2 up to T2, and 1/K3 beyond. Around the
@@ -107,17 +107,17 @@ class CatalogueDrive(PrescribedDrive):
         "half-width of the smooth corners at T1 and T2, divided by the wind-up there; 0: sharp corners",
         ge=0.0,
         lt=1.0,
-        default=DEFAULT_CORNER_RATIO,
+        default=DEFAULT_CORNER_HALF_WIDTH_RATIO,
     )
     max_torque: float = quantity_field(
         "N.m", "largest torque of the tabulated law, above the second corner", gt=0.0
     )
 
-    def find_limits(self) -> list[ParameterLimit]:
+    def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
         first, second = self.corner_angles
         return [
-            *super().find_limits(),
+            *super().find_parameter_limits(),
             ParameterLimit("T2", Interval.from_bounds(gt=self.T1), "it must exceed T1"),
             ParameterLimit(
                 "corner",
@@ -149,7 +149,7 @@ class CatalogueDrive(PrescribedDrive):
     @property
     def corner_half_width_ratio(self) -> Number:
         """Half-width of a smoothed corner over its wind-up [1], at least MIN_CORNER_RATIO."""
-        return np.maximum(self.corner, MIN_CORNER_RATIO)
+        return np.maximum(self.corner, MIN_CORNER_HALF_WIDTH_RATIO)
 
     @property
     def max_table_torque(self) -> Number:
@@ -168,7 +168,7 @@ class CatalogueDrive(PrescribedDrive):
         """Torque [N.m] at the end of the first line, where the first corner begins."""
         return self.T1 - self.K1 * self.corner_half_width_ratio * self.corner_angles[0]
 
-    def make_nodes(self) -> list[SplineNode]:
+    def make_midline_nodes(self) -> list[SplineNode]:
         """Nodes of the first line with the play, then both ends of each corner, then the end of the table."""
         (first, second), (K1, K2, K3) = self.corner_angles, (self.K1, self.K2, self.K3)
         first_width = self.corner_half_width_ratio * first
@@ -227,19 +227,19 @@ class MeasuredMidline:
                 )
 
 
-class MeasuredDrive(PrescribedDrive):
+class MeasuredDriveParameters(PrescribedDriveParameters):
     """Harmonic drive with measured torque over wind-up (midline), which already contains the lost motion."""
 
-    def find_limits(self) -> list[ParameterLimit]:
+    def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
         no_play = ParameterLimit(
             "lost_motion", Interval.from_bounds(ge=0.0, le=0.0), "a measured midline has it already"
         )
-        return [*super().find_limits(), no_play]
+        return [*super().find_parameter_limits(), no_play]
 
 
 @dataclass(frozen=True, kw_only=True)
-class TableDrive(MeasuredDrive):
+class TableDriveParameters(MeasuredDriveParameters):
     """Parameters of a harmonic drive with a measured midline, a table of torque and angle.
 
     The torque between the points is a monotone spline with the stiffnesses of Fritsch and Butland 1984
@@ -262,13 +262,13 @@ class TableDrive(MeasuredDrive):
     @cached_property
     def K_FTS(self) -> float:
         """Stiffness K_FTS [N.m/rad]: twice the largest stiffness of the midline."""
-        columns = np.array(self.make_nodes(), dtype=np.float64).T
+        columns = np.array(self.make_midline_nodes(), dtype=np.float64).T
         x, y, s, slope_before, slope_after = columns
         return 2.0 * float(
             np.max(_sample_stiffness(np.diff(x), np.diff(y), s, slope_after[:-1], slope_before[1:]))
         )
 
-    def make_nodes(self) -> list[SplineNode]:
+    def make_midline_nodes(self) -> list[SplineNode]:
         """Nodes at zero and at each point of the table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
         h, torque_steps = np.diff(x), np.diff(y)
@@ -314,7 +314,11 @@ def _node_stiffness(segment_widths: Array, secant_stiffnesses: Array) -> Array:
 
 
 def _sample_stiffness(
-    segment_widths: Array, torque_steps: Array, node_stiffness: Array, slope_after: Array, slope_before: Array
+    segment_widths: Array,
+    torque_steps: Array,
+    node_stiffness: Array,
+    stiffness_slope_after: Array,
+    stiffness_slope_before: Array,
 ) -> Array:
     """Stiffness (m, n) at m sample points inside each of n quintic segments.
 
@@ -325,8 +329,8 @@ def _sample_stiffness(
     t = _SEGMENT_SAMPLE_POINTS[:, None]
     first, last = node_stiffness[:-1], node_stiffness[1:]
     a2 = torque_steps / segment_widths
-    c0 = 0.5 * segment_widths * slope_after
-    c1 = 0.5 * segment_widths * slope_before
+    c0 = 0.5 * segment_widths * stiffness_slope_after
+    c1 = 0.5 * segment_widths * stiffness_slope_before
     cubic = 30.0 * a2 - 18.0 * first - 12.0 * last - 9.0 * c0 + 3.0 * c1
     quartic = -60.0 * a2 + 32.0 * first + 28.0 * last + 12.0 * c0 - 8.0 * c1
     quintic = 30.0 * a2 - 15.0 * first - 15.0 * last - 5.0 * c0 + 5.0 * c1

@@ -10,11 +10,11 @@ from ...mechanics.curve import Curve, assemble_curve, refine_curve
 from ...mechanics.stable_steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, check_limits
 from . import friction, hysteresis
-from .drive import Drive, kinematic_error
+from .drive import DriveParameters, kinematic_error
 from .friction import REFERENCE_TEMPERATURE, FrictionSliders, friction_limits, viscous_torque
 from .hysteresis import HysteresisSliders
-from .law import ContactPairDrive, stiffness_with_play
-from .prescribed_midline import PrescribedDrive
+from .law import ContactPairDriveParameters, stiffness_with_play
+from .prescribed_midline import PrescribedDriveParameters
 
 MIN_TABLE_STEPS = 160
 """Initial number of steps of the midline's table [1]; doubled until the table is accurate."""
@@ -25,7 +25,7 @@ HISTORY_LAYOUT = hysteresis.HISTORY_LAYOUT | friction.HISTORY_LAYOUT
 """History variables of the drive: hysteresis, then friction."""
 
 
-def torque_curve(drive: Drive) -> Curve:
+def torque_curve(drive: DriveParameters) -> Curve:
     """Midline: torque [N.m] over wind-up phi >= 0 [rad]; it is odd.
 
     Prescribed by nodes, or computed: phi is the integral of dT/K_WTS. Nodes of the integral are evenly spaced
@@ -34,16 +34,17 @@ def torque_curve(drive: Drive) -> Curve:
 
     Raises ValueError if spots of a contact pair would yield within the table, or if K_WTS is out of range.
     """
-    check_limits(drive, drive.find_table_limits())
-    if isinstance(drive, ContactPairDrive):
+    check_limits(drive, drive.find_table_parameter_limits())
+    if isinstance(drive, ContactPairDriveParameters):
         return refine_curve(lambda steps: _tabulate_midline(drive, steps), MIN_TABLE_STEPS)
-    if isinstance(drive, PrescribedDrive):
-        x, y, s, slope_before, slope_after = np.array(drive.make_nodes(), dtype=np.float64).T
+    if isinstance(drive, PrescribedDriveParameters):
+        x, y, s, slope_before, slope_after = np.array(drive.make_midline_nodes(), dtype=np.float64).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
-    raise TypeError(f"{type(drive).__name__} is neither a ContactPairDrive nor a PrescribedDrive")
+    expected = "ContactPairDriveParameters nor PrescribedDriveParameters"
+    raise TypeError(f"{type(drive).__name__} is neither {expected}")
 
 
-def _tabulate_midline(drive: ContactPairDrive, step_count: int) -> Curve:
+def _tabulate_midline(drive: ContactPairDriveParameters, step_count: int) -> Curve:
     """Tabulate the midline, torque over wind-up, with a number of steps; see `torque_curve`."""
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), step_count + 1)
@@ -72,13 +73,13 @@ class HarmonicDriveSpring:
     friction   : friction at the wave generator
     """
 
-    joint: Drive
+    joint: DriveParameters
     curve: Curve
     hysteresis: HysteresisSliders
     friction: FrictionSliders
 
     @classmethod
-    def tabulate(cls, drive: Drive) -> "HarmonicDriveSpring":
+    def tabulate(cls, drive: DriveParameters) -> "HarmonicDriveSpring":
         """Tabulate the midline for a parameter set, and find the sliders of hysteresis and friction.
 
         Raises ValueError as `torque_curve` and `HysteresisSliders.for_drive` do.
@@ -182,14 +183,14 @@ class SpringState:
     phi_error_slope: Number
 
 
-def wind_up(drive: Drive, motion: Sequence[Number], phi_error: Number) -> Number:
+def wind_up(drive: DriveParameters, motion: Sequence[Number], phi_error: Number) -> Number:
     """Wind-up phi_rel [rad] at the output, for (phi1, w1, phi2, w2) and the kinematic error [rad]."""
     phi1, _, phi2, _ = motion
     return phi2 - phi1 / drive.ratio - phi_error
 
 
 def motion_outputs(
-    drive: Drive,
+    drive: DriveParameters,
     motion: Sequence[Number],
     temperature: Number,
     spring_state: SpringState,
@@ -218,7 +219,7 @@ def motion_outputs(
     }
 
 
-def transmitted_torque(drive: Drive, motion: Sequence[Number], spring_state: SpringState) -> Number:
+def transmitted_torque(drive: DriveParameters, motion: Sequence[Number], spring_state: SpringState) -> Number:
     """Torque tau [N.m] at the output: sum of midline, hysteresis and damping."""
     _, w1, _, w2 = motion
     return (
@@ -228,7 +229,9 @@ def transmitted_torque(drive: Drive, motion: Sequence[Number], spring_state: Spr
     )
 
 
-def stiffness_outputs(drive: Drive, midline_torque: Number, midline_stiffness: Number) -> dict[str, Number]:
+def stiffness_outputs(
+    drive: DriveParameters, midline_torque: Number, midline_stiffness: Number
+) -> dict[str, Number]:
     """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque [N.m] of the midline.
 
     K_TS includes the lost motion; K_TS_pair is K_TS on the scale of Fig. 11 of Hu 2023.

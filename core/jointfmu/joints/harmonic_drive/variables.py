@@ -5,7 +5,7 @@ from ...quantity.units import LUBRICANT_TEMPERATURES
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .drive import FRICTION_HARMONICS, KINEMATIC_ERROR_HARMONICS
 from .friction import REFERENCE_TEMPERATURE
-from .law import HarmonicDrive
+from .law import HarmonicDriveParameters
 from .spring import HarmonicDriveSpring
 
 _COMMON_OUTPUTS = (
@@ -65,7 +65,7 @@ MODELS = (
         name="HarmonicDriveSpring",
         joint="harmonic_drive",
         doc="Torsional spring and damper of a harmonic drive: motion in, torque out",
-        parameters=HarmonicDrive,
+        parameter_class=HarmonicDriveParameters,
         tabulate=HarmonicDriveSpring.tabulate,
         inputs=(
             Variable("phi1", "rad", "angle of the wave-generator (motor) flange"),
@@ -144,7 +144,7 @@ MODELS = (
         name="HarmonicDriveCompliance",
         joint="harmonic_drive",
         doc="Wind-up of a harmonic drive with the wave generator locked: torque in, motion out",
-        parameters=HarmonicDrive,
+        parameter_class=HarmonicDriveParameters,
         tabulate=HarmonicDriveSpring.tabulate,
         inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
         outputs=(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...quantity import Array, check_fields, quantity_field, series_field
 
-BALANCE_TOLERANCE = 1e-6
+NODAL_FIELD_BALANCE_TOLERANCE = 1e-6
 """Largest error of the sums and means of a nodal field [1]."""
 PRESSURE_DECIMALS = 11
 """Decimals to which pressures of nodes are compared [1]: symmetric nodes then agree."""
@@ -62,12 +62,12 @@ class PressureDistribution:
             np.zeros_like(self.area_share),
         )
 
-    def merge_nodes(self, keeps_moment: bool = True) -> "MergedDistribution":
+    def merge_nodes(self, keeps_moment_pressure: bool = True) -> "MergedDistribution":
         """Merge nodes that have the same pressure at every preload and moment.
 
         keeps_moment : False: without moment; merge all nodes with the same pressure at every preload
         """
-        tilt = self.moment_pressure_ratio if keeps_moment else 0.0 * self.moment_pressure_ratio
+        tilt = self.moment_pressure_ratio if keeps_moment_pressure else 0.0 * self.moment_pressure_ratio
         keys = np.round(np.column_stack([self.preload_pressure_ratio, tilt]), PRESSURE_DECIMALS)
         _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
         share = np.asarray(np.bincount(group.ravel(), self.area_share), dtype=np.float64)
@@ -104,7 +104,7 @@ def moment_pressure(area_share: Array, y: Array, preload_pressure_ratio: Array) 
     return np.asarray(preload_pressure_ratio * distances / second_moment)
 
 
-BOLT_MEAN_NAMES = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
+BOLT_POSITION_MEAN_NAMES = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
 """Entries of a nodal field for the positions of its bolts, in the order of `position_means`."""
 PositionMeans: TypeAlias = tuple[float, float, float, float, float]
 
@@ -268,10 +268,11 @@ class NodalField:
                 steep,
             ),
         ):
-            if not abs(value - expected) <= BALANCE_TOLERANCE * size:
+            if not abs(value - expected) <= NODAL_FIELD_BALANCE_TOLERANCE * size:
                 text = f"{text} {owner}".rstrip() if "centroid" in text else text
                 raise ValueError(
-                    f"{text} is {value:.9g}, expected {expected:g} within {BALANCE_TOLERANCE * size:.1g}"
+                    f"{text} is {value:.9g}, expected {expected:g} within "
+                    f"{NODAL_FIELD_BALANCE_TOLERANCE * size:.1g}"
                 )
 
     @property

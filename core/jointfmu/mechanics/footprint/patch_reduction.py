@@ -24,15 +24,15 @@ from .distribution import FrictionPatches, PressureDistribution
 from .elimination import solve_linear, weight_changes
 from .point_reduction import exact_sum_functions, largest_moment_factor, reduce_points
 from .reproducible import (
-    binary_power,
-    binary_root,
     clear_round_off,
     euclidean_norm,
     gram_matrix,
+    raise_to_power_of_two,
     rank_descending,
     round_distribution,
     round_to_digits,
     successive_powers,
+    take_power_of_two_root,
     weighted_sums,
 )
 
@@ -80,11 +80,11 @@ SLIDER_CIRCLE_POINT_COUNT = 4
 SLIDER_CIRCLE_RADIUS_RATIO = 0.9
 """Radius of the circle over the radius of gyration of the friction of a patch [1]: in a rotation about a pole
 inside it, a disc acts like a smaller ring."""
-DIVISION_PRESSURE_RATIO, LLOYD_ITERATIONS = 0.1, 5
+NODE_DIVISION_PRESSURE_OFFSET, LLOYD_ITERATIONS = 0.1, 5
 """Pressure over mean pressure [1] that is added to that of each node for the division among patches, and
 number of iterations of the division [1]."""
 SMALLEST_FLOAT = float(np.finfo(float).tiny)
-_SEQUENCE_STEPS = successive_powers(1.0 / 1.0969815577985598, 7)
+_LOW_DISCREPANCY_INCREMENTS = successive_powers(1.0 / 1.0969815577985598, 7)
 """Increments of a low-discrepancy sequence in seven dimensions [1]: powers of 1/x with x^8 = x + 1."""
 SLIDER_CIRCLE_POINTS = round_to_digits(
     np.exp(2j * np.pi * (np.arange(SLIDER_CIRCLE_POINT_COUNT) + 0.25) / SLIDER_CIRCLE_POINT_COUNT).view(float)
@@ -112,7 +112,7 @@ def reduce_patches(
     steep = max(float(np.max(np.abs(rough.moment_pressure_ratio))), SMALLEST_FLOAT)
     unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
     few = reduce_points(rough if start_points is None else round_distribution(start_points), max_patch_count)
-    first = _divide_nodes(rough, few.position)
+    first = _divide_nodes_among_patches(rough, few.position)
     nodes, there, points = (
         np.stack(
             [
@@ -145,7 +145,7 @@ def _radius_signs(patch_forces: Array) -> Array:
     return np.where(rank_descending(patch_forces) % 2 == 0, 1.0, -1.0)
 
 
-def _divide_nodes(distribution: PressureDistribution, centres: Array) -> FrictionPatches:
+def _divide_nodes_among_patches(distribution: PressureDistribution, patch_centres: Array) -> FrictionPatches:
     """Divide the nodes among m patches by Lloyd's method.
 
     Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
@@ -154,17 +154,22 @@ def _divide_nodes(distribution: PressureDistribution, centres: Array) -> Frictio
     centres : (m, 2) initial positions of the patches
     """
     share, (x, y) = distribution.area_share, distribution.position.T
-    weight, count = share * (distribution.preload_pressure_ratio + DIVISION_PRESSURE_RATIO), len(centres)
+    weight, count = (
+        share * (distribution.preload_pressure_ratio + NODE_DIVISION_PRESSURE_OFFSET),
+        len(patch_centres),
+    )
 
     def sum_over_nodes(values: Array) -> Array:
         return np.asarray(np.bincount(nearest, values, count))
 
     for _ in range(LLOYD_ITERATIONS):
-        square = (x - centres[:, :1]) ** 2 + (y - centres[:, 1:]) ** 2
+        square = (x - patch_centres[:, :1]) ** 2 + (y - patch_centres[:, 1:]) ** 2
         nearest = np.argmin(square, axis=0)
         whole = np.maximum(sum_over_nodes(weight), SMALLEST_FLOAT)
-        centres = np.column_stack([sum_over_nodes(weight * x) / whole, sum_over_nodes(weight * y) / whole])
-    away = (x - centres[nearest, 0]) ** 2 + (y - centres[nearest, 1]) ** 2
+        patch_centres = np.column_stack(
+            [sum_over_nodes(weight * x) / whole, sum_over_nodes(weight * y) / whole]
+        )
+    away = (x - patch_centres[nearest, 0]) ** 2 + (y - patch_centres[nearest, 1]) ** 2
     area = np.maximum(sum_over_nodes(share), SMALLEST_FLOAT)
     xx, xy, yy = (float(np.add.reduce(share * each)) for each in (x * x, x * y, y * y))
     thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 for nodes on a line
@@ -173,7 +178,7 @@ def _divide_nodes(distribution: PressureDistribution, centres: Array) -> Frictio
     )
     return FrictionPatches(
         area,
-        centres,
+        patch_centres,
         sum_over_nodes(share * distribution.preload_pressure_ratio) / area,
         sum_over_nodes(share * distribution.moment_pressure_ratio) / area,
         radius,
@@ -214,7 +219,7 @@ class _SlipCases:
         max_coordinates : (2) [1] largest |x| and |y|
         """
         number = np.arange(1, SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT + 1)
-        unit = (0.5 + number[:, None] * _SEQUENCE_STEPS) % 1.0
+        unit = (0.5 + number[:, None] * _LOW_DISCREPANCY_INCREMENTS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
         gross = number > SLIP_CASE_COUNT
         moves = np.where(
@@ -248,7 +253,9 @@ class _SlipCases:
                 way
                 * (
                     1.0
-                    - binary_root(np.full((number.size, 1), UNMOBILISED_FRICTION_SHARE), power[:, None])[:, 0]
+                    - take_power_of_two_root(
+                        np.full((number.size, 1), UNMOBILISED_FRICTION_SHARE), power[:, None]
+                    )[:, 0]
                 ),
             ),
         )
@@ -261,9 +268,9 @@ class _SlipCases:
         [1]: friction limit times displacement per length of the motion.
         """
         _, x, y, equal, tilt, radius = points
-        start = binary_root(np.maximum(equal + self.moment_factor * tilt, 0.0), self.law_exponent)
+        start = take_power_of_two_root(np.maximum(equal + self.moment_factor * tilt, 0.0), self.law_exponent)
         now = np.maximum(start - (self.normal_displacement + self.tilt_x * y - self.tilt_y * x), 0.0)
-        most = binary_power(now, self.law_exponent)
+        most = raise_to_power_of_two(now, self.law_exponent)
         whole = np.zeros((4, *now.shape))
         turned = np.zeros(now.shape)
         places, stored = SLIDER_CIRCLE_POINTS if np.any(radius) else SLIDER_CIRCLE_POINTS[:1], now * most
@@ -274,7 +281,7 @@ class _SlipCases:
             size = np.sqrt(u * u + v * v)
             way = self.motion_length * size
             then = np.maximum(now - way, 0.0)
-            rest = binary_power(then, self.law_exponent)
+            rest = raise_to_power_of_two(then, self.law_exponent)
             force, work = most - rest, most * way - (stored - then * rest) / (self.law_exponent + 1.0)
             part = force / np.maximum(size, SMALLEST_FLOAT)
             each = part * u, part * v, part * (there_x * v - there_y * u), 8.0 * (work - 0.5 * force * way)

@@ -16,12 +16,12 @@ from ...quantity import Array
 from .distribution import PressureDistribution
 from .elimination import NodeIndices, reduce_weights, select_independent, weight_changes
 from .reproducible import (
-    binary_power,
-    binary_root,
     clear_round_off,
     matrix_product,
+    raise_to_power_of_two,
     round_distribution,
     successive_powers,
+    take_power_of_two_root,
     weighted_sums,
 )
 
@@ -44,7 +44,7 @@ MIN_POINTS_FOR_PEAK_NODES = 96
 """Smallest number of points [1] for which the nodes with the largest pressure are kept."""
 MIN_SYMMETRY_GROUPS = 10
 """Smallest number of groups of mirrored points [1]; with fewer groups the symmetry is given up."""
-_SEQUENCE_STEPS = successive_powers(1.0 / 1.1673039782614187, 4)
+_LOW_DISCREPANCY_INCREMENTS = successive_powers(1.0 / 1.1673039782614187, 4)
 """Increments of a low-discrepancy sequence in four dimensions [1]: powers of 1/x with x^5 = x + 1."""
 
 
@@ -65,9 +65,9 @@ def reduce_points(distribution: PressureDistribution, max_point_count: int) -> P
     group = _find_symmetry_groups(rounded_shape)
     if np.max(np.bincount(group)) * MIN_SYMMETRY_GROUPS > max_point_count:
         group = np.arange(distribution.area_share.size)
-    nodes, factor = _select_groups(rounded_shape, group, max_point_count)
-    old_shares = _group_sums(group, distribution.area_share)
-    exact = _group_means(_scaled_exact_functions(distribution), distribution, group)
+    nodes, factor = _select_node_groups(rounded_shape, group, max_point_count)
+    old_shares = _sum_over_groups(group, distribution.area_share)
+    exact = _average_over_groups(_scaled_exact_functions(distribution), distribution, group)
     new_shares, exact_nodes = np.zeros_like(old_shares), exact[:, nodes]
     new_shares[nodes] = factor * old_shares[nodes]
     new_shares[nodes] += weight_changes(
@@ -78,19 +78,20 @@ def reduce_points(distribution: PressureDistribution, max_point_count: int) -> P
     return clear_round_off(_scale_shares(distribution, group, new_shares / old_shares))
 
 
-def _select_groups(
+def _select_node_groups(
     distribution: PressureDistribution, node_groups: NodeIndices, max_node_count: int
 ) -> tuple[NodeIndices, Array]:
     """Select groups of nodes that keep the sums; return the groups and the factors on their shares.
 
     node_groups : (n) group of each node
     """
-    size, share = np.bincount(node_groups), _group_sums(node_groups, distribution.area_share)
+    size, share = np.bincount(node_groups), _sum_over_groups(node_groups, distribution.area_share)
     factor = np.sqrt(share)
     exact = select_independent(
-        factor * _group_means(_scaled_exact_functions(distribution), distribution, node_groups), share.size
+        factor * _average_over_groups(_scaled_exact_functions(distribution), distribution, node_groups),
+        share.size,
     )[1]
-    rest = factor * _group_means(_sample_functions(distribution), distribution, node_groups)
+    rest = factor * _average_over_groups(_sample_load_functions(distribution), distribution, node_groups)
     rest -= matrix_product(matrix_product(rest, exact), exact.T)
     functions = np.concatenate([exact, select_independent(rest, max_node_count)[1]]).T / factor[:, None]
     min_shares = (
@@ -163,15 +164,15 @@ def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
     return np.unique(group, return_inverse=True)[1]
 
 
-def _group_means(
+def _average_over_groups(
     function_values: Array, distribution: PressureDistribution, node_groups: NodeIndices
 ) -> Array:
     """Means (m, groups) of functions (m, n) over the nodes of each group, weighted by share."""
-    sums = [_group_sums(node_groups, distribution.area_share * row) for row in function_values]
-    return np.array(sums) / _group_sums(node_groups, distribution.area_share)
+    sums = [_sum_over_groups(node_groups, distribution.area_share * row) for row in function_values]
+    return np.array(sums) / _sum_over_groups(node_groups, distribution.area_share)
 
 
-def _group_sums(node_groups: NodeIndices, node_values: Array) -> Array:
+def _sum_over_groups(node_groups: NodeIndices, node_values: Array) -> Array:
     """Sums (groups) of values (n) over the nodes of each group."""
     return np.asarray(np.bincount(node_groups, node_values), dtype=np.float64)
 
@@ -234,7 +235,7 @@ def largest_moment_factor(distribution: PressureDistribution) -> float:
     return low
 
 
-def _sample_functions(distribution: PressureDistribution) -> Array:
+def _sample_load_functions(distribution: PressureDistribution) -> Array:
     """Functions (m, n) [1] of the nodes whose sums are approximated: pressure and stiffness in all states.
 
     Each state has a power law, a moment, a normal displacement and a tilt. The pressure is multiplied by 1, x
@@ -247,21 +248,21 @@ def _sample_functions(distribution: PressureDistribution) -> Array:
     of_stiffness = np.stack([*of_pressure[:3], x * x, x * y, y * y])
     number = np.arange(SAMPLED_STATE_COUNT)[:, None]
     moment, opening, about_x, about_y = (
-        2.0 * ((0.5 + (number + 1.0) * _SEQUENCE_STEPS) % 1.0).T[..., None] - 1.0
+        2.0 * ((0.5 + (number + 1.0) * _LOW_DISCREPANCY_INCREMENTS) % 1.0).T[..., None] - 1.0
     )
     power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
     is_moved = number >= UNTILTED_STATE_SHARE * SAMPLED_STATE_COUNT
     normal_displacement = is_moved * (
         MAX_OPENING_RATIO * opening + MAX_TILT_OPENING_RATIO * (about_x * y - about_y * x)
     )
-    approach = binary_root(
+    approach = take_power_of_two_root(
         np.maximum(
             distribution.preload_pressure_ratio + limit * moment * distribution.moment_pressure_ratio, 0.0
         ),
         power,
     )
     approach = np.maximum(approach - np.max(approach, axis=1, keepdims=True) * normal_displacement, 0.0)
-    pressure = binary_power(approach, power)
+    pressure = raise_to_power_of_two(approach, power)
     stiffness = np.divide(pressure, approach, out=np.zeros_like(pressure), where=approach > 0.0)
     rows = np.concatenate([pressure[:, None] * of_pressure, stiffness[:, None] * of_stiffness], axis=1)
     sizes = np.add.reduce(np.abs(rows) * distribution.area_share, axis=2, keepdims=True)

@@ -125,12 +125,12 @@ def successive_powers(base: float, count: int) -> Array:
     return np.multiply.accumulate(np.full(count, base))
 
 
-def binary_root(values: Array, exponent: Array) -> Array:
+def take_power_of_two_root(values: Array, exponent: Array) -> Array:
     """Roots values^(1/exponent) (m, n) of values >= 0 (m, n) or (m, 1); exponent (m, 1) of 2, 4, ... 64."""
     return _apply_repeatedly(np.sqrt, values, exponent)
 
 
-def binary_power(values: Array, exponent: Array) -> Array:
+def raise_to_power_of_two(values: Array, exponent: Array) -> Array:
     """Powers values^exponent (m, n) of values (m, n); exponent (m, 1) of 2, 4, 8, ... 64."""
     return _apply_repeatedly(np.square, values, exponent)
 

@@ -1,5 +1,5 @@
 """The toy joint, for the tools."""
 
-from jointfmu_tools.common.joint_parts import ToolParts
+from jointfmu_tools.common.joint_parts import JointToolModules
 
-TOOL_PARTS = ToolParts(__name__, ("export", "uncertainty"))
+TOOL_MODULES = JointToolModules(__name__, ("export", "uncertainty"))

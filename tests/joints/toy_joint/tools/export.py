@@ -1,7 +1,7 @@
 """The spring as a table."""
 
 import numpy as np
-from jointfmu_tools.exchange.export.exports import Exports, LoadCurve
+from jointfmu_tools.exchange.export.exports import Exports, LoadCurveExport
 from jointfmu_tools.exchange.export.tables import LoadTable
 
 from jointfmu.joints.model import Variable
@@ -16,5 +16,5 @@ def _line(spring, state, error):
 
 COLUMNS = (KIND.variables["s_rel"], Variable("pull", "N", "force that holds it"), KIND.variables["K"])
 EXPORTS = Exports(
-    curve=LoadCurve(meaning="force over s", columns=COLUMNS, table_name="force", compute_table=_line)
+    curve=LoadCurveExport(meaning="force over s", columns=COLUMNS, table_name="force", compute_table=_line)
 )

@@ -5,7 +5,7 @@ from jointfmu_tools.studies.uncertainty.curves import LoadCurves
 
 from .. import KIND
 
-CURVES = LoadCurves(
+UNCERTAINTY_CURVES = LoadCurves(
     model="ToySpring",
     load=KIND.variables["s_rel"],
     outputs=(KIND.variables["f"],),

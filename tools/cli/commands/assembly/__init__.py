@@ -9,7 +9,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
-from ....common.judgement import Plausibility, assess_law, find_rms_height
+from ....common.judgement import Plausibility, assess_law_stiffness, find_rms_height
 from ....common.pressure import warn_overload
 from ....inputs.drawing.vdi2230 import proof_load
 from ...command import declare_argument
@@ -47,7 +47,7 @@ def check_bolt_stiffness(option: str, parameter_file: ParameterFile) -> None:
         )
 
 
-def judge_assembly(
+def judge_stiffness_and_preload(
     parameter_file: ParameterFile,
     assembly: "Assembly",
     preload: float,
@@ -60,7 +60,7 @@ def judge_assembly(
     mean_pressure : mean contact pressure [Pa]
     peak_pressure : greatest contact pressure [Pa]
     """
-    judgement = assess_law(
+    judgement = assess_law_stiffness(
         KINDS[parameter_file.joint].extract_law(parameter_file.values),
         [mean_pressure],
         find_rms_height(parameter_file),

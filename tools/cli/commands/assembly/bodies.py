@@ -18,7 +18,7 @@ from . import check_bolt_stiffness
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
 
-MAX_OUTSIDE_DISTANCE = 1e-6
+BOLT_POSITION_TOLERANCE = 1e-6
 """Largest distance [m] of a bolt outside the bounding rectangle of the contact."""
 MIN_AREA_RATIO, MAX_CENTROID_OFFSET_RATIO = 0.9, 0.01
 """Limits for a warning: contact area over the area of the plates [1], at least, and distance between the
@@ -72,8 +72,8 @@ def find_bolt_positions(
 
     Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """
-    low = np.min(contact_field.position, axis=0) - MAX_OUTSIDE_DISTANCE
-    high = np.max(contact_field.position, axis=0) + MAX_OUTSIDE_DISTANCE
+    low = np.min(contact_field.position, axis=0) - BOLT_POSITION_TOLERANCE
+    high = np.max(contact_field.position, axis=0) + BOLT_POSITION_TOLERANCE
     if not args.bolts:
         positions = PlaneLayout.from_joint(parameter_file.values).bolt_positions + contact_field.centroid
         inside = np.all((positions > low) & (positions < high))
@@ -116,7 +116,7 @@ def build_assembly(
 
     if bolt_positions is None:
         raise ValueError("--thickness needs the positions of the bolts; state --bolts X,Y for each")
-    hole, head = _hole_and_head_diameters(args, parameter_file)
+    hole, head = _find_hole_and_head_diameters(args, parameter_file)
     thick = [parse_number("thickness", text, "mm", "m") for text in args.thickness]
     low, high = np.min(contact_field.position, axis=0), np.max(contact_field.position, axis=0)
     (length, width), area = high - low, float(np.sum(contact_field.area))
@@ -156,7 +156,9 @@ def build_assembly(
     return plates, notes
 
 
-def _hole_and_head_diameters(args: argparse.Namespace, parameter_file: ParameterFile) -> tuple[float, float]:
+def _find_hole_and_head_diameters(
+    args: argparse.Namespace, parameter_file: ParameterFile
+) -> tuple[float, float]:
     """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
     layout = PlaneLayout.from_joint(parameter_file.values)
     hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole_diameter

@@ -8,8 +8,8 @@ from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
-from ....common.columns import FIELD_FILE_KIND
-from ....common.shown import fact_document, format_facts
+from ....common.columns import PRESSURE_FIELD_FILE_KIND
+from ....common.shown import facts_to_json, format_facts
 from ....fem import require_fem_packages
 from ....joints.bolted_joint.field import insert_elastic_bodies, joint_facts
 from ...command import CommandResult, SubParsers, declare_argument, declare_command
@@ -17,7 +17,7 @@ from ...outputs import declare_output
 from . import (
     check_bolt_stiffness,
     declare_assembly_arguments,
-    judge_assembly,
+    judge_stiffness_and_preload,
     load_joint_file,
     replace_assembly_parameters,
 )
@@ -48,7 +48,7 @@ def add_command(command_parsers: SubParsers) -> None:
         help="write the complete joint (sides = elastic) between these surfaces of the bodies: outer faces, "
         "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
     )
-    declare_output(sub, "--field", FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
+    declare_output(sub, "--field", PRESSURE_FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
     declare_output(sub, "--plot", PICTURE_FILE, "draw the pressure (.png, .svg)")
     declare_argument(
         sub, "--refine", int, f"number of meshes of a convergence study, 1 to {MAX_MESHES}", default=1
@@ -81,14 +81,18 @@ def run(args: argparse.Namespace) -> CommandResult:
     whole = joint_facts(result, tightening_force(args, result)) if args.attached else {}
     written = _write_outputs(args, result, solution)
     facts = _collect_results(solution, moment, args.preload)
-    judgement = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak_pressure)
+    judgement = judge_stiffness_and_preload(
+        file, assembly, args.preload, facts["p_mean"], solution.peak_pressure
+    )
     judgement = judgement.with_warnings(
         check_bolt_symmetry(solution.contact_field, assembly.bolts.positions, moment != 0.0)
     )
-    document = facts | {"meshes": [_mesh_document(row) for row in rows], "written": written}
-    document |= {"whole": fact_document(whole)} if whole else {}
+    document = facts | {"meshes": [_mesh_result_to_json(row) for row in rows], "written": written}
+    document |= {"whole": facts_to_json(whole)} if whole else {}
     lines = [*_format_results(facts), *_format_convergence(rows), *format_facts(whole)]
-    return CommandResult(document=document, lines=lines, judgement=judgement, written_files=written)
+    return CommandResult(
+        json_document=document, lines=lines, stiffness_judgement=judgement, written_files=written
+    )
 
 
 def _check_arguments(args: argparse.Namespace) -> None:
@@ -176,7 +180,7 @@ def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
     )
 
 
-def _mesh_document(mesh_result: "MeshResult") -> dict[str, object]:
+def _mesh_result_to_json(mesh_result: "MeshResult") -> dict[str, object]:
     return {
         "refinement": mesh_result.refinement,
         "elements": mesh_result.element_count,

@@ -9,9 +9,9 @@ from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
-from ....common.judgement import assess_law, find_rms_height
+from ....common.judgement import assess_law_stiffness, find_rms_height
 from ....common.pressure import warn_missing_members
-from ....common.shown import fact_document, format_facts
+from ....common.shown import facts_to_json, format_facts
 from ....joints.bolted_joint.field import insert_elastic_bodies, joint_facts
 from ...command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
 from ...outputs import declare_output
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ....inputs.fields.reduction import Reduction
 
 
-def add_footprint(command_parsers: SubParsers) -> None:
+def add_footprint_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu footprint` with its sub-commands."""
     text = "import or compute the contact pressure of a bolted joint"
     top = command_parsers.add_parser("footprint", help=text, description=format_sentence(text))
@@ -31,7 +31,7 @@ def add_footprint(command_parsers: SubParsers) -> None:
     compute.add_command(steps)
 
 
-OPTION_NAMES = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}
+OPTION_NAME_BY_ARGUMENT = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}
 """{name of an argument in the library: name of its option}, where the names differ."""
 
 
@@ -80,7 +80,7 @@ def _declare_import(subcommands: SubParsers) -> None:
         step, "--moment-file", Path, "contact result of the same nodes under an additional moment"
     )
     bodies.declare_body_arguments(step)
-    step.set_defaults(options=OPTION_NAMES)
+    step.set_defaults(options=OPTION_NAME_BY_ARGUMENT)
 
 
 def _run_import(args: argparse.Namespace) -> CommandResult:
@@ -120,7 +120,7 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
     if args.out:
         write_parameter_text(args.out, format_parameter_file(file))
     facts = _collect_results(args, file, field, reduction)
-    judgement = assess_law(
+    judgement = assess_law_stiffness(
         KINDS[file.joint].extract_law(file.values), [facts["p_mean"]], find_rms_height(file), facts["p_max"]
     )
     facts |= {"outline": notes[0]} if notes else {}
@@ -133,8 +133,8 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
         )
     lines = [*_format_results(facts, start.values.A_0), *format_facts(whole)]
     lines += [f"wrote {path}" for path in facts["written"]]
-    facts |= {"whole": fact_document(whole)} if whole else {}
-    return CommandResult(document=facts, lines=lines, judgement=judgement)
+    facts |= {"whole": facts_to_json(whole)} if whole else {}
+    return CommandResult(json_document=facts, lines=lines, stiffness_judgement=judgement)
 
 
 def _create_reader(args: argparse.Namespace) -> Any:
@@ -190,7 +190,7 @@ def _collect_results(
     }
 
 
-def _format_results(result_values: dict[str, Any], area_before: float) -> list[str]:
+def _format_results(result_values: dict[str, Any], old_contact_area: float) -> list[str]:
     from ....inputs.fields.sums import PRELOAD_RATIO_RANGE
 
     low, high = PRELOAD_RATIO_RANGE
@@ -200,7 +200,7 @@ def _format_results(result_values: dict[str, Any], area_before: float) -> list[s
         f"{result_values['p_max'] / 1e6:.4g} MPa, mean {result_values['p_mean'] / 1e6:.4g} MPa",
         f"force {result_values['force']:.6g} N, {difference:+.2g} % from the bolt force, "
         f"{result_values['force_of_the_bolts']:.6g} N; the field is scaled to the bolt force",
-        f"A_0 is the nodes' area, {result_values['A_0']:.6g} m2 (it was {area_before:.6g} m2)",
+        f"A_0 is the nodes' area, {result_values['A_0']:.6g} m2 (it was {old_contact_area:.6g} m2)",
     ]
     if result_values["loads"]:
         lines.append(

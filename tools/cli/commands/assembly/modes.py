@@ -11,7 +11,12 @@ from jointfmu.mechanics.curve import tabulate_approach
 from ....fem import require_fem_packages
 from ...command import CommandResult, SubParsers, declare_argument, declare_command
 from ...outputs import declare_output
-from . import declare_assembly_arguments, judge_assembly, load_joint_file, replace_assembly_parameters
+from . import (
+    declare_assembly_arguments,
+    judge_stiffness_and_preload,
+    load_joint_file,
+    replace_assembly_parameters,
+)
 
 if TYPE_CHECKING:
     from ....fem.modes import NaturalModes
@@ -20,7 +25,7 @@ MAX_MODES = 40
 """Largest number of modes."""
 
 
-def add_modes(command_parsers: SubParsers) -> None:
+def add_modes_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu modes` with its options."""
     text = "compute natural frequencies of a free bolted assembly with contact stiffness"
     sub = declare_command(command_parsers, "modes", run, text)
@@ -51,15 +56,17 @@ def run(args: argparse.Namespace) -> CommandResult:
         even = assembly_modes.uniform_pressure_modes(contact, law, force, shear, args.count)
     if args.vtu:
         write_bytes(args.vtu, results.modes_vtu(contact.bodies, modes))
-    judgement = judge_assembly(
+    judgement = judge_stiffness_and_preload(
         file, assembly, args.preload, force / assembly.contact_area, solution.peak_pressure
     )
     head = (
         f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, "
         f"{modes.assembly_mass:.4g} kg"
     )
-    document = _build_document(args, assembly.name, modes, even)
-    return CommandResult(document=document, lines=[head, *_format_modes(modes, even)], judgement=judgement)
+    document = _modes_to_json(args, assembly.name, modes, even)
+    return CommandResult(
+        json_document=document, lines=[head, *_format_modes(modes, even)], stiffness_judgement=judgement
+    )
 
 
 def _check_arguments(args: argparse.Namespace) -> None:
@@ -73,10 +80,13 @@ def _check_arguments(args: argparse.Namespace) -> None:
         raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is not a mesh, allowed is .vtu")
 
 
-def _build_document(
-    args: argparse.Namespace, assembly_name: str, modes: "NaturalModes", uniform_modes: "NaturalModes"
+def _modes_to_json(
+    args: argparse.Namespace,
+    assembly_name: str,
+    modes: "NaturalModes",
+    uniform_pressure_modes: "NaturalModes",
 ) -> dict[str, object]:
-    rows = zip(modes.frequency.tolist(), uniform_modes.frequency.tolist(), strict=True)
+    rows = zip(modes.frequency.tolist(), uniform_pressure_modes.frequency.tolist(), strict=True)
     return {
         "assembly": assembly_name,
         "preload": args.preload,
@@ -87,7 +97,7 @@ def _build_document(
     }
 
 
-def _format_modes(modes: "NaturalModes", uniform_modes: "NaturalModes") -> Iterator[str]:
+def _format_modes(modes: "NaturalModes", uniform_pressure_modes: "NaturalModes") -> Iterator[str]:
     yield "mode   f [Hz]   with uniform pressure [Hz]"
-    for i, (f, g) in enumerate(zip(modes.frequency, uniform_modes.frequency, strict=True), 1):
+    for i, (f, g) in enumerate(zip(modes.frequency, uniform_pressure_modes.frequency, strict=True), 1):
         yield f"{i:4d} {f:8.2f} {g:15.2f}  {100.0 * (g / f - 1.0):+.2f} %"

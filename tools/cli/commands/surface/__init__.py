@@ -14,7 +14,7 @@ from jointfmu.quantity.refusal import InputRefusal
 from ....common.judgement import find_rms_height
 from ....inputs.surfaces.heights import FORM_NAMES
 from ....inputs.surfaces.reading import MAX_RMS_HEIGHT, read_heights
-from ....inputs.surfaces.spectrum import METHODS, SCAN_SIDES
+from ....inputs.surfaces.spectrum import SCAN_SIDES, SERIES_METHODS
 from ...command import (
     DEFAULT_SUBCOMMANDS,
     CommandResult,
@@ -25,7 +25,7 @@ from ...command import (
     format_sentence,
     parse_joint_name,
 )
-from ...outputs import FORCE_HELP, declare_output
+from ...outputs import FORCE_OPTION_HELP, declare_output
 from . import synthesize
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     find.add_argument("--side", choices=SCAN_SIDES, help=text)
     text = "method whose result the joint gets (default: the one with the smaller uncertainty)"
-    find.add_argument("--method", choices=METHODS, help=text)
+    find.add_argument("--method", choices=SERIES_METHODS, help=text)
     text = "frequency ratio in Eq. 30 of Zhao 2018; only G_eq30 depends on it"
     declare_argument(find, "--gamma", float, text, "GAMMA", default=1.5)
     find.add_argument(
@@ -82,7 +82,8 @@ def add_command(command_parsers: SubParsers) -> None:
     declare_argument(find, "--law", str, text, "LAW", choices=[*laws])
     declare_argument(find, "--params", Path, "parameter file to start from (TOML)")
     text = (
-        f"{FORCE_HELP}; accept any size of scan and any height; write D and G even if they are not determined"
+        f"{FORCE_OPTION_HELP}; accept any size of scan and any height; write D and G even if they are not "
+        "determined"
     )
     find.add_argument("--force", action="store_true", help=text)
     declare_output(find, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
@@ -111,12 +112,12 @@ def _run_identify(args: argparse.Namespace) -> CommandResult:
     return results.build_result(identified, heights, file, args)
 
 
-def _check_rms_heights(identification: "Identification", is_forced: bool) -> None:
+def _check_rms_heights(identification: "Identification", accept_any_height: bool) -> None:
     """Raise an error for rms heights above those of any machined surface: most often the unit is wrong."""
     for name, scan in zip(identification.file_names, identification.scans, strict=True):
-        if scan.rms > MAX_RMS_HEIGHT and not is_forced:
+        if scan.rms_height > MAX_RMS_HEIGHT and not accept_any_height:
             raise InputRefusal(
-                f"{name}: the rms height is {1e6 * scan.rms:.4g} um, surfaces in contact have up to "
+                f"{name}: the rms height is {1e6 * scan.rms_height:.4g} um, surfaces in contact have up to "
                 f"{1e6 * MAX_RMS_HEIGHT:g} um; state the right unit of z, or confirm the height",
                 "force",
             )

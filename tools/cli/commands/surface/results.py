@@ -21,11 +21,11 @@ from ....inputs.surfaces.results import Estimate, FractalResult, Identification
 from ...command import CommandResult
 from . import synthesize
 
-STIFFNESS_PRESSURE = 1e6
+STATED_STIFFNESS_PRESSURE = 1e6
 """Pressure [Pa] at which the stiffness per area is reported."""
 
 
-def build_document(
+def results_to_json(
     identification: Identification,
     heights: Sequence[Heights],
     parameter_file: ParameterFile | None,
@@ -44,7 +44,7 @@ def build_document(
         "side": identification.side,
         "textured": identification.is_textured,
         "form": args.form,
-        "roughness": _roughness_document(identification, parameter_file),
+        "roughness": _roughness_to_json(identification, parameter_file),
         "repairs": [
             {
                 "file": n,
@@ -55,12 +55,12 @@ def build_document(
             }
             for n, r in identification.repairs
         ],
-        "results": [_result_document(result, args.gamma) for result in identification.results],
+        "results": [_fractal_result_to_json(result, args.gamma) for result in identification.results],
         "determined": {joint: undetermined_reason(identification, joint) is None for joint in joints},
         "not_determined": {
             joint: why for joint in joints if (why := undetermined_reason(identification, joint))
         },
-        "joints": {joint: _joint_document(identification, joint, args) for joint in joints},
+        "joints": {joint: _joint_parameters_to_json(identification, joint, args) for joint in joints},
         "law": parameter_file.law if parameter_file else None,
         "level": judged["level"],
         "written": str(args.out) if args.out else None,
@@ -68,7 +68,7 @@ def build_document(
     }
 
 
-def _joint_document(
+def _joint_parameters_to_json(
     identification: Identification, joint_name: str, args: argparse.Namespace
 ) -> Mapping[str, float | None]:
     """Surface parameters of a joint: {name: value}; None if the scan does not determine them."""
@@ -77,17 +77,17 @@ def _joint_document(
     return {name: _finite_or_none(value) if determined else None for name, (value, _) in values.items()}
 
 
-def _roughness_document(
+def _roughness_to_json(
     identification: Identification, parameter_file: ParameterFile | None
 ) -> dict[str, object]:
     """JSON object of the roughness: heights of each scan and of both sides together, stiffness per area."""
-    h = height_of_both_sides(identification, parameter_file)
+    h = find_combined_rms_height(identification, parameter_file)
     return {
         "scans": [
             {
                 "file": name,
-                "Sq" if scan.is_areal else "Rq": scan.rms,
-                "Sa" if scan.is_areal else "Ra": scan.mean_absolute,
+                "Sq" if scan.is_areal else "Rq": scan.rms_height,
+                "Sa" if scan.is_areal else "Ra": scan.mean_absolute_height,
                 "h": scan.h,
                 "slope": scan.slope,
             }
@@ -97,34 +97,34 @@ def _roughness_document(
         "shortest_wave": identification.scans[0].shortest_wave,
         "h": h,
         "slope": identification.slope,
-        "stiffness_per_MPa": predicted_stiffness(STIFFNESS_PRESSURE, h),
+        "stiffness_per_MPa": predicted_stiffness(STATED_STIFFNESS_PRESSURE, h),
     }
 
 
-def _result_document(fractal_result: FractalResult, gamma: float) -> dict[str, object]:
+def _fractal_result_to_json(fractal_result: FractalResult, gamma: float) -> dict[str, object]:
     fit = fractal_result.fit
     return {
         "method": fractal_result.method,
         "direction": fractal_result.direction,
         "range": [fit.min_scale, fit.max_scale],
-        "decades": fit.decades,
+        "decades": fit.range_decades,
         "self_affine": fit.is_self_affine,
         "at_bound": fit.is_at_bound,
         "drift_of_D": fit.dimension_drift,
-        "deviation": fit.deviation,
+        "deviation": fit.excess_deviation,
         "profile": {
-            "D": _interval_document(fractal_result.profile.D),
-            "G": _interval_document(fractal_result.profile.G),
+            "D": _interval_to_json(fractal_result.profile.D),
+            "G": _interval_to_json(fractal_result.profile.G),
         },
         "surface": {
-            "D_s": _interval_document(fractal_result.areal.D_s),
-            "G_s": _interval_document(fractal_result.areal.G_s),
+            "D_s": _interval_to_json(fractal_result.areal.D_s),
+            "G_s": _interval_to_json(fractal_result.areal.G_s),
         },
         "G_eq30": _finite_or_none(zhao_roughness(fractal_result.profile.G.value, fit.H, gamma)),
     }
 
 
-def _interval_document(estimate: Estimate) -> dict[str, float | None]:
+def _interval_to_json(estimate: Estimate) -> dict[str, float | None]:
     return {
         "value": _finite_or_none(estimate.value),
         "low": _finite_or_none(estimate.low),
@@ -137,7 +137,7 @@ def _finite_or_none(value: Number) -> float | None:
     return float(value) if math.isfinite(float(value)) else None
 
 
-def height_of_both_sides(identification: Identification, parameter_file: ParameterFile | None) -> float:
+def find_combined_rms_height(identification: Identification, parameter_file: ParameterFile | None) -> float:
     """Rms height h [m] of both sides together: from the parameter file if it has one, else from the scans."""
     return combined_height(parameter_file.roughness if parameter_file else {}) or identification.h
 
@@ -211,7 +211,7 @@ def build_result(
         *collect_warnings(identification, parameter_file, args),
     ]
     return CommandResult(
-        document=build_document(identification, heights, parameter_file, args),
+        json_document=results_to_json(identification, heights, parameter_file, args),
         lines=[*lines, *(f"{prefix}{line}" for line in judgement.format_lines())],
         notes=[f"warning: {text}" for text in texts],
         written_files=(args.out, args.plot),
@@ -221,13 +221,13 @@ def build_result(
 def _format_scan(scan: ScanRoughness) -> str:
     q, a = ("Sq", "Sa") if scan.is_areal else ("Rq", "Ra")
     return (
-        f"{q} = {1e6 * scan.rms:.4g} um, {a} = {1e6 * scan.mean_absolute:.4g} um, "
+        f"{q} = {1e6 * scan.rms_height:.4g} um, {a} = {1e6 * scan.mean_absolute_height:.4g} um, "
         f"h = {1e6 * scan.h:.4g} um of waves up to {1e3 * scan.longest_wave:.4g} mm"
     )
 
 
 def _format_stiffness(identification: Identification, parameter_file: ParameterFile | None) -> str:
-    h = height_of_both_sides(identification, parameter_file)
+    h = find_combined_rms_height(identification, parameter_file)
     known = {name[2] for name in parameter_file.roughness} if parameter_file else set()
     if (
         "h" in (parameter_file.roughness if parameter_file else ())
@@ -238,7 +238,7 @@ def _format_stiffness(identification: Identification, parameter_file: ParameterF
         what = "one side, the other smooth"
     return (
         f"stiffness per area p/({PERSSON_GAMMA:g} h) = "
-        f"{predicted_stiffness(STIFFNESS_PRESSURE, h):.3g} N/m3 per MPa "
+        f"{predicted_stiffness(STATED_STIFFNESS_PRESSURE, h):.3g} N/m3 per MPa "
         f"(h = {1e6 * h:.4g} um of {what})"
     )
 

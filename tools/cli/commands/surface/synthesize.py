@@ -11,9 +11,9 @@ from ...outputs import declare_output
 
 MAX_MEMORY = 2e9
 """Largest memory [B] for a surface and the text of its file."""
-MAP_POINT_MEMORY, PROFILE_POINT_MEMORY = 64.0, 190.0
+MEMORY_PER_MAP_POINT, MEMORY_PER_PROFILE_POINT = 64.0, 190.0
 """Memory [B] for one point of a map and of a profile, with its text (measured at a million points)."""
-MAX_RIDGES = 1000
+MAX_WAVE_DIRECTIONS = 1000
 """Largest number of superposed directions of an isotropic surface."""
 SURFACE_TYPES = ("isotropic", "textured", "profile")
 
@@ -55,16 +55,16 @@ def _run_synthesize(args: argparse.Namespace) -> CommandResult:
         "seed": args.seed,
     }
     lines = [f"wrote {args.out}: {format_size(heights)}, rms height {document['rms']:.4g} m"]
-    return CommandResult(document=document, lines=lines)
+    return CommandResult(json_document=document, lines=lines)
 
 
 def _check_memory(args: argparse.Namespace) -> None:
     """Raise ValueError if the points need more memory than MAX_MEMORY."""
     if args.shape == "profile":
-        point_memory, count = PROFILE_POINT_MEMORY, float(args.points)
+        point_memory, count = MEMORY_PER_PROFILE_POINT, float(args.points)
         max_points = MAX_MEMORY / point_memory
     else:
-        point_memory, count = MAP_POINT_MEMORY, float(args.points) ** 2
+        point_memory, count = MEMORY_PER_MAP_POINT, float(args.points) ** 2
         max_points = (MAX_MEMORY / point_memory) ** 0.5
     if count * point_memory > MAX_MEMORY:
         raise ValueError(
@@ -84,10 +84,10 @@ def _make_heights(args: argparse.Namespace) -> Heights:
             raise ValueError(f"G = {min(values):g} m is outside (0, inf): fractal roughness")
     if args.seed < 0:
         raise ValueError(f"seed = {args.seed} is negative, allowed are 0, 1, 2, ...")
-    if not 1 <= args.ridges <= MAX_RIDGES:
-        raise ValueError(f"ridges = {args.ridges}, allowed are 1, 2, 3, ... {MAX_RIDGES}")
+    if not 1 <= args.ridges <= MAX_WAVE_DIRECTIONS:
+        raise ValueError(f"ridges = {args.ridges}, allowed are 1, 2, 3, ... {MAX_WAVE_DIRECTIONS}")
     _check_memory(args)
-    waves = synthesis.Waves(size=args.size, points=args.points, gamma=args.gamma)
+    waves = synthesis.Waves(sample_length=args.size, point_count=args.points, gamma=args.gamma)
     if args.shape == "isotropic":
         return synthesis.synthesize_isotropic(waves, args.D[0], args.G[0], args.ridges, args.seed)
     if args.shape == "textured":

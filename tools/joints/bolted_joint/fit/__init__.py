@@ -1,7 +1,7 @@
 """Fit procedures of the bolted joint: stiffness over preload, and loops in shear."""
 
 from ....common.options import Option
-from ....inputs.fitting.procedure import DAMPING_RATIO_OPTION, Procedure, lazy_fit
+from ....inputs.fitting.procedure import DAMPING_RATIO_OPTION, Procedure, make_lazy_fit
 
 SERIES_STIFFNESS_OPTION = Option(
     "series_stiffness",
@@ -22,7 +22,7 @@ FIT_PROCEDURES = (
             Option("modal_mass", "mass that vibrates on the joint [kg]", is_number=True),
             SERIES_STIFFNESS_OPTION,
         ),
-        run_fit=lazy_fit(f"{__name__}.preload"),
+        run_fit=make_lazy_fit(f"{__name__}.preload"),
     ),
     Procedure(
         name="loop",
@@ -41,6 +41,6 @@ FIT_PROCEDURES = (
             DAMPING_RATIO_OPTION,
             SERIES_STIFFNESS_OPTION,
         ),
-        run_fit=lazy_fit(f"{__name__}.loop"),
+        run_fit=make_lazy_fit(f"{__name__}.loop"),
     ),
 )

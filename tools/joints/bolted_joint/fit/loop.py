@@ -35,8 +35,13 @@ from ....inputs.fitting.branches import Loops
 from ....inputs.fitting.hysteresis import HysteresisLaw
 from ....inputs.fitting.least_squares import Unknown, UnknownExchange
 from ....inputs.fitting.measurement import ColumnNames, Measurement, read_measurement
-from ....inputs.fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
-from .preload import COMPLETE_JOINT, SERIES_STIFFNESS, joint_stiffness, merged_normalised_pressure
+from ....inputs.fitting.outcome import FitFacts, FitResult, fitted_parameters, make_unknowns
+from .preload import (
+    COMPLETE_JOINT_ENGINES,
+    SERIES_STIFFNESS_NAME,
+    joint_stiffness,
+    merged_normalised_pressure,
+)
 from .preload import FITTED_PARAMETERS as INTERFACE
 
 COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
@@ -46,26 +51,26 @@ fitted to vibrations, in which exponent and level have nearly the same effect.""
 START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
 """{parameter: further start values of the search}, in addition to the values of the start file. The start
 value of the level follows from the data."""
-NON_JOINT_UNKNOWNS = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS)
+UNKNOWNS_OUTSIDE_JOINT = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS_NAME)
 """Unknowns that are not parameters of the joint."""
 SERIES_STIFFNESS_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
-TABLE_DISPLACEMENT_RATIO = 1.05
+MAX_TABLE_DISPLACEMENT_RATIO = 1.05
 """Largest displacement of the tabulated law over the amplitude of the loops [1]."""
 PLAUSIBLE_FRICTION = (0.005, 3.0)
 """Friction coefficients [1] that are plausible for loops in gross slip."""
-_TABLE_STEPS = 48
+_FIRST_LOADING_STEPS = 48
 """Steps of the table of first loading, finer near rest."""
-_ELASTIC_TABLE_STEPS, _GROSS_SLIP_RATIO = 24, 4.0
+_ELASTIC_FIRST_LOADING_STEPS, _GROSS_SLIP_DISPLACEMENT_RATIO = 24, 4.0
 """Elastic sides: steps of the table, and displacement of gross slip over friction_limit/K_xx [1]."""
 
 
-def first_loading(
+def make_shear_loop_law(
     joint: AnyBoltedJoint,
     preload: float,
     series_stiffness: float | None = None,
     max_displacement: float = np.inf,
-) -> tuple[HysteresisLaw, Facts]:
+) -> tuple[HysteresisLaw, FitFacts]:
     """Law of the loops in shear at a preload [N] of each bolt, and facts about the joint.
 
     series_stiffness : [N/m] of a structure in series; None: rigid. The displacement is that of joint and
@@ -79,7 +84,7 @@ def first_loading(
     curve, approach, weight = _preloaded_interface(joint, preload)
     kappa, mu = float(joint.shear_stiffness_ratio()), joint.mu
     separation = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(
-        0.0, 1.0, _TABLE_STEPS + 1
+        0.0, 1.0, _FIRST_LOADING_STEPS + 1
     ) ** 2
     load, stiffness, d2_load = (
         value @ weight for value in curve.derivatives(approach - separation[:, None], 2)
@@ -87,7 +92,7 @@ def first_loading(
     motion, force, tangent_stiffness = separation * mu / kappa, mu * (load[0] - load), kappa * stiffness
     limit = float(mu * load[0])
     if joint.has_elastic_members:
-        gross_slip = _GROSS_SLIP_RATIO * limit / rest_stiffness(joint, preload)
+        gross_slip = _GROSS_SLIP_DISPLACEMENT_RATIO * limit / shear_stiffness_at_rest(joint, preload)
         motion, force, tangent_stiffness = _first_loading_of_elastic_sides(
             joint, preload, gross_slip, float(motion[-1]), max_displacement
         )
@@ -99,14 +104,14 @@ def first_loading(
     energy = table.antiderivative()
     end, max_force = float(displacement[-1]), float(force[-1])
 
-    def friction(motion: Array) -> Array:
+    def friction_force(motion: Array) -> Array:
         return np.where(motion < end, table(np.minimum(motion, end)), max_force)
 
     def friction_work(motion: Array) -> Array:
         inside = np.minimum(motion, end)
         return np.asarray(energy(inside) + max_force * (motion - inside))
 
-    return HysteresisLaw(friction, friction_work), {
+    return HysteresisLaw(friction_force, friction_work), {
         "friction_limit": (limit, "N", "mu times the normal force"),
         "shear_stiffness": (float(tangent_stiffness[0]), "N/m", "K_xx of the joint at rest: the level"),
         "exponent": (
@@ -121,8 +126,8 @@ def first_loading(
 def _first_loading_of_elastic_sides(
     joint: AnyBoltedJoint,
     preload: float,
-    uniform_length: float,
-    graded_length: float,
+    linear_displacement_term: float,
+    quadratic_displacement_term: float,
     max_displacement: float,
 ) -> tuple[Array, Array, Array]:
     """First loading along x with elastic sides: displacement (n) [m], force (n) [N], tangent stiffness [N/m].
@@ -130,9 +135,9 @@ def _first_loading_of_elastic_sides(
     Displacements: s = uniform_length t + graded_length t^2, t from 0 to 1 in equal steps. If the last one is
     larger than `max_displacement` [m], all are scaled down to end there.
     """
-    fraction = np.linspace(0.0, 1.0, _ELASTIC_TABLE_STEPS + 1)
-    motion = (uniform_length * fraction + graded_length * fraction**2) * min(
-        1.0, max_displacement / (uniform_length + graded_length)
+    fraction = np.linspace(0.0, 1.0, _ELASTIC_FIRST_LOADING_STEPS + 1)
+    motion = (linear_displacement_term * fraction + quadratic_displacement_term * fraction**2) * min(
+        1.0, max_displacement / (linear_displacement_term + quadratic_displacement_term)
     )
     force, stiffness = _follow_path(joint, preload, motion)
     curve = CubicSpline(motion, force, bc_type=((1, stiffness[0]), (1, stiffness[-1])))
@@ -142,7 +147,7 @@ def _first_loading_of_elastic_sides(
 def _follow_path(joint: AnyBoltedJoint, preload: float, displacement: Array) -> tuple[Array, Array]:
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], from the virgin state."""
     inputs: dict[str, ArrayLike] = {"preload": preload, "s_rel_x": displacement}
-    columns = COMPLETE_JOINT.with_parameters(joint).follow(inputs).columns
+    columns = COMPLETE_JOINT_ENGINES.with_parameters(joint).follow(inputs).columns
     return -columns["f_x"], columns["K_xx"]
 
 
@@ -156,11 +161,11 @@ def _masing_deviation(joint: AnyBoltedJoint, preload: float, loops: Loops, law: 
     for run in range(loops.run_index[-1] + 1):
         branches = np.unique(loops.branch_index[loops.run_index == run])
         middle = 0.5 * (np.max(loops.start_motion[branches]) + np.min(loops.start_motion[branches]))
-        paths = [np.linspace(middle, loops.start_motion[branches[0]], _ELASTIC_TABLE_STEPS + 1)]
+        paths = [np.linspace(middle, loops.start_motion[branches[0]], _ELASTIC_FIRST_LOADING_STEPS + 1)]
         for k in branches:
             start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
             end = motion[np.argmax(np.abs(motion - start))]
-            paths.append(np.linspace(start, end, _ELASTIC_TABLE_STEPS + 1))
+            paths.append(np.linspace(start, end, _ELASTIC_FIRST_LOADING_STEPS + 1))
         run_force, _ = _follow_path(joint, preload, np.concatenate(paths) - middle)
         for k, path, force in zip(branches, paths[1:], np.split(run_force, len(paths))[1:], strict=True):
             start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
@@ -170,7 +175,7 @@ def _masing_deviation(joint: AnyBoltedJoint, preload: float, loops: Loops, law: 
     return deviation
 
 
-def rest_stiffness(joint: AnyBoltedJoint, preload: float) -> float:
+def shear_stiffness_at_rest(joint: AnyBoltedJoint, preload: float) -> float:
     """Shear stiffness K_xx [N/m] at rest, at a preload [N] of each bolt.
 
     Raises ValueError as `first_loading`.
@@ -231,7 +236,7 @@ def fit(
     names = list(fitted_names or FITTED_PARAMETERS[file.law][: 3 if data.kind == "loops" else 2])
     if series_stiffness is not None and not 0.0 < series_stiffness < np.inf:
         raise InputRefusal(
-            f"series stiffness = {series_stiffness:g} N/m is outside (0, inf)", SERIES_STIFFNESS
+            f"series stiffness = {series_stiffness:g} N/m is outside (0, inf)", SERIES_STIFFNESS_NAME
         )
 
     def make_joint(parameter_values: Mapping[str, float]) -> AnyBoltedJoint:
@@ -241,31 +246,33 @@ def fit(
         return parameters
 
     def get_series_stiffness(parameter_values: Mapping[str, float]) -> float | None:
-        return parameter_values.get(SERIES_STIFFNESS, series_stiffness)
+        return parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness)
 
-    reach = TABLE_DISPLACEMENT_RATIO * data.amplitude if data.kind == "loops" else np.inf
+    reach = MAX_TABLE_DISPLACEMENT_RATIO * data.amplitude if data.kind == "loops" else np.inf
 
     def make_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
         set_status_text(
             "tries " + ", ".join(f"{name} = {value:.4g}" for name, value in parameter_values.items())
         )
-        return first_loading(
+        return make_shear_loop_law(
             make_joint(parameter_values), force, get_series_stiffness(parameter_values), reach
         )[0]
 
     model = hysteresis_fit.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
     measured_rest = data.rest_stiffness(modal_mass)
 
-    def total_rest_stiffness(parameter_values: Mapping[str, float]) -> float:
+    def total_stiffness_at_rest(parameter_values: Mapping[str, float]) -> float:
         series = get_series_stiffness(parameter_values)
         return 1.0 / (
-            1.0 / rest_stiffness(make_joint(parameter_values), force)
+            1.0 / shear_stiffness_at_rest(make_joint(parameter_values), force)
             + (0.0 if series is None else 1.0 / series)
         )
 
     notes = []
     if isinstance(data.data, Loops):
-        _check_loops(data, data.data, measured_rest / total_rest_stiffness({}), make_joint({}), force, file)
+        _check_loops(
+            data, data.data, measured_rest / total_stiffness_at_rest({}), make_joint({}), force, file
+        )
         if not data.data.is_stiffness_resolved and not fitted_names:
             _, *level_names = names
             names = names[:1]
@@ -274,27 +281,31 @@ def fit(
                 "all of the interface slips within few samples after each reversal; the stiffness after a "
                 f"reversal is at least {measured_rest:.3g} N/m"
             )
-    if series_stiffness is not None and SERIES_STIFFNESS not in names and series_stiffness <= measured_rest:
+    if (
+        series_stiffness is not None
+        and SERIES_STIFFNESS_NAME not in names
+        and series_stiffness <= measured_rest
+    ):
         raise InputRefusal(
             f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): the data "
             "show joint and structure together as that stiff at rest",
-            SERIES_STIFFNESS,
+            SERIES_STIFFNESS_NAME,
         )
-    unknown_list = make_unknowns(file, [name for name in names if name not in NON_JOINT_UNKNOWNS], {})
-    unknown_list += [hysteresis_fit.DAMPING_UNKNOWN] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
+    unknown_list = make_unknowns(file, [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT], {})
+    unknown_list += [hysteresis_fit.UNKNOWN_DAMPING_RATIO] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
-        Unknown(SERIES_STIFFNESS, "N/m", SERIES_STIFFNESS_START_RATIOS[0] * measured_rest, 0.0, np.inf)
-    ] * (SERIES_STIFFNESS in names)
-    level = _level_exchange(file, names, total_rest_stiffness)
+        Unknown(SERIES_STIFFNESS_NAME, "N/m", SERIES_STIFFNESS_START_RATIOS[0] * measured_rest, 0.0, np.inf)
+    ] * (SERIES_STIFFNESS_NAME in names)
+    level = _exchange_stiffness_level(file, names, total_stiffness_at_rest)
     is_vibration_with_level = data.kind != "loops" and set(FITTED_PARAMETERS[file.law][1:]) <= set(names)
     starts = {
         **START_VALUES,
-        SERIES_STIFFNESS: [times * measured_rest for times in SERIES_STIFFNESS_START_RATIOS[1:]],
+        SERIES_STIFFNESS_NAME: [times * measured_rest for times in SERIES_STIFFNESS_START_RATIOS[1:]],
     }
-    is_joint_alone = series_stiffness is None and SERIES_STIFFNESS not in names
+    is_joint_alone = series_stiffness is None and SERIES_STIFFNESS_NAME not in names
     is_corrected = data.kind == "loops" and file.values.has_elastic_members and is_joint_alone
 
-    def correct_measurement(parameter_values: Mapping[str, float]) -> Measurement:
+    def subtract_masing_deviation(parameter_values: Mapping[str, float]) -> Measurement:
         assert isinstance(data.data, Loops)
         off = _masing_deviation(make_joint(parameter_values), force, data.data, make_law(parameter_values))
         return replace(data, data=replace(data.data, force=data.data.force - off))
@@ -306,7 +317,7 @@ def fit(
         starts,
         level,
         is_vibration_with_level and level is not None,
-        correct_measurement if is_corrected else None,
+        subtract_masing_deviation if is_corrected else None,
     )
     result = fitted_parameters(
         file,
@@ -315,18 +326,18 @@ def fit(
         data.path.name,
         f"{data.range_text}, preload {force:g} N",
     )
-    law, joint_facts = first_loading(
+    law, joint_facts = make_shear_loop_law(
         make_joint(solution.values), force, get_series_stiffness(solution.values), reach
     )
-    slip_ratio = float(law.friction(np.array([data.amplitude]))[0]) / joint_facts["friction_limit"][0]
+    slip_ratio = float(law.friction_force(np.array([data.amplitude]))[0]) / joint_facts["friction_limit"][0]
     text = "largest friction force of the data over friction_limit"
     facts = joint_facts | {"slip_reached": (slip_ratio, "1", text)}
     return FitResult(
         result,
         solution,
         facts | hysteresis_fit.summarize_fit(data, solution, law, scale),
-        hysteresis_fit.make_pictures(data, model, solution.values, scale),
-        notes=[*notes, *hysteresis_fit.misfit_notes(data, solution)],
+        hysteresis_fit.make_plots(data, model, solution.values, scale),
+        notes=[*notes, *hysteresis_fit.list_misfit_notes(data, solution)],
     )
 
 
@@ -371,10 +382,10 @@ def _check_loops(
         )
 
 
-def _level_exchange(
+def _exchange_stiffness_level(
     parameter_file: ParameterFile,
     fitted_names: Sequence[str],
-    compute_rest_stiffness: Callable[[Mapping[str, float]], float],
+    compute_stiffness_at_rest: Callable[[Mapping[str, float]], float],
 ) -> UnknownExchange | None:
     """Replace the unknown parameter that sets the stiffness level by the unknown stiffness at rest [N/m].
 
@@ -385,9 +396,9 @@ def _level_exchange(
     _, level, *_ = FITTED_PARAMETERS[parameter_file.law]
     if level not in fitted_names:
         return None
-    return UnknownExchange(level, compute_rest_stiffness, "N/m", "stiffness at rest")
+    return UnknownExchange(level, compute_stiffness_at_rest, "N/m", "stiffness at rest")
 
 
 def _joint_parameters(parameter_values: Mapping[str, float]) -> dict[str, float]:
     """Select the parameters of the joint: all values except the other unknowns."""
-    return {name: value for name, value in parameter_values.items() if name not in NON_JOINT_UNKNOWNS}
+    return {name: value for name, value in parameter_values.items() if name not in UNKNOWNS_OUTSIDE_JOINT}

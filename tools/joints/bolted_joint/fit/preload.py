@@ -34,16 +34,16 @@ from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 from ....common import columns
 from ....inputs.fitting.least_squares import Solution, Unknown, covariance, select_start, solve
 from ....inputs.fitting.outcome import (
-    Facts,
+    FitFacts,
+    FitPlot,
     FitResult,
-    Picture,
     correlation_note,
     fitted_parameters,
     make_unknowns,
 )
 from ....run.engine import VariableJoint
 
-SERIES_STIFFNESS = "series_stiffness"
+SERIES_STIFFNESS_NAME = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
 COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "preload": unit_sizes("N", "kN"),
@@ -67,7 +67,7 @@ START_VALUES: Mapping[str, tuple[float, ...]] = {
 """{parameter: further start values of the search}, in addition to the values of the start file."""
 
 
-COMPLETE_JOINT = VariableJoint(MODELS[0])
+COMPLETE_JOINT_ENGINES = VariableJoint(MODELS[0])
 """The joint with elastic sides at the parameters of a trial."""
 
 
@@ -77,7 +77,7 @@ def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "nor
     direction : "normal" (K_zz) or "tangential" (K_xx)
     """
     if joint.has_elastic_members:
-        complete = COMPLETE_JOINT.with_parameters(joint)
+        complete = COMPLETE_JOINT_ENGINES.with_parameters(joint)
         columns = complete.follow({"preload": preload}, each_from_rest=True).columns
         return columns["K_zz" if direction == "normal" else "K_xx"]
     shape = merged_normalised_pressure(joint.pattern)
@@ -94,9 +94,9 @@ def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "nor
 
 
 @cache
-def merged_normalised_pressure(pattern: PressureSource) -> MergedDistribution:
+def merged_normalised_pressure(pressure_source: PressureSource) -> MergedDistribution:
     """Normalised pressure distribution without a moment, with nodes of equal pressure merged."""
-    return pressure_distribution(pattern).merge_nodes(keeps_moment=False)
+    return pressure_distribution(pressure_source).merge_nodes(keeps_moment_pressure=False)
 
 
 def fit(
@@ -138,9 +138,9 @@ def fit(
     )
 
     def predict(parameter_values: Mapping[str, float]) -> Array:
-        own = {name: value for name, value in parameter_values.items() if name != SERIES_STIFFNESS}
+        own = {name: value for name, value in parameter_values.items() if name != SERIES_STIFFNESS_NAME}
         joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
-        return curve.predict(joint, parameter_values.get(SERIES_STIFFNESS, series_stiffness), direction)
+        return curve.predict(joint, parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness), direction)
 
     def logarithmic_error(parameter_values: Mapping[str, float]) -> Array:
         return np.log(predict(parameter_values) / curve.measured_values)
@@ -150,12 +150,12 @@ def fit(
             f"{path}: has {curve.preload_count} different preloads, too few for {' and '.join(names)}: at "
             f"least {len(names)} are needed"
         )
-    unknowns = _find_start(file, names, curve, logarithmic_error)
+    unknowns = _find_start_values(file, names, curve, logarithmic_error)
     solution, is_noise_assumed = _solve(unknowns, logarithmic_error, curve)
-    own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS}
+    own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS_NAME}
     span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.quantity_name}"
     result = fitted_parameters(file, own, "calibration", Path(path).name, span)
-    stiffness = solution.values.get(SERIES_STIFFNESS, series_stiffness)
+    stiffness = solution.values.get(SERIES_STIFFNESS_NAME, series_stiffness)
     margin = 0.5 * curve.preload[0] if curve.preload_count == 1 else 0.0
     grid = np.linspace(curve.preload[0] - margin, curve.preload[-1] + margin, 200)
     finer = replace(curve, preload=grid, measured_values=np.ones_like(grid))
@@ -163,7 +163,7 @@ def fit(
         ("Hz", 1.0) if curve.quantity_name == "frequency" else ("N/um", conversion_factor("N/m", "N/um"))
     )
     kN = COLUMN_UNITS["preload"]["kN"]
-    picture = Picture(
+    picture = FitPlot(
         data_x=curve.preload / kN,
         data_y=curve.measured_values * size,
         misfit=100.0 * np.expm1(-solution.residuals),
@@ -288,7 +288,7 @@ def _set_modal_mass(
     )
 
 
-def _find_start(
+def _find_start_values(
     parameter_file: ParameterFile,
     fitted_names: Sequence[str],
     preload_curve: PreloadCurve,
@@ -296,15 +296,15 @@ def _find_start(
 ) -> Sequence[Unknown]:
     """Unknowns of the fit; their start values are those of several that have the smallest error."""
     parameters = make_unknowns(
-        parameter_file, [name for name in fitted_names if name != SERIES_STIFFNESS], {}
+        parameter_file, [name for name in fitted_names if name != SERIES_STIFFNESS_NAME], {}
     )
     level = (
         preload_curve.measured_values[-1]
         if preload_curve.quantity_name == "stiffness"
         else (2.0 * np.pi * preload_curve.measured_values[-1]) ** 2 * parameter_file.values.mass
     )
-    parameters += [Unknown(SERIES_STIFFNESS, "N/m", 3.0 * float(level), 0.0, np.inf)] * (
-        SERIES_STIFFNESS in fitted_names
+    parameters += [Unknown(SERIES_STIFFNESS_NAME, "N/m", 3.0 * float(level), 0.0, np.inf)] * (
+        SERIES_STIFFNESS_NAME in fitted_names
     )
 
     def evaluate_start(parameter_values: dict[str, float]) -> tuple[Mapping[str, float], float]:
@@ -318,7 +318,7 @@ def _find_start(
     return select_start(parameters, START_VALUES, evaluate_start)
 
 
-def _fit_facts(preload_curve: PreloadCurve, solution: Solution) -> Facts:
+def _fit_facts(preload_curve: PreloadCurve, solution: Solution) -> FitFacts:
     power = {}
     if preload_curve.preload_count > 1:
         text = f"of the preload with which the {preload_curve.quantity_name} grows"

@@ -28,15 +28,15 @@ from ....exchange.modelica.records import (
 
 DAMPING_TOLERANCE = 1e-3
 """Largest relative error [1] of the linearly interpolated dissipation factor."""
-MAX_FORCE_RATIO = 10.0
+MAX_CONTACT_FORCE_RATIO = 10.0
 """Total contact force at the end of the table over the one at tightening [1]."""
-PRELOADED_PAIR_COUNT, FIRST_SLIP_RATIO = 12, 2e-3
+PRELOADED_SLIDER_PAIR_COUNT, FIRST_SLIP_DISPLACEMENT_RATIO = 12, 2e-3
 """Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
 slip [1]. The slip displacements of the pairs form a geometric sequence."""
 FULL_CONTACT_FORCE_RATIOS = (2.0, 5.0)
 """Normal forces over that at tightening [1] at which further slider pairs come into full contact, in
 compression."""
-_FORCE_POINTS, _DAMPING_POINTS = 800, 200
+_FORCE_SAMPLE_COUNT, _DAMPING_SAMPLE_COUNT = 800, 200
 """Sample points on either side of the tightened state: for the force, before decimation, and for the
 damping."""
 
@@ -58,9 +58,9 @@ class CombinedSpring(NamedTuple):
 
     force_table: InterpolationTable
     damping_table: Array
-    shear_ratio: float
+    shear_stiffness_ratio: float
     preload_contact_force: float
-    pair_boundaries: Array
+    slider_pair_boundaries: Array
     slider_properties: Array
     bolt_forces: Array
 
@@ -84,19 +84,21 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     preload_force = total_force(np.zeros(1))[0][0]
     first, last = float(low - np.max(start)), float(high - np.max(start))
     compression = np.linspace(0.0, last, 200)
-    end = float(np.interp(MAX_FORCE_RATIO * preload_force, total_force(compression)[0], compression))
+    end = float(np.interp(MAX_CONTACT_FORCE_RATIO * preload_force, total_force(compression)[0], compression))
     c = np.unique(
-        np.concatenate([np.linspace(first, 0.0, _FORCE_POINTS), np.linspace(0.0, end, _FORCE_POINTS)])
+        np.concatenate(
+            [np.linspace(first, 0.0, _FORCE_SAMPLE_COUNT), np.linspace(0.0, end, _FORCE_SAMPLE_COUNT)]
+        )
     )
     load, stiffness, d2_load = total_force(c)
     curve = Curve(c, load, stiffness, d2_load[:-1], d2_load[1:])
     zero = int(np.searchsorted(c, 0.0))
     coarse = np.concatenate(
-        [np.linspace(first, 0.0, _DAMPING_POINTS), np.linspace(0.0, end, _DAMPING_POINTS)[1:]]
+        [np.linspace(first, 0.0, _DAMPING_SAMPLE_COUNT), np.linspace(0.0, end, _DAMPING_SAMPLE_COUNT)[1:]]
     )
     eta = np.interp(c, coarse, _dissipation_factor(spring, start + coarse[:, None]))
 
-    def is_linear(first_node: int, last_node: int) -> bool:
+    def is_dissipation_factor_linear(first_node: int, last_node: int) -> bool:
         line = np.interp(
             c[first_node : last_node + 1], c[[first_node, last_node]], eta[[first_node, last_node]]
         )
@@ -107,12 +109,19 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
             )
         )
 
-    table = decimate_curve(curve, reference_node=zero, fixed_nodes=(zero,), segment_fits=is_linear)
+    table = decimate_curve(
+        curve, reference_node=zero, fixed_nodes=(zero,), segment_fits=is_dissipation_factor_linear
+    )
     damping = np.column_stack([table.rows[:, 0], np.interp(table.rows[:, 0], c, eta)])
     table.rows[:, 1] -= load[zero]
     levels = [np.interp(factor * preload_force, load, c) for factor in FULL_CONTACT_FORCE_RATIOS]
     heights = np.concatenate(
-        [[first], first * np.geomspace(1.0, FIRST_SLIP_RATIO, PRELOADED_PAIR_COUNT)[1:], [0.0], levels]
+        [
+            [first],
+            first * np.geomspace(1.0, FIRST_SLIP_DISPLACEMENT_RATIO, PRELOADED_SLIDER_PAIR_COUNT)[1:],
+            [0.0],
+            levels,
+        ]
     )
     force, normal, _ = total_force(heights)
     rows = np.column_stack([heights, force, normal])
@@ -159,7 +168,11 @@ def _make_record(
             "mu": spring.joint.mu,
         }
     ) | format_computed_values(
-        {"tight": tight.preload_contact_force, "shear": tight.shear_ratio, "eta_t": float(rest["eta_t"])}
+        {
+            "tight": tight.preload_contact_force,
+            "shear": tight.shear_stiffness_ratio,
+            "eta_t": float(rest["eta_t"]),
+        }
     )
     force = f"{preload / 1e3:g} kN"
     return ModelicaRecord(
@@ -168,7 +181,7 @@ def _make_record(
         table=tight.force_table,
         values=values
         | {
-            "heights": format_matrix(tight.pair_boundaries),
+            "heights": format_matrix(tight.slider_pair_boundaries),
             "sliders": format_matrix(tight.slider_properties),
             "eta_n": format_matrix(tight.damping_table),
             "bolt_forces": "{"
@@ -187,8 +200,8 @@ MODELICA_COMPONENT = ModelicaComponent(
     flanges=("flange_x", "flange_y", "flange_z"),
     make_template_texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
-        "strongest": f"{MAX_FORCE_RATIO:g}",
+        "strongest": f"{MAX_CONTACT_FORCE_RATIO:g}",
         "spread": f"{UNIFORM_DEVIATION:.15g}",
-        "sliders": f"{2 * (PRELOADED_PAIR_COUNT + len(FULL_CONTACT_FORCE_RATIOS))}",
+        "sliders": f"{2 * (PRELOADED_SLIDER_PAIR_COUNT + len(FULL_CONTACT_FORCE_RATIOS))}",
     },
 )

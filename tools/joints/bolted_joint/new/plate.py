@@ -69,7 +69,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     sheet = ParameterSheet(KIND.name, law)
     heights = faces.add_faces(sheet, options)
     hole, hole_source = _hole_diameter(options, thread)
-    moduli = (sheet.value_of("side1.E"), sheet.value_of("side2.E"))
+    moduli = (sheet.get_value("side1.E"), sheet.get_value("side2.E"))
     for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", options["attached"])):
         if options["tapped"] and options["thickness"] is None and value and options[name] == value:
             raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
@@ -90,7 +90,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         * bolt.clamped_parts[0].thickness
         * faces.read_materials(options)[0].numbers["density"].value
     )
-    sheet.add("mass", mass, "estimate", "mass of the plate of side 1, assumed to vibrate")
+    sheet.add_parameter("mass", mass, "estimate", "mass of the plate of side 1, assumed to vibrate")
     tightening = find_preload(options, thread, bolt.bearing_diameter, hole)
     tightening.add_to(sheet)
     preload, warnings = tightening.force, [*tightening.warnings]
@@ -101,7 +101,9 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         )
     for choice in ("critical_area", "spot_stiffness"):
         default = {"critical_area": "continuity", "spot_stiffness": "hertz"}[choice]
-        sheet.add(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
+        sheet.add_parameter(
+            choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md"
+        )
     file = sheet.build_file(f"plate {options['plate']} with {options['bolts']}")
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
     layers, depth = bolt.clamped_parts, 0.0
@@ -116,7 +118,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     joint = NewJoint(file, {})
     if not is_rigid:
         attached = options["attached"] or next(iter(ATTACHMENTS))
-        joint = plate_finite_elements.compute_facts(file, plates, attached, shape)
+        joint = plate_finite_elements.compute_joint_or_warning(file, plates, attached, shape)
     facts = _design_facts(file, bolt, heights, preload)
     if is_rigid:
         facts |= _interface_share_facts(facts["interface_K_zz"][0] / count, bolt)
@@ -248,18 +250,18 @@ def _add_plate(
     parameter_sheet: ParameterSheet,
     bolted_plate: BoltedPlate,
     clamped_bolt: ClampedBolt,
-    hole_source: tuple[str, str],
+    hole_diameter_source: tuple[str, str],
 ) -> None:
     for name in ("length", "width", "x", "y"):
         parameter_sheet.add_drawing_value(f"plate.{name}", getattr(bolted_plate, name))
-    parameter_sheet.add("plate.hole_diameter", bolted_plate.hole_diameter, *hole_source)
+    parameter_sheet.add_parameter("plate.hole_diameter", bolted_plate.hole_diameter, *hole_diameter_source)
     cone = (
         f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
         f"{min(layer.thickness for layer in clamped_bolt.clamped_parts) * 1e3:g} mm with tan(phi) = "
         f"{clamped_bolt.cone_slope:.4g}"
     )
-    parameter_sheet.add("plate.cone_diameter", bolted_plate.cone_diameter, "derived", cone)
-    parameter_sheet.add("A_0", bolted_plate.area, "derived", "area of the plate without the holes")
+    parameter_sheet.add_parameter("plate.cone_diameter", bolted_plate.cone_diameter, "derived", cone)
+    parameter_sheet.add_parameter("A_0", bolted_plate.area, "derived", "area of the plate without the holes")
 
 
 def _add_bolts(
@@ -267,32 +269,32 @@ def _add_bolts(
 ) -> None:
     row_bolts, row_distance = bolted_plate.equivalent_bolt_rows
     rows = "from the bolt positions: two equivalent rows that carry the same moment about x"
-    parameter_sheet.add("n_bolts", float(len(bolted_plate.x)), "user", "stated on the drawing")
-    parameter_sheet.add("row_bolts", row_bolts, "derived", rows)
-    parameter_sheet.add("row_distance", row_distance, "derived", rows)
+    parameter_sheet.add_parameter("n_bolts", float(len(bolted_plate.x)), "user", "stated on the drawing")
+    parameter_sheet.add_parameter("row_bolts", row_bolts, "derived", rows)
+    parameter_sheet.add_parameter("row_distance", row_distance, "derived", rows)
     text = f"VDI 2230, 1/delta_S of {thread.name} over {clamped_bolt.grip * 1e3:g} mm of grip"
-    parameter_sheet.add("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
+    parameter_sheet.add_parameter("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
 
 
 def _add_embedding_loss(
     parameter_sheet: ParameterSheet,
     options: DrawingOptions,
     clamped_bolt: ClampedBolt,
-    height_range: faces.HeightRange,
+    rms_height_range: faces.HeightRange,
 ) -> float:
     """Add the preload loss [N] by embedding to the sheet, and return it."""
     if options["embedding"] is not None:
         stated = parse_quantity("embedding", options["embedding"])
         parameter_sheet.add_drawing_number("embedding", stated)
         return stated.value
-    depth = vdi2230.embedding_depth(height_range.Rz, 1, bool(options["tapped"]))
+    depth = vdi2230.embedding_depth(rms_height_range.Rz, 1, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
     text = (
         f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, "
         f"{'head' if options['tapped'] else 'head and nut'}, "
-        f"one interface, Rz {height_range.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
+        f"one interface, Rz {rms_height_range.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
     )
-    parameter_sheet.add("embedding", loss, "estimate", text)
+    parameter_sheet.add_parameter("embedding", loss, "estimate", text)
     return loss
 
 
@@ -348,7 +350,10 @@ def _interface_share_facts(
 
 
 def _design_facts(
-    parameter_file: ParameterFile, clamped_bolt: ClampedBolt, height_range: faces.HeightRange, preload: float
+    parameter_file: ParameterFile,
+    clamped_bolt: ClampedBolt,
+    rms_height_range: faces.HeightRange,
+    preload: float,
 ) -> dict[str, tuple[float, str, str]]:
     """Facts for the designer: preload, pressures, stiffnesses, load factor, friction."""
     values = parameter_file.values
@@ -393,8 +398,16 @@ def _design_facts(
         ),
     }
     facts |= _friction_facts(parameter_file, preload)
-    if height_range.h_max > height_range.h_min and parameter_file.law == "roughness":
+    if rms_height_range.h_max > rms_height_range.h_min and parameter_file.law == "roughness":
         h = float(parameter_file.values_by_name["h"])
-        facts["interface_K_zz_low"] = (K * h / height_range.h_max, "N/m", "with the largest of the heights")
-        facts["interface_K_zz_high"] = (K * h / height_range.h_min, "N/m", "with the smallest of the heights")
+        facts["interface_K_zz_low"] = (
+            K * h / rms_height_range.h_max,
+            "N/m",
+            "with the largest of the heights",
+        )
+        facts["interface_K_zz_high"] = (
+            K * h / rms_height_range.h_min,
+            "N/m",
+            "with the smallest of the heights",
+        )
     return {name: fact for name, fact in facts.items() if np.isfinite(fact[0])}

@@ -212,11 +212,11 @@ def _interface_stiffness(
     return np.stack([ratio * normal, ratio * normal, normal], axis=1)
 
 
-Facts = dict[str, tuple[float, str, str]]
+JointFacts = dict[str, tuple[float, str, str]]
 """Results of a joint: {name: (value, unit, explanation)}."""
 
 
-def compute_facts(
+def compute_joint_or_warning(
     parameter_file: ParameterFile,
     bolted_plates: BoltedPlates,
     attachment: str,
@@ -236,7 +236,7 @@ def compute_facts(
     return NewJoint(computed.parameter_file, joint_facts(computed.parameter_file, bolted_plates.preload))
 
 
-def joint_facts(parameter_file: ParameterFile, preload: float) -> Facts:
+def joint_facts(parameter_file: ParameterFile, preload: float) -> JointFacts:
     """Facts about a joint with elastic sides at a preload [N] of each bolt, equal to report and FMU."""
     compliances = BoltedJointSpring.for_joint(parameter_file.values).compliances(preload)
     remaining_preload = float(working_preload(parameter_file.values, preload))
@@ -244,11 +244,11 @@ def joint_facts(parameter_file: ParameterFile, preload: float) -> Facts:
     return (
         _stiffness_facts(compliances, attachment, preload)
         | _load_facts(compliances, remaining_preload, attachment)
-        | _interface_share(compliances)
+        | _interface_share_fact(compliances)
     )
 
 
-def _stiffness_facts(compliances: Compliances, attachment: str, preload: float) -> Facts:
+def _stiffness_facts(compliances: Compliances, attachment: str, preload: float) -> JointFacts:
     """Stiffnesses in all directions at a preload [N], first of the complete joint, then of its members."""
     rows, members = {}, {}
     for name, unit, (joint, interface, alone, _), parts in compliances.table_rows():
@@ -270,7 +270,7 @@ def _stiffness_facts(compliances: Compliances, attachment: str, preload: float) 
     return rows | members
 
 
-def _interface_share(compliances: Compliances) -> Facts:
+def _interface_share_fact(compliances: Compliances) -> JointFacts:
     """Share of the interface in the compliance of the complete joint."""
     share = compliances.compliance_shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
@@ -281,7 +281,7 @@ def _interface_share(compliances: Compliances) -> Facts:
     return {"interface_share": (float(share[2]), "1", text)}
 
 
-def _load_facts(compliances: Compliances, remaining_preload: float, attachment: str) -> Facts:
+def _load_facts(compliances: Compliances, remaining_preload: float, attachment: str) -> JointFacts:
     """Effect of an external force along z without bending: load factor, bolt share, opening load."""
     where = f"force along z at {ATTACHMENTS[attachment]}"
     opens = compliances.opening_load(remaining_preload)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ....common.options import option_flag
+from ....common.options import format_option_flag
 from ....common.pressure import warn_overload
 from ....inputs.drawing import vdi2230
 from ....inputs.drawing.part import DrawingOptions, ParameterSheet
@@ -47,9 +47,9 @@ class AssemblyPreload:
 
     def add_to(self, parameter_sheet: ParameterSheet) -> None:
         """Add the start value of the input `preload` to the sheet, with its range."""
-        parameter_sheet.add("inputs.preload", self.force, self.kind, self.source)
+        parameter_sheet.add_parameter("inputs.preload", self.force, self.kind, self.source)
         if self.has_range:
-            parameter_sheet.set_range("inputs.preload", self.low, self.high)
+            parameter_sheet.set_parameter_range("inputs.preload", self.low, self.high)
 
     def facts(self) -> dict[str, tuple[float, str, str]]:
         """Range of the preload and utilisation of the yield strength, as far as they are known."""
@@ -108,7 +108,7 @@ def _check_options(options: DrawingOptions) -> None:
             continue
         if name == "head_friction" or options["preload"] is not None:
             raise ValueError(
-                f"{option_flag(name)} has no effect without --torque; state --torque, or leave it out"
+                f"{format_option_flag(name)} has no effect without --torque; state --torque, or leave it out"
             )
 
 
@@ -186,7 +186,7 @@ def _check_strength(
     Raises ValueError for a torque at which the bolt, or the strongest bolt, yields.
     """
     stated = options["property_class"]
-    name = stated or vdi2230.STRONGEST_CLASS
+    name = stated or vdi2230.STRONGEST_PROPERTY_CLASS
     strength = property_class_strength(name, "yield", thread)
     utilisation = vdi2230.comparative_stress(thread, preload.force, thread_friction) / strength
     bolt = f"{thread.name}-{name}" + ("" if stated else ", the strongest class")

@@ -14,8 +14,8 @@ from ....exchange.modelica.records import (
     format_computed_values,
     format_number,
     format_parameter_values,
+    make_curve_of_table,
     make_identifier,
-    to_curve,
 )
 
 
@@ -24,7 +24,7 @@ def _make_records(
 ) -> list[ModelicaRecord]:
     spring = GearMeshSpring.tabulate(parameter_file.values)
     table = decimate_curve(spring.curve)
-    energy = to_curve(table).energy(table.rows[:, 0])
+    energy = make_curve_of_table(table).energy(table.rows[:, 0])
     values = format_parameter_values(_wheel_parameters(spring.joint)) | format_computed_values(
         {"closing": spring.closing_end}
     )

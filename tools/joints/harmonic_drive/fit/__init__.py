@@ -1,7 +1,7 @@
 """Fit procedures of the harmonic drive: torque-angle curve, loops, logs of a robot, row of a catalogue."""
 
 from ....common.options import Option
-from ....inputs.fitting.procedure import Procedure, lazy_fit
+from ....inputs.fitting.procedure import Procedure, make_lazy_fit
 from ..catalogue import STIFFNESS_COLUMNS
 
 FIT_PROCEDURES = (
@@ -21,7 +21,7 @@ FIT_PROCEDURES = (
                 choices=("table",),
             ),
         ),
-        run_fit=lazy_fit(f"{__name__}.torque_angle"),
+        run_fit=make_lazy_fit(f"{__name__}.torque_angle"),
     ),
     Procedure(
         name="loop",
@@ -35,7 +35,7 @@ FIT_PROCEDURES = (
                 is_number=True,
             ),
         ),
-        run_fit=lazy_fit(f"{__name__}.hysteresis"),
+        run_fit=make_lazy_fit(f"{__name__}.hysteresis"),
     ),
     Procedure(
         name="log",
@@ -71,7 +71,7 @@ FIT_PROCEDURES = (
                 is_number=True,
             ),
         ),
-        run_fit=lazy_fit(f"{__name__}.log"),
+        run_fit=make_lazy_fit(f"{__name__}.log"),
     ),
     Procedure(
         name="catalogue",
@@ -103,6 +103,6 @@ FIT_PROCEDURES = (
                 choices=("catalogue", "hu2023"),
             ),
         ),
-        run_fit=lazy_fit(f"{__name__}.catalogue"),
+        run_fit=make_lazy_fit(f"{__name__}.catalogue"),
     ),
 )

@@ -14,28 +14,31 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.prescribed_midline import DEFAULT_CORNER_RATIO, CatalogueDrive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
+from jointfmu.joints.harmonic_drive.prescribed_midline import (
+    DEFAULT_CORNER_HALF_WIDTH_RATIO,
+    CatalogueDriveParameters,
+)
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
 from ....inputs.catalogue import SourcedNumber
 from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution, solve
-from ....inputs.fitting.outcome import Facts, FitResult, fitted_parameters, make_predictor, make_unknowns
-from ..catalogue import STIFFNESS_NAMES
+from ....inputs.fitting.outcome import FitFacts, FitResult, fitted_parameters, make_predictor, make_unknowns
+from ..catalogue import STIFFNESS_COLUMN_NAMES
 from . import drive
 from .drive import CatalogueRow, angle_picture, stiffness, stiffness_picture
 
 FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 """Parameters of the law `hu2023` that are fitted."""
-EXTRA_PARAMETER = "torque_smoothing"
+EXTRA_FITTED_PARAMETER = "torque_smoothing"
 """Parameter that is fitted too if FITTED_PARAMETERS alone do not meet the wind-up angles."""
 MAX_ANGLE_ERROR = 0.009
 """Largest relative error [1] of the angle at T1, T2 and the rated torque: 1 % with a margin."""
-FITTED_ANGLE_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
+EXACT_ANGLE_STANDARD_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
 """Relative standard deviations [1] of the angle at T1, T2 and the rated torque. They are tried in turn until
 the fitted angles are within MAX_ANGLE_ERROR."""
-UNFITTED_ANGLE_DEVIATION = 0.2
+OTHER_ANGLE_STANDARD_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
 MAX_TORQUE_RATIO = 4.0
 """max_torque over rated torque [1], about the repeated peak torque of catalogue drives."""
@@ -64,15 +67,15 @@ def fit(
     """
     rated, kind = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
     catalogue_row = CatalogueRow(**row, rated=rated)
-    printed = source_numbers(catalogue_row, kind, ratio, source)
-    return (make_line_drive_from_row if law == "catalogue" else fit_contact_pair_law)(
+    printed = make_sourced_numbers(catalogue_row, kind, ratio, source)
+    return (make_drive_with_catalogue_law_from_row if law == "catalogue" else fit_contact_pair_law)(
         catalogue_row, start_parameters, fitted_names, printed, source
     )
 
 
-def source_numbers(
+def make_sourced_numbers(
     catalogue_row: CatalogueRow,
-    rated_origin: str = "catalogue",
+    rated_torque_origin: str = "catalogue",
     ratio: float | None = None,
     source: str = "catalogue",
 ) -> dict[str, SourcedNumber]:
@@ -83,11 +86,12 @@ def source_numbers(
     source       : where the row is published
     """
     origin = f"{source} ({catalogue_row})"
-    rated = origin if rated_origin == "catalogue" else "no rated torque given; T2 of the catalogue"
+    rated = origin if rated_torque_origin == "catalogue" else "no rated torque given; T2 of the catalogue"
     numbers = {
-        name: SourcedNumber(getattr(catalogue_row, name), "catalogue", origin) for name in STIFFNESS_NAMES
+        name: SourcedNumber(getattr(catalogue_row, name), "catalogue", origin)
+        for name in STIFFNESS_COLUMN_NAMES
     }
-    numbers["rated_torque"] = SourcedNumber(catalogue_row.rated, rated_origin, rated)
+    numbers["rated_torque"] = SourcedNumber(catalogue_row.rated, rated_torque_origin, rated)
     return numbers if ratio is None else numbers | {"ratio": SourcedNumber(ratio, "catalogue", origin)}
 
 
@@ -106,20 +110,22 @@ def fit_contact_pair_law(
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
     """
-    sourced_numbers = sourced_numbers or source_numbers(catalogue_row)
+    sourced_numbers = sourced_numbers or make_sourced_numbers(catalogue_row)
     file = start_parameters or load_default("harmonic_drive")
     rated = sourced_numbers["rated_torque"]
     origin = sourced_numbers["T1"].source
     file = drive.resize_drive(file, catalogue_row.rated, MAX_TORQUE_RATIO, rated.kind, rated.source)
     if "ratio" in sourced_numbers:
         file = file.with_values({"ratio": sourced_numbers["ratio"].value}, "catalogue", origin)
-    file = file.with_values({EXTRA_PARAMETER: catalogue_row.T1}, "catalogue", f"T1 of {origin}")
+    file = file.with_values({EXTRA_FITTED_PARAMETER: catalogue_row.T1}, "catalogue", f"T1 of {origin}")
     torque, max_torque = comparison_torques(catalogue_row, file.values.max_torque), file.values.max_torque
     choices = (
-        [tuple(fitted_names)] if fitted_names else [FITTED_PARAMETERS, (*FITTED_PARAMETERS, EXTRA_PARAMETER)]
+        [tuple(fitted_names)]
+        if fitted_names
+        else [FITTED_PARAMETERS, (*FITTED_PARAMETERS, EXTRA_FITTED_PARAMETER)]
     )
     file = drive.scale_stiffness(file, choices[0], torque, catalogue_row.wind_up(torque))
-    solution, deviation = _solve_weighted(catalogue_row, file, choices, torque)
+    solution, deviation = _fit_with_increasing_weight(catalogue_row, file, choices, torque)
     result = fitted_parameters(file, solution.values, "catalogue", origin, f"torque 0 to {max_torque:g} N.m")
     result = replace(result, name=f"fitted to {source}")
     errors = drive.wind_up(result.values, torque) / catalogue_row.wind_up(torque) - 1.0
@@ -129,7 +135,7 @@ def fit_contact_pair_law(
     facts["angle_error_largest"] = float(errors[worst]), "1", text
     note = (
         f"standard deviations: the angle known to {100 * deviation:g} % at T1, T2 and rated torque, "
-        f"{100 * UNFITTED_ANGLE_DEVIATION:g} % elsewhere"
+        f"{100 * OTHER_ANGLE_STANDARD_DEVIATION:g} % elsewhere"
     )
     pictures = (
         angle_picture(catalogue_row, result.values, {}, torque),
@@ -144,13 +150,13 @@ def comparison_torques(catalogue_row: CatalogueRow, max_torque: float) -> Array:
     """Torques [N.m] up to about `max_torque` at which the smooth law is compared with the lines of a row."""
     ends = np.array([0.0, catalogue_row.T1, catalogue_row.T2, max(max_torque, 1.5 * catalogue_row.T2)])
     samples = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
-    return np.unique(np.concatenate([catalogue_row.fitted_torques, *samples]))
+    return np.unique(np.concatenate([catalogue_row.torques_of_exact_angles, *samples]))
 
 
-def _solve_weighted(
+def _fit_with_increasing_weight(
     catalogue_row: CatalogueRow,
     parameter_file: ParameterFile,
-    unknown_sets: Sequence[Sequence[str]],
+    sets_of_unknowns: Sequence[Sequence[str]],
     torque: Array,
 ) -> tuple[Solution, float]:
     """Fit the contact pair with increasing weight of the angles at T1, T2 and rated torque, until they match.
@@ -160,12 +166,12 @@ def _solve_weighted(
     Returns the solution and its relative standard deviation [1] of these angles. Raises RuntimeError if no
     fit meets them.
     """
-    exact, target = np.isin(torque, catalogue_row.fitted_torques), catalogue_row.wind_up(torque)
+    exact, target = np.isin(torque, catalogue_row.torques_of_exact_angles), catalogue_row.wind_up(torque)
     angles = make_predictor(parameter_file, lambda joint: drive.wind_up(joint, torque))
     limits = dict(drive.parameter_bounds(parameter_file)) | {"K_FTS0": (catalogue_row.K2, np.inf)}
     best = np.inf
-    for names, deviation in product(unknown_sets, FITTED_ANGLE_DEVIATIONS):
-        scale = np.where(exact, deviation, UNFITTED_ANGLE_DEVIATION)
+    for names, deviation in product(sets_of_unknowns, EXACT_ANGLE_STANDARD_DEVIATIONS):
+        scale = np.where(exact, deviation, OTHER_ANGLE_STANDARD_DEVIATION)
         solution = solve(
             make_unknowns(parameter_file, names, limits),
             lambda values, scale=scale: (angles(values) / target - 1.0) / scale,  # type: ignore[misc]
@@ -182,17 +188,17 @@ def _solve_weighted(
             "start",
         )
     raise RuntimeError(
-        f"no law with {', '.join(unknown_sets[-1])} free keeps the angle of {catalogue_row} at T1, T2 "
+        f"no law with {', '.join(sets_of_unknowns[-1])} free keeps the angle of {catalogue_row} at T1, T2 "
         "and rated torque "
         f"{catalogue_row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by "
         f"{100 * best:.2g} %"
     )
 
 
-PAIR_LAW_TEXT = "law of the contact pair"
+CONTACT_PAIR_LAW_TEXT = "law of the contact pair"
 
 
-def make_line_drive(
+def make_drive_with_catalogue_law(
     drive_name: str,
     sourced_numbers: Mapping[str, SourcedNumber],
     start_parameters: ParameterFile | None = None,
@@ -205,14 +211,17 @@ def make_line_drive(
     Raises ValueError for a number outside its limits.
     """
     file = start_parameters or load_default("harmonic_drive")
-    kept = ["corner"] if isinstance(file.values, CatalogueDrive) else []
+    kept = ["corner"] if isinstance(file.values, CatalogueDriveParameters) else []
     if not (kept or "corner" in sourced_numbers):
         text = "default choice: the angle at the corners of catalogue drives within 0.4 %"
-        sourced_numbers = {**sourced_numbers, "corner": SourcedNumber(DEFAULT_CORNER_RATIO, "user", text)}
-    return drive.change_law(file, CatalogueDrive, drive_name, sourced_numbers, kept)
+        sourced_numbers = {
+            **sourced_numbers,
+            "corner": SourcedNumber(DEFAULT_CORNER_HALF_WIDTH_RATIO, "user", text),
+        }
+    return drive.change_law(file, CatalogueDriveParameters, drive_name, sourced_numbers, kept)
 
 
-def make_line_drive_from_row(
+def make_drive_with_catalogue_law_from_row(
     catalogue_row: CatalogueRow,
     start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
@@ -229,9 +238,9 @@ def make_line_drive_from_row(
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
     max_torque = MAX_TORQUE_RATIO * catalogue_row.rated
     largest = SourcedNumber(max_torque, "estimate", f"{MAX_TORQUE_RATIO:g} times rated_torque")
-    file = make_line_drive(
+    file = make_drive_with_catalogue_law(
         source,
-        {**(sourced_numbers or source_numbers(catalogue_row)), "max_torque": largest},
+        {**(sourced_numbers or make_sourced_numbers(catalogue_row)), "max_torque": largest},
         start_parameters,
     )
     pair, note = _fit_contact_pair_law_or_note(
@@ -242,7 +251,7 @@ def make_line_drive_from_row(
     )
     also = {}
     if pair is not None:
-        also = {PAIR_LAW_TEXT: pair}
+        also = {CONTACT_PAIR_LAW_TEXT: pair}
         facts |= _contact_pair_facts(catalogue_row, pair, max_torque)
     angle = angle_picture(catalogue_row, file.values, also, comparison_torques(catalogue_row, max_torque))
     return FitResult(
@@ -256,18 +265,18 @@ def make_line_drive_from_row(
 
 def _fit_contact_pair_law_or_note(
     catalogue_row: CatalogueRow, start_parameters: ParameterFile | None
-) -> tuple[Drive | None, list[str]]:
+) -> tuple[DriveParameters | None, list[str]]:
     """Fit the law of the contact pair to the angles of the row; None and a note if no fit meets them."""
     try:
-        drive: Drive = fit_contact_pair_law(catalogue_row, start_parameters).parameters.values
+        drive: DriveParameters = fit_contact_pair_law(catalogue_row, start_parameters).parameters.values
     except RuntimeError as error:
-        return None, [f"the {PAIR_LAW_TEXT} cannot be told beside it: {error}"]
+        return None, [f"the {CONTACT_PAIR_LAW_TEXT} cannot be told beside it: {error}"]
     return drive, []
 
 
 def _angle_errors(
-    catalogue_row: CatalogueRow, fitted_drive: Drive, extra_torques: Mapping[str, float]
-) -> Facts:
+    catalogue_row: CatalogueRow, fitted_drive: DriveParameters, extra_torques: Mapping[str, float]
+) -> FitFacts:
     """Relative errors of the angle of a law at T1, T2, the rated torque, and extra torques [N.m]."""
     facts = {}
     for name, T in {
@@ -281,20 +290,22 @@ def _angle_errors(
     return facts
 
 
-def _max_torque_fact(catalogue_row: CatalogueRow, max_torque: float) -> Facts:
+def _max_torque_fact(catalogue_row: CatalogueRow, max_torque: float) -> FitFacts:
     text = f"{MAX_TORQUE_RATIO:g} times the rated torque {catalogue_row.rated:g} N.m"
     return {"max_torque": (max_torque, "N.m", text)}
 
 
-def _contact_pair_facts(catalogue_row: CatalogueRow, pair_drive: Drive, max_torque: float) -> Facts:
+def _contact_pair_facts(
+    catalogue_row: CatalogueRow, contact_pair_drive: DriveParameters, max_torque: float
+) -> FitFacts:
     """Largest errors of angle and stiffness of the contact-pair law, compared with the catalogue lines."""
     torque = np.linspace(0.0, max_torque, 401)[1:]
-    angle = drive.wind_up(pair_drive, torque) / catalogue_row.wind_up(torque) - 1.0
+    angle = drive.wind_up(contact_pair_drive, torque) / catalogue_row.wind_up(torque) - 1.0
     i = int(np.argmax(np.abs(angle)))
-    text = f"{PAIR_LAW_TEXT} over catalogue - 1"
+    text = f"{CONTACT_PAIR_LAW_TEXT} over catalogue - 1"
     facts = {"pair_angle_error": (float(angle[i]), "1", f"{text} at {torque[i]:.3g} N.m, the largest")}
     for name, T in (("zero", 0.0), ("rated", catalogue_row.rated), ("max", max_torque)):
-        K, step = float(stiffness(pair_drive, np.array(T))), float(catalogue_row.stiffness(T))
+        K, step = float(stiffness(contact_pair_drive, np.array(T))), float(catalogue_row.stiffness(T))
         facts[f"pair_stiffness_{name}"] = (
             K / step - 1.0,
             "1",

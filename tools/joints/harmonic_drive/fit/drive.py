@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.law import ContactPairDrive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
+from jointfmu.joints.harmonic_drive.law import ContactPairDriveParameters
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, build_parameter_set, check_fields, flat_fields, quantity_field
+from jointfmu.quantity import Array, build_parameter_set, check_fields, flatten_fields, quantity_field
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
 from ....inputs.catalogue import SourcedNumber
 from ....inputs.fitting.measurement import ColumnNames
-from ....inputs.fitting.outcome import Picture
+from ....inputs.fitting.outcome import FitPlot
 
 STIFFNESS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "hu2023": ("K_FTS0", "drive_scale"),
@@ -45,7 +45,7 @@ COLUMN_NAMES = ColumnNames("torque", "angle", *COLUMN_UNITS.values())
 RAD_PER_ARCMIN = COLUMN_UNITS["angle"]["arcmin"]
 
 
-def wind_up(drive: Drive, torque: Array) -> Array:
+def wind_up(drive: DriveParameters, torque: Array) -> Array:
     """Wind-up (...) [rad] of a drive without hysteresis at torques (...) [N.m], equal to that of its FMU."""
     return torque_curve(drive).odd_inverse(torque)
 
@@ -99,7 +99,7 @@ def scale_stiffness(
 
 def change_law(
     start_file: ParameterFile,
-    law_class: type[Drive],
+    law_class: type[DriveParameters],
     parameter_set_name: str,
     sourced_numbers: Mapping[str, SourcedNumber],
     copied_names: Sequence[str] = (),
@@ -111,7 +111,7 @@ def change_law(
     sourced_numbers    : {parameter: number with source} of the new law
     copied_names       : parameters of the law of `start_file` to copy, in addition to those of all drives
     """
-    shared = [label for label, _ in flat_fields(Drive) if label in start_file.values_by_name] + [
+    shared = [label for label, _ in flatten_fields(DriveParameters) if label in start_file.values_by_name] + [
         *copied_names
     ]
     values = {label: start_file.values_by_name[label] for label in shared} | {
@@ -133,7 +133,7 @@ def parameter_bounds(start_file: ParameterFile) -> Mapping[str, tuple[float, flo
     Empty for a law without a contact pair.
     """
     drive: Any = start_file.values
-    if not isinstance(drive, ContactPairDrive):
+    if not isinstance(drive, ContactPairDriveParameters):
         return {}
     rated, loss = drive.rated_pressure, drive.peak_pressure_reduction
     lowest = loss + MIN_PRESSURE_RATIO * rated
@@ -204,7 +204,7 @@ class CatalogueRow:
         return np.where(T <= self.T1, self.K1, np.where(T <= self.T2, self.K2, self.K3))
 
     @property
-    def fitted_torques(self) -> Array:
+    def torques_of_exact_angles(self) -> Array:
         """Torques T1, T2 and rated [N.m], ascending, at which a fitted law must meet the angle."""
         return np.unique([self.T1, self.T2, self.rated])
 
@@ -219,27 +219,30 @@ _CURVE_POINTS = 400
 """Number of points of a plotted curve."""
 
 
-def stiffness(drive: Drive, torque: Array) -> Array:
+def stiffness(drive: DriveParameters, torque: Array) -> Array:
     """Stiffness K_WTS (...) [N.m/rad] of the FMU without hysteresis, at torques (...) >= 0 [N.m]."""
     curve = torque_curve(drive)
     return curve.derivatives(curve.inverse(torque), 1)[1]
 
 
 def angle_picture(
-    catalogue_row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], torque: Array
-) -> Picture:
+    catalogue_row: CatalogueRow,
+    fitted_drive: DriveParameters,
+    other_drives: Mapping[str, DriveParameters],
+    torque: Array,
+) -> FitPlot:
     """Plot of the wind-up at torques (n) [N.m]: catalogue, fitted law, and errors of the law.
 
     other_drives : {name: further law to plot}
     """
     grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), catalogue_row.wind_up(torque)
-    return Picture(
+    return FitPlot(
         data_x=torque,
         data_y=target / RAD_PER_ARCMIN,
         misfit=100.0 * (target / wind_up(fitted_drive, torque) - 1.0),
         law_curve=(grid, wind_up(fitted_drive, grid) / RAD_PER_ARCMIN),
         axis_labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
-        highlighted_points=np.isin(torque, catalogue_row.fitted_torques),
+        highlighted_points=np.isin(torque, catalogue_row.torques_of_exact_angles),
         other_laws={
             name: (grid, wind_up(other, grid) / RAD_PER_ARCMIN) for name, other in other_drives.items()
         },
@@ -247,8 +250,11 @@ def angle_picture(
 
 
 def stiffness_picture(
-    catalogue_row: CatalogueRow, fitted_drive: Drive, other_drives: Mapping[str, Drive], max_torque: float
-) -> Picture:
+    catalogue_row: CatalogueRow,
+    fitted_drive: DriveParameters,
+    other_drives: Mapping[str, DriveParameters],
+    max_torque: float,
+) -> FitPlot:
     """Plot of the stiffness up to `max_torque` [N.m], without the corners: catalogue, fitted law, and errors.
 
     other_drives : {name: further law to plot}
@@ -256,7 +262,7 @@ def stiffness_picture(
     grid = np.linspace(0.0, max_torque, _CURVE_POINTS)
     torque = grid[1::2][~np.isin(grid[1::2], (catalogue_row.T1, catalogue_row.T2))]
     steps = catalogue_row.stiffness(torque)
-    return Picture(
+    return FitPlot(
         data_x=torque,
         data_y=steps / 1e3,
         misfit=100.0 * (steps / stiffness(fitted_drive, torque) - 1.0),

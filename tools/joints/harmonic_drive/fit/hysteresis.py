@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
@@ -27,8 +27,8 @@ from ....inputs.fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from ....inputs.fitting.least_squares import Solution, Unknown, solve
 from ....inputs.fitting.measurement import read_measurement
 from ....inputs.fitting.outcome import (
+    FitPlot,
     FitResult,
-    Picture,
     fitted_parameters,
     make_unknowns,
     undetermined_names,
@@ -37,9 +37,12 @@ from . import drive
 from .drive import COLUMN_NAMES, RAD_PER_ARCMIN
 from .log_reading import Samples
 
-HYSTERESIS_LOSS, HYSTERESIS_STIFFNESS = FITTED_PARAMETERS = ("hysteresis_loss", "hysteresis_stiffness")
+HYSTERESIS_LOSS_NAME, HYSTERESIS_STIFFNESS_NAME = FITTED_PARAMETERS = (
+    "hysteresis_loss",
+    "hysteresis_stiffness",
+)
 """Parameters of the hysteresis, which are fitted if the user names none."""
-DEFAULT_START_VALUES = {HYSTERESIS_LOSS: RAD_PER_ARCMIN, HYSTERESIS_STIFFNESS: 1.0}
+DEFAULT_START_VALUES = {HYSTERESIS_LOSS_NAME: RAD_PER_ARCMIN, HYSTERESIS_STIFFNESS_NAME: 1.0}
 """Start values if the file has no hysteresis: loss [rad], and stiffness over K_WTS at zero torque [1]."""
 LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
 """Further start values of the hysteresis loss [rad]."""
@@ -47,7 +50,7 @@ STIFFNESS_START_RATIOS = (0.3, 1.0, 3.0, 10.0)
 """Further start values of the hysteresis stiffness over K_WTS at zero torque [1]."""
 
 
-def make_law(drive: Drive) -> HysteresisLaw:
+def make_law(drive: DriveParameters) -> HysteresisLaw:
     """Law of the loops of a drive: midline and friction torque, equal to those of the FMU.
 
     Raises ValueError if the parameters allow no such hysteresis.
@@ -56,7 +59,7 @@ def make_law(drive: Drive) -> HysteresisLaw:
     stiffness, limit = spring.hysteresis.stiffness, spring.hysteresis.friction_limit
     curve = spring.curve
 
-    def friction(motion: Array) -> Array:
+    def friction_torque(motion: Array) -> Array:
         return np.asarray(np.sum(np.minimum(stiffness * motion[..., None], limit), axis=-1))
 
     def friction_work(motion: Array) -> Array:
@@ -67,7 +70,7 @@ def make_law(drive: Drive) -> HysteresisLaw:
         return np.copysign(curve.derivatives(np.abs(motion), 0)[0], motion)
 
     return HysteresisLaw(
-        friction,
+        friction_torque,
         friction_work,
         NonlinearSpring(elastic_force, lambda motion: curve.energy(np.abs(motion))),
         drive.d,
@@ -100,27 +103,27 @@ def fit(
         COLUMN_NAMES.check_stiffness_ratio(data.path, wind_up / data.amplitude, data.stated_units, start_file)
     file, rest = _set_start_hysteresis(start_file, names)
 
-    def law_at_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
+    def make_law_with_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
         return make_law(file.with_values(parameter_values, "calibration", "fit").values)
 
-    model = hysteresis_fit.build_model(data, law_at_values, "inertia", inertia, 0.0)
+    model = hysteresis_fit.build_model(data, make_law_with_values, "inertia", inertia, 0.0)
     starts = {
-        HYSTERESIS_LOSS: LOSS_START_VALUES,
-        HYSTERESIS_STIFFNESS: tuple(rest * np.array(STIFFNESS_START_RATIOS)),
+        HYSTERESIS_LOSS_NAME: LOSS_START_VALUES,
+        HYSTERESIS_STIFFNESS_NAME: tuple(rest * np.array(STIFFNESS_START_RATIOS)),
     }
     solution, scale, _ = hysteresis_fit.fit_measurement(
         data, make_unknowns(file, names, drive.parameter_bounds(file)), model, starts
     )
     result = fitted_parameters(file, solution.values, "calibration", data.path.name, data.range_text)
     fitted_law = make_law(result.values)
-    limit = float(fitted_law.friction(np.array([np.inf]))[0])
+    limit = float(fitted_law.friction_force(np.array([np.inf]))[0])
     law_facts = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
     return FitResult(
         result,
         solution,
         law_facts | hysteresis_fit.summarize_fit(data, solution, fitted_law, scale),
-        hysteresis_fit.make_pictures(data, model, solution.values, scale),
-        notes=hysteresis_fit.misfit_notes(data, solution),
+        hysteresis_fit.make_plots(data, model, solution.values, scale),
+        notes=hysteresis_fit.list_misfit_notes(data, solution),
     )
 
 
@@ -133,8 +136,8 @@ def _set_start_hysteresis(
     """
     rest = float(HarmonicDriveSpring.tabulate(parameter_file.values).curve.stiffness[0])
     first = {
-        HYSTERESIS_LOSS: DEFAULT_START_VALUES[HYSTERESIS_LOSS],
-        HYSTERESIS_STIFFNESS: DEFAULT_START_VALUES[HYSTERESIS_STIFFNESS] * rest,
+        HYSTERESIS_LOSS_NAME: DEFAULT_START_VALUES[HYSTERESIS_LOSS_NAME],
+        HYSTERESIS_STIFFNESS_NAME: DEFAULT_START_VALUES[HYSTERESIS_STIFFNESS_NAME] * rest,
     }
     absent = {
         name: value
@@ -146,15 +149,15 @@ def _set_start_hysteresis(
 
 STIFFNESS_NAMES = ("K1", "K2", "K3")
 """Stiffnesses of the law `catalogue`. The fit to a log needs this law."""
-LOG_PARAMETERS = (*STIFFNESS_NAMES, HYSTERESIS_LOSS)
+ROBOT_LOG_FITTED_PARAMETERS = (*STIFFNESS_NAMES, HYSTERESIS_LOSS_NAME)
 """Parameters that `fit_log` can fit."""
-ROTOR_INERTIA = "motor_inertia"
+ROTOR_INERTIA_NAME = "motor_inertia"
 """Name of the unknown inertia of the rotor, which is fitted if the user does not state it."""
 DEFAULT_HYSTERESIS_LOSS = 0.3 * RAD_PER_ARCMIN
 """Start value of hysteresis_loss [rad] if the file has no hysteresis."""
 LOWER_BOUND_RATIO = 1e-2
 """Lower bound of hysteresis loss and rotor inertia over a start value [1]."""
-IGNORED_SAMPLES = 10
+IGNORED_FIRST_SAMPLES = 10
 """Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
 
 
@@ -182,31 +185,33 @@ def fit_rotor_inertia(
     Returns inertia and standard deviation [kg.m2]; None if the data do not determine them. Raises
     RuntimeError if the fit does not converge.
     """
-    names = [name for name in LOG_PARAMETERS if name in parameter_file.values_by_name]
-    unknown = Unknown(ROTOR_INERTIA, "kg.m2", 0.1 * max_inertia, LOWER_BOUND_RATIO * max_inertia, max_inertia)
+    names = [name for name in ROBOT_LOG_FITTED_PARAMETERS if name in parameter_file.values_by_name]
+    unknown = Unknown(
+        ROTOR_INERTIA_NAME, "kg.m2", 0.1 * max_inertia, LOWER_BOUND_RATIO * max_inertia, max_inertia
+    )
     solution, _ = _fit_wind_ups(
         parameter_file,
         names,
         wind_ups,
-        lambda values: torques + values[ROTOR_INERTIA] * torque_per_inertia,
+        lambda values: torques + values[ROTOR_INERTIA_NAME] * torque_per_inertia,
         torque_changes,
         [unknown],
     )
-    inertia = solution.values[ROTOR_INERTIA]
+    inertia = solution.values[ROTOR_INERTIA_NAME]
     return (
         None
-        if ROTOR_INERTIA in undetermined_names(solution)
-        else (inertia, inertia * solution.relative_deviations[ROTOR_INERTIA])
+        if ROTOR_INERTIA_NAME in undetermined_names(solution)
+        else (inertia, inertia * solution.relative_deviations[ROTOR_INERTIA_NAME])
     )
 
 
-def fit_log(
+def fit_robot_log(
     parameter_file: ParameterFile,
     fitted_names: Sequence[str],
     wind_ups: Array,
     torques: Array,
     torque_changes: Array,
-) -> tuple[Solution, Picture]:
+) -> tuple[Solution, FitPlot]:
     """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
     fitted_names   : of LOG_PARAMETERS
@@ -219,7 +224,7 @@ def fit_log(
         parameter_file, fitted_names, wind_ups, lambda values: torques, torque_changes
     )
     labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
-    return solution, Picture(
+    return solution, FitPlot(
         torques,
         wind_ups / RAD_PER_ARCMIN,
         (wind_ups - law) / RAD_PER_ARCMIN,
@@ -243,8 +248,8 @@ def _fit_wind_ups(
     extra_unknowns : on which the torque depends
     """
     begin = (
-        {HYSTERESIS_LOSS: DEFAULT_HYSTERESIS_LOSS}
-        if parameter_file.values_by_name[HYSTERESIS_LOSS] == 0.0
+        {HYSTERESIS_LOSS_NAME: DEFAULT_HYSTERESIS_LOSS}
+        if parameter_file.values_by_name[HYSTERESIS_LOSS_NAME] == 0.0
         else {}
     )
     start = parameter_file.with_values(
@@ -259,25 +264,25 @@ def _fit_wind_ups(
             parameter_file.with_values(own_values, "calibration", "fit").values
         )
         wind_up_values = spring.curve.odd_inverse(torques - _hysteresis_torque(spring, path))
-        return np.asarray(wind_up_values - np.mean((wind_up_values - wind_ups)[IGNORED_SAMPLES:]))
+        return np.asarray(wind_up_values - np.mean((wind_up_values - wind_ups)[IGNORED_FIRST_SAMPLES:]))
 
     all_unknowns = [
         *make_unknowns(
             start,
             fitted_names,
-            {HYSTERESIS_LOSS: (LOWER_BOUND_RATIO * start.values_by_name[HYSTERESIS_LOSS], np.inf)},
+            {HYSTERESIS_LOSS_NAME: (LOWER_BOUND_RATIO * start.values_by_name[HYSTERESIS_LOSS_NAME], np.inf)},
         ),
         *extra_unknowns,
     ]
     solution = solve(
         all_unknowns,
-        lambda values: (wind_ups - law_wind_up(values, torque(values)))[IGNORED_SAMPLES:],
+        lambda values: (wind_ups - law_wind_up(values, torque(values)))[IGNORED_FIRST_SAMPLES:],
         nuisance_count=1,
     )
     fitted_torque = torque(solution.values)
     law = law_wind_up(solution.values, fitted_torque)
     for change in torque_changes:
-        difference = (law_wind_up(solution.values, fitted_torque + change) - law)[IGNORED_SAMPLES:]
+        difference = (law_wind_up(solution.values, fitted_torque + change) - law)[IGNORED_FIRST_SAMPLES:]
         parameter_changes = np.linalg.lstsq(solution.jacobian, difference)[0]
         solution = replace(
             solution, covariance=solution.covariance + np.outer(parameter_changes, parameter_changes)

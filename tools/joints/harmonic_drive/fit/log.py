@@ -18,7 +18,7 @@ from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
 from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution
-from ....inputs.fitting.outcome import Facts, FitResult, Picture, fitted_parameters, undetermined_names
+from ....inputs.fitting.outcome import FitFacts, FitPlot, FitResult, fitted_parameters, undetermined_names
 from ..catalogue import find_drive
 from ..new import NEW_JOINT_COMMAND
 from . import hysteresis
@@ -26,23 +26,23 @@ from .drive import resize_drive
 from .log_checks import check_repeated_logs, check_torque_scale, doubt_about_friction, doubt_about_gravity
 from .log_friction import (
     FITTED_PARAMETERS,
-    LOAD_LOSS_BACK,
-    FittedLog,
-    LinearTerms,
+    LOAD_LOSS_BACK_NAME,
+    FittedLogFriction,
+    LinearTorqueTerms,
     accept_vanishing,
-    drop_undetermined,
     fit_samples,
-    fit_with_rotor,
+    fit_with_rotor_inertia,
     has_friction,
     is_driven_by_friction,
+    refit_without_undetermined,
     select_parameters,
 )
-from .log_reading import MIN_SPEED_RATIO, Samples, join_samples, make_log, parse_columns, read_table
+from .log_reading import MIN_SPEED_RANGE_RATIO, Samples, join_samples, make_log, parse_columns, read_table
 from .log_ripple import add_ripples, find_ripple_terms, fitted_ripples
 
 CONFIDENCE_LEVEL = 0.95
 """Confidence level of the intervals [1]."""
-ROTOR_INERTIA_MARGIN, ROTOR_INERTIA_DEVIATIONS = 1.1, 4.0
+MAX_ROTOR_INERTIA_RATIO, MAX_ROTOR_INERTIA_DEVIATIONS = 1.1, 4.0
 """Bound of the stated rotor inertia: first value times the fitted total inertia, plus second value times the
 standard deviation of the total inertia [1]."""
 
@@ -89,17 +89,19 @@ def fit(
         raise ValueError(f"{label}: some logs have no torque of the motor; expected it in all or in none")
     for log in logs:
         check_torque_scale(log, file.values, torque_constant)
-    samples = join_samples([log.samples.select(log.samples.is_developed) for log in logs])
+    samples = join_samples([log.samples.select(log.samples.is_friction_developed) for log in logs])
     logs_with_motor_angle = [
         log.samples for log in logs if np.all(np.isfinite(log.samples.motor_angle + log.samples.q))
     ]
     if not logs_with_motor_angle and (
-        alone := [name for name in fitted_names or () if name in hysteresis.LOG_PARAMETERS]
+        alone := [name for name in fitted_names or () if name in hysteresis.ROBOT_LOG_FITTED_PARAMETERS]
     ):
         raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
     _check_speeds(label, samples)
     notes = _sensor_notes(samples)
-    friction_names = [name for name in fitted_names or () if name not in hysteresis.LOG_PARAMETERS]
+    friction_names = [
+        name for name in fitted_names or () if name not in hysteresis.ROBOT_LOG_FITTED_PARAMETERS
+    ]
     friction_samples = samples
     if not logs[0].has_motor_torque:
         friction_samples = replace(samples, sensor_torque=np.full(samples.dq.size, np.nan))
@@ -162,16 +164,18 @@ def _fit_with_friction(
     names_to_fit, selection_notes = select_parameters(samples, file.values, friction_names, rotor_inertia)
     notes = [*notes, *selection_notes]
     fitted_log = fit_samples(file, samples, names_to_fit, rotor_inertia)
-    if rotor_inertia and samples.is_dynamic.any():
+    if rotor_inertia and samples.is_of_dynamic_log.any():
         _check_rotor_inertia(rotor_inertia, fitted_log)
     if not friction_names:
-        fitted_log, names_to_fit, dropped = drop_undetermined(file, samples, fitted_log, names_to_fit)
+        fitted_log, names_to_fit, dropped = refit_without_undetermined(
+            file, samples, fitted_log, names_to_fit
+        )
         notes += dropped
-    if samples.is_dynamic.any() and motor_inertia is None and not samples.has_sensor:
+    if samples.is_of_dynamic_log.any() and motor_inertia is None and not samples.has_sensor:
         if logs_with_motor_angle and (
             rotor_fit := _fit_rotor_inertia(file, logs_with_motor_angle[0], fitted_log)
         ):
-            fitted_log = fit_with_rotor(file, samples, names_to_fit, *rotor_fit)
+            fitted_log = fit_with_rotor_inertia(file, samples, names_to_fit, *rotor_fit)
         else:
             notes.append(
                 "without --motor-inertia the rotor counts as part of the arm: load_loss and the stiffness "
@@ -179,11 +183,12 @@ def _fit_with_friction(
             )
     samples, harmonics = find_ripple_terms(samples, fitted_log)
     if harmonics:
-        rotor, deviation = fitted_log.rotor_inertia, fitted_log.rotor_deviation
-        fitted_log = replace(fit_samples(file, samples, names_to_fit, rotor), rotor_deviation=deviation)
+        rotor, deviation = fitted_log.rotor_inertia, fitted_log.rotor_inertia_deviation
+        fitted_log = fit_samples(file, samples, names_to_fit, rotor)
+        fitted_log = replace(fitted_log, rotor_inertia_deviation=deviation)
     fitted_log, vanishing_notes = accept_vanishing(fitted_log)
     notes += vanishing_notes
-    if samples.has_sensor and LOAD_LOSS_BACK in fitted_log.solution.names_at_bound:
+    if samples.has_sensor and LOAD_LOSS_BACK_NAME in fitted_log.solution.names_at_bound:
         notes.append(
             "while the load drives the motor, the friction falls with the load: check --torque-constant, and "
             "the scale of link_torque"
@@ -248,7 +253,8 @@ def _fit_without_friction(
             pictures.append(stiffness_fit[1])
     else:
         notes.append(
-            f"the log does not determine {', '.join(hysteresis.LOG_PARAMETERS)}, which keep their values: "
+            f"the log does not determine {', '.join(hysteresis.ROBOT_LOG_FITTED_PARAMETERS)}, which "
+            "keep their values: "
             "the angle of the motor (q_motor) is needed"
         )
     return FitResult(
@@ -279,10 +285,10 @@ def _fitted_file(
     return result
 
 
-def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLog) -> None:
+def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLogFriction) -> None:
     """Check the rotor inertia [kg.m2]. Raises ValueError if it exceeds the total inertia in the log."""
     at_joint = rotor_inertia * fitted_log.drive.ratio**2
-    limit = ROTOR_INERTIA_MARGIN * fitted_log.inertia + ROTOR_INERTIA_DEVIATIONS * float(
+    limit = MAX_ROTOR_INERTIA_RATIO * fitted_log.total_inertia + MAX_ROTOR_INERTIA_DEVIATIONS * float(
         np.sqrt(fitted_log.covariance[0, 0])
     )
     if at_joint > limit:
@@ -297,36 +303,36 @@ def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLog) -> None:
 
 
 def _fit_rotor_inertia(
-    parameter_file: ParameterFile, log_samples: Samples, fitted_log: FittedLog
+    parameter_file: ParameterFile, log_samples: Samples, fitted_log: FittedLogFriction
 ) -> tuple[float, float] | None:
     """Rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
     if parameter_file.law != "catalogue":
         return None
     square = fitted_log.drive.ratio**2
-    load, spread = fitted_log.evaluate_load(log_samples)
+    load, spread = fitted_log.evaluate_tooth_load(log_samples)
     phi = hysteresis.measured_wind_up(log_samples, abs(fitted_log.drive.ratio))
     return hysteresis.fit_rotor_inertia(
-        parameter_file, phi, -load, -spread, square * log_samples.ddq, fitted_log.inertia / square
+        parameter_file, phi, -load, -spread, square * log_samples.ddq, fitted_log.total_inertia / square
     )
 
 
 def _fit_stiffness(
     parameter_file: ParameterFile,
     log_samples: Samples,
-    fitted_log: FittedLog | None,
+    fitted_log: FittedLogFriction | None,
     fitted_names: Sequence[str] | None,
-) -> tuple[tuple[Solution, Picture] | None, list[str]]:
+) -> tuple[tuple[Solution, FitPlot] | None, list[str]]:
     """Fit stiffness and hysteresis to a log with the motor angle.
 
     fitted_log : gives the load of a log without a torque sensor
 
     Returns solution and picture, or None if there is no such fit; and notes.
     """
-    if fitted_names and not any(name in hysteresis.LOG_PARAMETERS for name in fitted_names):
+    if fitted_names and not any(name in hysteresis.ROBOT_LOG_FITTED_PARAMETERS for name in fitted_names):
         return None, []
     names = [
         name
-        for name in hysteresis.LOG_PARAMETERS
+        for name in hysteresis.ROBOT_LOG_FITTED_PARAMETERS
         if name in parameter_file.values_by_name and (not fitted_names or name in fitted_names)
     ]
     if parameter_file.law != "catalogue" or not names:
@@ -334,8 +340,8 @@ def _fit_stiffness(
     load, spread = log_samples.sensor_torque, np.zeros((0, log_samples.q.size))
     if not log_samples.has_sensor:
         assert fitted_log is not None
-        load, spread = fitted_log.evaluate_load(log_samples)
-    return hysteresis.fit_log(
+        load, spread = fitted_log.evaluate_tooth_load(log_samples)
+    return hysteresis.fit_robot_log(
         parameter_file,
         names,
         hysteresis.measured_wind_up(log_samples, abs(parameter_file.values.ratio)),
@@ -423,11 +429,11 @@ def _check_speeds(file_label: str, samples: Samples) -> None:
         raise ValueError(
             f"{file_label}: never turns on long enough for friction to build up; expected longer motion"
         )
-    if speed.max() < MIN_SPEED_RATIO * speed.min():
+    if speed.max() < MIN_SPEED_RANGE_RATIO * speed.min():
         raise ValueError(
             f"{file_label}: has one speed alone, {speed.min():.4g} to {speed.max():.4g} rad/s; "
             "expected several, "
-            f"{MIN_SPEED_RATIO:g} times as fast or more"
+            f"{MIN_SPEED_RANGE_RATIO:g} times as fast or more"
         )
 
 
@@ -455,11 +461,14 @@ def _describe_ranges(samples: Samples) -> str:
 
 
 def fit_facts(
-    parameter_file: ParameterFile, samples: Samples, fitted_log: FittedLog, fitted_names: Sequence[str]
-) -> Facts:
+    parameter_file: ParameterFile,
+    samples: Samples,
+    fitted_log: FittedLogFriction,
+    fitted_names: Sequence[str],
+) -> FitFacts:
     """Facts about the fit: inertia, offset, gravity, residual, prediction error of held-out samples."""
     ratio = abs(fitted_log.drive.ratio)
-    terms = LinearTerms.at_samples(samples, ratio)
+    terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
     facts = {
         name: (float(value), _LOAD_UNITS[name], _LOAD_TEXTS[name])
         for name, value in zip(terms.unknown_names, fitted_log.linear_unknowns, strict=True)
@@ -469,8 +478,8 @@ def fit_facts(
         rotor = facts.pop("inertia")[0] / ratio**2
         facts["motor_inertia"] = rotor, "kg.m2", "of the rotor, from motor torque and link_torque"
         facts |= load_facts(samples)
-    if fitted_log.rotor_deviation:
-        text = f"of the rotor, from the wind-up; standard deviation {fitted_log.rotor_deviation:.2g}"
+    if fitted_log.rotor_inertia_deviation:
+        text = f"of the rotor, from the wind-up; standard deviation {fitted_log.rotor_inertia_deviation:.2g}"
         facts["motor_inertia"] = fitted_log.rotor_inertia, "kg.m2", text
     facts["residual"] = (
         _root_mean_square(samples.motor_torque - fitted_log.evaluate_torque(samples)[1]),
@@ -508,9 +517,9 @@ _LOAD_TEXTS = {
 """Units and meanings of the unknowns of the load."""
 
 
-def load_facts(samples: Samples) -> Facts:
+def load_facts(samples: Samples) -> FitFacts:
     """Facts about the load that a torque sensor at the joint measures: inertia of the arm, gravity."""
-    rows = np.flatnonzero(samples.is_dynamic)
+    rows = np.flatnonzero(samples.is_of_dynamic_log)
     if not rows.size:
         return {}
     columns = {"arm_inertia": samples.ddq[rows], "sensor_offset": np.ones(rows.size)}
@@ -524,14 +533,14 @@ def load_facts(samples: Samples) -> Facts:
     }
 
 
-def _load_picture(samples: Samples) -> Picture:
+def _load_picture(samples: Samples) -> FitPlot:
     """Picture of the torque at the joint over the speed of the joint, and of the fitted load."""
     facts = load_facts(samples)
     angle = np.where(np.isfinite(samples.q), samples.q, 0.0)
     parts = {"arm_inertia": samples.ddq, "gravity_cos": np.cos(angle), "gravity_sin": np.sin(angle)}
     load = sum((facts[name][0] * parts[name] for name in facts), np.zeros(angle.size))
     load += np.mean(samples.sensor_torque - load)
-    return Picture(
+    return FitPlot(
         samples.dq,
         samples.sensor_torque,
         samples.sensor_torque - load,
@@ -544,7 +553,7 @@ def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, 
     """Motor torque (n) [N.m] of later samples, by a model with constant friction fitted to earlier ones."""
     models = []
     for samples in (earlier_samples, later_samples):
-        terms = LinearTerms.at_samples(samples, ratio)
+        terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
         models.append(
             (
                 np.concatenate([np.ones((samples.dq.size, 1)), terms.design_matrix], axis=1),
@@ -567,21 +576,21 @@ _FRICTION_LABEL, _ERROR_LABEL = "friction at the motor [mN m]", "log - law [mN m
 _NO_LOAD_LABEL, _TEMPERATURE_LABEL = "friction without load [mN m]", "temperature [degrees C]"
 
 
-def draw_pictures(samples: Samples, fitted_log: FittedLog) -> Iterator[Picture]:
+def draw_pictures(samples: Samples, fitted_log: FittedLogFriction) -> Iterator[FitPlot]:
     """Pictures of the friction over speed, time and temperature, as far as the log has these columns."""
     braked, torque = fitted_log.evaluate_torque(samples)
     misfit = samples.motor_torque - torque
     measured = braked + misfit
     yield _speed_picture(samples, fitted_log, misfit)
-    if samples.is_dynamic.any():
-        rows = np.flatnonzero(samples.is_dynamic)
+    if samples.is_of_dynamic_log.any():
+        rows = np.flatnonzero(samples.is_of_dynamic_log)
         time = samples.time[rows]
         yield _friction_picture(time, measured[rows], misfit[rows], (time, braked[rows]), "time [s]")
     if (known := np.flatnonzero(np.isfinite(samples.temperature))).size:
         warmth = samples.temperature[known] - CELSIUS_ZERO_IN_KELVIN
         ends = np.array([warmth.min(), warmth.max()])
         over, rest = measured[known] / braked[known], MILLI_PER_UNIT * misfit[known]
-        yield Picture(
+        yield FitPlot(
             warmth,
             over,
             rest,
@@ -590,7 +599,7 @@ def draw_pictures(samples: Samples, fitted_log: FittedLog) -> Iterator[Picture]:
         )
 
 
-def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Picture:
+def _speed_picture(samples: Samples, fitted_log: FittedLogFriction, misfit: Array) -> FitPlot:
     """Picture of the no-load friction over speed, at the median temperature; held-out rows are marked."""
     fastest = float(np.max(np.abs(samples.dq)))
     speed = np.linspace(-fastest, fastest, 400)
@@ -599,7 +608,7 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
     y = fitted_log.no_load_friction(samples.dq, usual) + misfit
     line = (speed, fitted_log.no_load_friction(speed, usual))
     picture = _friction_picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
-    marks = None if samples.is_dynamic.any() else samples.is_held_out
+    marks = None if samples.is_of_dynamic_log.any() else samples.is_held_out
     labels = (picture.axis_labels[0], _NO_LOAD_LABEL, _ERROR_LABEL)
     return replace(picture, axis_labels=labels, highlighted_points=marks)
 
@@ -610,9 +619,9 @@ def _friction_picture(
     misfit: Array,
     law_curve: tuple[Array, Array],
     abscissa_label: str,
-) -> Picture:
+) -> FitPlot:
     """Plot of friction torques (n) [N.m] over an abscissa (n): log, law, and errors (n) [N.m] of the law."""
-    return Picture(
+    return FitPlot(
         abscissa,
         MILLI_PER_UNIT * friction_torque,
         MILLI_PER_UNIT * misfit,

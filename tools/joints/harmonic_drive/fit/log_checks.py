@@ -5,11 +5,11 @@ from itertools import combinations
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE
 from jointfmu.quantity import Array
 
-from .log_friction import FittedLog, motor_friction
+from .log_friction import FittedLogFriction, motor_friction
 from .log_reading import MeasuredLog, Samples
 
 TORQUE_SCALE_RANGE = (1.0 / 3.0, 3.0)
@@ -36,7 +36,7 @@ def check_repeated_logs(logs: Sequence[MeasuredLog]) -> None:
             raise ValueError(f"{second.path}: has the samples of {first.path}; expected each log once")
 
 
-def check_torque_scale(log: MeasuredLog, drive: Drive, torque_constant: float | None) -> None:
+def check_torque_scale(log: MeasuredLog, drive: DriveParameters, torque_constant: float | None) -> None:
     """Check the scale of the motor torque against the measured torque at the joint, or measured gravity.
 
     Raises ValueError if their ratio is outside TORQUE_SCALE_RANGE.
@@ -71,7 +71,10 @@ def check_torque_scale(log: MeasuredLog, drive: Drive, torque_constant: float | 
 
 
 def doubt_about_friction(
-    samples: Samples, fitted_log: FittedLog, start_drive: Drive, torque_constant: float | None
+    samples: Samples,
+    fitted_log: FittedLogFriction,
+    start_drive: DriveParameters,
+    torque_constant: float | None,
 ) -> str | None:
     """Doubt about the scale of the motor torque, as text; None if the friction is near the start file.
 
@@ -97,7 +100,9 @@ def doubt_about_gravity(samples: Samples) -> str | None:
 
     A torque that depends on acceleration or on the sense of the motion is a measured torque.
     """
-    rows = np.flatnonzero(samples.is_dynamic & np.isfinite(samples.gravity_torque) & np.isfinite(samples.q))
+    rows = np.flatnonzero(
+        samples.is_of_dynamic_log & np.isfinite(samples.gravity_torque) & np.isfinite(samples.q)
+    )
     if samples.has_sensor or rows.size < 10 * (2 * GRAVITY_HARMONICS + 3):
         return None
     angle, gravity = samples.q[rows], samples.gravity_torque[rows]

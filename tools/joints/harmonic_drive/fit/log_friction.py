@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, friction_limits, viscous_torque
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
@@ -27,7 +27,7 @@ from .log_reading import Samples
 
 
 @dataclass(frozen=True, slots=True)
-class LinearTerms:
+class LinearTorqueTerms:
     """Terms of the motor torque that are linear in their unknowns: inertia, offset, gravity.
 
     design_matrix    : (n, k) motor torque at the samples per unit of each unknown
@@ -41,10 +41,10 @@ class LinearTerms:
     unknown_names: tuple[str, ...]
 
     @classmethod
-    def at_samples(cls, samples: Samples, ratio: float) -> "LinearTerms":
+    def evaluate_at_samples(cls, samples: Samples, ratio: float) -> "LinearTorqueTerms":
         """Evaluate the linear terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
-        dynamic = samples.is_dynamic.astype(float)
+        dynamic = samples.is_of_dynamic_log.astype(float)
         measured_load = samples.sensor_torque if samples.has_sensor else samples.gravity_torque
         measured = np.isfinite(measured_load)
         if dynamic.any():
@@ -83,7 +83,7 @@ class LinearTerms:
         return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_load)
 
 
-def motor_friction(drive: Drive, joint_speed: Array, temperature: Array, load: Array) -> Array:
+def motor_friction(drive: DriveParameters, joint_speed: Array, temperature: Array, load: Array) -> Array:
     """Friction torque (...) [N.m] at the motor, of a moving drive.
 
     joint_speed : speed (...) [rad/s] of the joint
@@ -97,7 +97,7 @@ def motor_friction(drive: Drive, joint_speed: Array, temperature: Array, load: A
     return np.asarray(np.where(w1 > 0.0, positive, -negative) + viscous_torque(forward, w1, warmth))
 
 
-def filtered_motor_friction(drive: Drive, samples: Samples, load: Array) -> Array:
+def filtered_motor_friction(drive: DriveParameters, samples: Samples, load: Array) -> Array:
     """Friction torque (n) [N.m] at samples, smoothed by the filter of the log."""
     warmth, carried = samples.temperature[:, None], load[:, None]
     return np.asarray(
@@ -106,20 +106,20 @@ def filtered_motor_friction(drive: Drive, samples: Samples, load: Array) -> Arra
 
 
 DRY_FRICTION = "friction_coulomb"
-STRIBECK_FRICTION = "friction_stribeck"
-VISCOUS_FRICTION = "friction_viscous"
-LOAD_LOSS, LOAD_LOSS_BACK = "load_loss", "load_loss_back"
-TEMPERATURE_COEFFICIENTS = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
+STRIBECK_FRICTION_NAME = "friction_stribeck"
+VISCOUS_FRICTION_NAME = "friction_viscous"
+LOAD_LOSS_NAME, LOAD_LOSS_BACK_NAME = "load_loss", "load_loss_back"
+TEMPERATURE_COEFFICIENT_NAMES = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
 FITTED_PARAMETERS = (
     DRY_FRICTION,
-    STRIBECK_FRICTION,
-    VISCOUS_FRICTION,
-    LOAD_LOSS,
-    LOAD_LOSS_BACK,
-    *TEMPERATURE_COEFFICIENTS,
+    STRIBECK_FRICTION_NAME,
+    VISCOUS_FRICTION_NAME,
+    LOAD_LOSS_NAME,
+    LOAD_LOSS_BACK_NAME,
+    *TEMPERATURE_COEFFICIENT_NAMES,
 )
 """Parameters of the friction that can be fitted."""
-LOAD_ITERATIONS, LOAD_TOLERANCE = 4, 1e-4
+LOAD_ITERATION_COUNT, LOAD_TOLERANCE = 4, 1e-4
 """Largest number of fits, each with the load that follows from the fit before; and change of the load over
 its size [1] at which the fits end."""
 FIT_TOLERANCE = 1e-6
@@ -132,29 +132,29 @@ MIN_TEMPERATURE_RANGE = 5.0
 MIN_LOAD_RATIO = 0.02
 """Largest load over rated torque [1] that a log needs for a fit of the load-dependent losses."""
 START_VALUES = {
-    LOAD_LOSS: 0.05,
-    LOAD_LOSS_BACK: 0.05,
-    TEMPERATURE_COEFFICIENTS[0]: 0.02,
-    TEMPERATURE_COEFFICIENTS[1]: 0.01,
+    LOAD_LOSS_NAME: 0.05,
+    LOAD_LOSS_BACK_NAME: 0.05,
+    TEMPERATURE_COEFFICIENT_NAMES[0]: 0.02,
+    TEMPERATURE_COEFFICIENT_NAMES[1]: 0.01,
 }
 """Start values if the file has 0: losses [1], temperature coefficients [1/K]."""
 LOWER_BOUND_RATIO = 1e-3
 """Lower bound of a parameter over its start value [1]."""
-UNDETERMINED_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
+UNDETERMINED_DEVIATION_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
 well."""
-VANISHING_PARAMETERS = (STRIBECK_FRICTION, VISCOUS_FRICTION)
+VANISHING_PARAMETERS = (STRIBECK_FRICTION_NAME, VISCOUS_FRICTION_NAME)
 """Parameters that a log may show to be 0: the fit ends on their lower bound."""
 MIN_FRICTION_DEVIATIONS, MIN_FRICTION_SHARE = 5.0, 0.02
 """Friction over its standard deviation [1], and over the root mean square of the torque [1], from which a
 torque at the joint has the friction of the drive."""
-DIFFERENCE_STEP = 1e-4
+FINITE_DIFFERENCE_STEP = 1e-4
 """Step of the logarithms of the parameters [1] for finite differences."""
 
 
 @dataclass(frozen=True, slots=True)
-class FittedLog:
+class FittedLogFriction:
     """Friction model fitted to the samples of logs.
 
     drive           : with the fitted friction
@@ -165,15 +165,15 @@ class FittedLog:
     rotor_deviation : [kg.m2] standard deviation of the rotor inertia
     """
 
-    drive: Drive
+    drive: DriveParameters
     solution: Solution
     linear_unknowns: Array
     covariance: Array
     rotor_inertia: float
-    rotor_deviation: float
+    rotor_inertia_deviation: float
 
     @property
-    def inertia(self) -> float:
+    def total_inertia(self) -> float:
         """Inertia [kg.m2] of arm and rotor at the joint, or of the rotor if a sensor measures the load.
 
         Only fits to logs with the column time have it.
@@ -183,7 +183,7 @@ class FittedLog:
     def evaluate_torque(self, samples: Samples) -> tuple[Array, Array]:
         """Friction torque (n) [N.m] and total torque (n) [N.m] of the motor at samples."""
         ratio = abs(self.drive.ratio)
-        terms = LinearTerms.at_samples(samples, ratio)
+        terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
         load = terms.tooth_load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
         friction_torque = filtered_motor_friction(self.drive, samples, load)
         return (
@@ -191,20 +191,20 @@ class FittedLog:
             friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_load,
         )
 
-    def evaluate_load(self, samples: Samples) -> tuple[Array, Array]:
+    def evaluate_tooth_load(self, samples: Samples) -> tuple[Array, Array]:
         """Load (n) [N.m] of the teeth at samples, and its standard deviations as changes (m, n) [N.m].
 
         Each change follows from one of m independent errors of one standard deviation: the principal
         directions of the covariance of the linear unknowns, then the rotor inertia.
         """
         ratio = abs(self.drive.ratio)
-        terms = LinearTerms.at_samples(samples, ratio)
+        terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
         load = terms.tooth_load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
         variances, directions = np.linalg.eigh(self.covariance)
         ends = self.linear_unknowns + np.sqrt(np.maximum(variances, 0.0))[:, None] * directions.T
         cases = [
             *((end, self.rotor_inertia) for end in ends),
-            (self.linear_unknowns, self.rotor_inertia + self.rotor_deviation),
+            (self.linear_unknowns, self.rotor_inertia + self.rotor_inertia_deviation),
         ]
         changes = [terms.tooth_load(samples, end, ratio, rotor) - load for end, rotor in cases]
         return load, np.reshape(changes, (len(changes), load.size))
@@ -217,7 +217,7 @@ class FittedLog:
 
 
 def select_parameters(
-    samples: Samples, drive: Drive, fitted_names: Sequence[str], rotor_inertia: float
+    samples: Samples, drive: DriveParameters, fitted_names: Sequence[str], rotor_inertia: float
 ) -> tuple[list[str], list[str]]:
     """Select the parameters to fit: those that the samples can determine.
 
@@ -235,20 +235,22 @@ def select_parameters(
     )  # with constant dry and viscous friction
     if np.max(np.abs(load)) < MIN_LOAD_RATIO * drive.rated_torque:
         text = f"the load stays below {MIN_LOAD_RATIO:g} times the rated torque"
-        reasons |= {LOAD_LOSS: text, LOAD_LOSS_BACK: text}
+        reasons |= {LOAD_LOSS_NAME: text, LOAD_LOSS_BACK_NAME: text}
     else:
         back_driven = load * samples.dq < -MIN_LOAD_RATIO * drive.rated_torque * np.abs(samples.dq)
         if drive.load_loss_back < 0.0:
-            reasons[LOAD_LOSS_BACK] = "the start file sets it equal to load_loss"
+            reasons[LOAD_LOSS_BACK_NAME] = "the start file sets it equal to load_loss"
         elif not back_driven.any():
-            reasons[LOAD_LOSS_BACK] = "the load never drives the motor"
+            reasons[LOAD_LOSS_BACK_NAME] = "the load never drives the motor"
     known = samples.temperature[np.isfinite(samples.temperature)]
     if known.size == 0 or np.ptp(known) < MIN_TEMPERATURE_RANGE:
         span = "the log has no temperature" if known.size == 0 else f"{np.ptp(known):.2g} K of temperature"
-        reasons |= dict.fromkeys(TEMPERATURE_COEFFICIENTS, f"{span}, {MIN_TEMPERATURE_RANGE:g} K are needed")
+        reasons |= dict.fromkeys(
+            TEMPERATURE_COEFFICIENT_NAMES, f"{span}, {MIN_TEMPERATURE_RANGE:g} K are needed"
+        )
     slowest = abs(drive.ratio) * np.min(np.abs(samples.dq))
     if slowest > 2.0 * drive.stribeck_speed:
-        reasons[STRIBECK_FRICTION] = (
+        reasons[STRIBECK_FRICTION_NAME] = (
             f"the motor is never slower than {slowest:.3g} rad/s; speeds below twice "
             f"stribeck_speed are needed"
         )
@@ -258,14 +260,14 @@ def select_parameters(
     return [name for name in FITTED_PARAMETERS if name not in reasons], notes
 
 
-def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Array]:
+def _fit_linear_model(samples: Samples, drive: DriveParameters) -> tuple[LinearTorqueTerms, Array]:
     """Estimate all terms by one linear fit, with constant dry friction and viscous friction.
 
     Returns the linear terms, and an array: dry friction [N.m], viscous coefficient [N.m.s/rad], and the
     unknowns of the linear terms.
     """
     ratio = abs(drive.ratio)
-    terms = LinearTerms.at_samples(samples, ratio)
+    terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
     friction_terms = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
     matrix = np.concatenate([friction_terms, terms.design_matrix], axis=1)
     return terms, np.linalg.lstsq(matrix, samples.motor_torque - terms.measured_load)[0]
@@ -273,7 +275,7 @@ def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Arra
 
 def fit_samples(
     parameter_file: ParameterFile, samples: Samples, fitted_names: Sequence[str], rotor_inertia: float
-) -> FittedLog:
+) -> FittedLogFriction:
     """Fit friction parameters and linear terms to samples.
 
     fitted_names  : of the friction parameters to fit
@@ -304,7 +306,7 @@ def _iterate_load(
     linear_unknowns: Array,
     rotor_inertia: float,
     noise: float | None = None,
-) -> FittedLog:
+) -> FittedLogFriction:
     """Fit friction parameters and linear terms to samples, with the load of each fit from the fit before.
 
     start_file      : parameter file with the start values
@@ -313,9 +315,9 @@ def _iterate_load(
     noise           : start value of the standard deviation of a residual [N.m]; None: unknown
     """
     ratio, linear, changed = abs(parameter_file.values.ratio), linear_unknowns, start_file
-    terms = LinearTerms.at_samples(samples, ratio)
+    terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
     load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
-    for _ in range(LOAD_ITERATIONS):
+    for _ in range(LOAD_ITERATION_COUNT):
 
         def net_torque(parameter_values: Mapping[str, float], load: Array = load) -> Array:
             """Motor torque (n) [N.m] without friction and measured gravity."""
@@ -346,12 +348,17 @@ def _iterate_load(
     solution = replace(solution, noise=noise, covariance=covariance(solution.jacobian, noise))
     direct = solution.noise**2 * np.linalg.pinv(terms.design_matrix.T @ terms.design_matrix)
     indirect = _propagate_deviations(solution, lambda values: terms.solve_unknowns(net_torque(values)))
-    return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0)
+    return FittedLogFriction(
+        changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0
+    )
 
 
-def drop_undetermined(
-    parameter_file: ParameterFile, samples: Samples, fitted_log: FittedLog, fitted_names: Sequence[str]
-) -> tuple[FittedLog, list[str], list[str]]:
+def refit_without_undetermined(
+    parameter_file: ParameterFile,
+    samples: Samples,
+    fitted_log: FittedLogFriction,
+    fitted_names: Sequence[str],
+) -> tuple[FittedLogFriction, list[str], list[str]]:
     """Repeat the fit without the parameters that the log does not determine.
 
     A parameter of START_VALUES is dropped if its standard deviation exceeds a factor of UNDETERMINED_FACTOR
@@ -361,7 +368,8 @@ def drop_undetermined(
     undetermined = [
         n
         for n in fitted_names
-        if n in START_VALUES and fitted_log.solution.relative_deviations[n] > np.log(UNDETERMINED_FACTOR)
+        if n in START_VALUES
+        and fitted_log.solution.relative_deviations[n] > np.log(UNDETERMINED_DEVIATION_FACTOR)
     ]
     determined = [name for name in fitted_names if name not in undetermined]
     if undetermined and determined:
@@ -373,7 +381,7 @@ def drop_undetermined(
     return fitted_log, list(fitted_names), []
 
 
-def accept_vanishing(fitted_log: FittedLog) -> tuple[FittedLog, list[str]]:
+def accept_vanishing(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, list[str]]:
     """Accept friction that vanishes: VANISHING_PARAMETERS on their lower bound, which stands for 0.
 
     Returns the fit, with these parameters no longer on a bound, and notes about them.
@@ -385,7 +393,7 @@ def accept_vanishing(fitted_log: FittedLog) -> tuple[FittedLog, list[str]]:
     return replace(fitted_log, solution=replace(solution, names_at_bound=others)), notes
 
 
-def has_friction(samples: Samples, drive: Drive) -> bool:
+def has_friction(samples: Samples, drive: DriveParameters) -> bool:
     """Whether the torque has a friction part, that is more than chance and MIN_FRICTION_SHARE."""
     ratio = abs(drive.ratio)
     terms, linear = _fit_linear_model(samples, drive)
@@ -402,7 +410,7 @@ def has_friction(samples: Samples, drive: Drive) -> bool:
     )
 
 
-def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
+def is_driven_by_friction(samples: Samples, drive: DriveParameters) -> bool:
     """Whether the fitted friction drives the motion: then the torque has the wrong sign in the log."""
     terms, linear = _fit_linear_model(samples, drive)
     w1 = abs(drive.ratio) * samples.dq
@@ -411,24 +419,24 @@ def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
     return bool(friction_torque @ w1 < 0.0 and np.sum(friction_torque**2) > np.sum(residual**2))
 
 
-def fit_with_rotor(
+def fit_with_rotor_inertia(
     parameter_file: ParameterFile,
     samples: Samples,
     fitted_names: Sequence[str],
     rotor_inertia: float,
-    rotor_deviation: float,
-) -> FittedLog:
+    rotor_inertia_deviation: float,
+) -> FittedLogFriction:
     """Fit the friction with a known rotor inertia [kg.m2].
 
     rotor_deviation : [kg.m2] standard deviation of the inertia; its effect is added to the covariance
     """
     fit = fit_samples(parameter_file, samples, fitted_names, rotor_inertia)
     shifted = fit_samples(
-        parameter_file, samples, fitted_names, rotor_inertia + rotor_deviation
+        parameter_file, samples, fitted_names, rotor_inertia + rotor_inertia_deviation
     ).solution.values
     changes = np.array([np.log(shifted[name] / value) for name, value in fit.solution.values.items()])
     wider = replace(fit.solution, covariance=fit.solution.covariance + np.outer(changes, changes))
-    return replace(fit, solution=wider, rotor_deviation=rotor_deviation)
+    return replace(fit, solution=wider, rotor_inertia_deviation=rotor_inertia_deviation)
 
 
 def _propagate_deviations(
@@ -444,27 +452,29 @@ def _propagate_deviations(
     rows, reference = [], propagated_function(solution.values)
     for deviation, direction in zip(np.sqrt(np.maximum(variances, 0.0)), directions.T, strict=True):
         changed = {
-            n: v * float(np.exp(DIFFERENCE_STEP * d))
+            n: v * float(np.exp(FINITE_DIFFERENCE_STEP * d))
             for (n, v), d in zip(solution.values.items(), direction, strict=True)
         }
-        rows.append((propagated_function(changed) - reference) * deviation / DIFFERENCE_STEP)
+        rows.append((propagated_function(changed) - reference) * deviation / FINITE_DIFFERENCE_STEP)
     return np.array(rows)
 
 
-def _start_values(parameter_file: ParameterFile, samples: Samples, linear_fit: Array) -> dict[str, float]:
+def _start_values(
+    parameter_file: ParameterFile, samples: Samples, linear_fit_values: Array
+) -> dict[str, float]:
     """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
 
     linear_fit : result of `_fit_linear_model`
     """
     size = float(np.median(np.abs(samples.motor_torque))) or 1.0
     fastest = abs(parameter_file.values.ratio) * float(np.max(np.abs(samples.dq)))
-    dry = max(float(linear_fit[0]), 0.05 * size)
+    dry = max(float(linear_fit_values[0]), 0.05 * size)
     others = {
         name: parameter_file.values_by_name[name] if parameter_file.values_by_name[name] > 0.0 else value
         for name, value in START_VALUES.items()
     }
     return {
         DRY_FRICTION: dry,
-        STRIBECK_FRICTION: 0.2 * dry,
-        VISCOUS_FRICTION: max(float(linear_fit[1]), 0.02 * size / fastest),
+        STRIBECK_FRICTION_NAME: 0.2 * dry,
+        VISCOUS_FRICTION_NAME: max(float(linear_fit_values[1]), 0.02 * size / fastest),
     } | others

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs, savgol_filter
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, UnitSizes, unit_sizes
 
@@ -25,12 +25,12 @@ SampleIndices: TypeAlias = NDArray[np.int_]
 """Indices of samples."""
 FILTER_WINDOW, FILTER_DEGREE = 0.04, 4
 """Window of the filter [s], and degree of its polynomial [1]."""
-FILTER_NODES = 9
+FILTER_NODE_COUNT = 9
 """Number of speeds in a window at which friction is evaluated and filtered; smallest number of samples of a
 window."""
-DEVELOPED_ROTATION_RATIO = 5.0
+DEVELOPED_FRICTION_ROTATION_RATIO = 5.0
 """Rotation of the motor since a reversal over `presliding` [1] after which friction is developed to 99 %."""
-MIN_SPEED_RATIO = 1.2
+MIN_SPEED_RANGE_RATIO = 1.2
 """Ratio of largest to smallest speed [1] that a log must exceed."""
 
 
@@ -69,8 +69,8 @@ class Samples:
     motor_angle: Array
     sensor_torque: Array
     is_held_out: NDArray[np.bool_]
-    is_dynamic: NDArray[np.bool_]
-    is_developed: NDArray[np.bool_]
+    is_of_dynamic_log: NDArray[np.bool_]
+    is_friction_developed: NDArray[np.bool_]
 
     @property
     def has_sensor(self) -> bool:
@@ -87,7 +87,7 @@ def join_samples(samples_of_logs: Sequence[Samples]) -> Samples:
     return Samples(*(np.concatenate([getattr(p, f.name) for p in samples_of_logs]) for f in fields(Samples)))
 
 
-def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Samples:
+def make_steady_speed_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Samples:
     """Samples of a table of steady speeds; every third row is held out."""
     none = np.full(torque.size, np.nan)
     return Samples(
@@ -95,9 +95,9 @@ def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Sampl
         q=columns_by_name.get("q", none),
         dq=columns_by_name["dq"],
         ddq=np.zeros(torque.size),
-        window_speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODES, axis=1),
-        window_weights=np.repeat(np.eye(1, FILTER_NODES), torque.size, axis=0),
-        window_angles=np.repeat(columns_by_name.get("q_motor", none)[:, None], FILTER_NODES, axis=1),
+        window_speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODE_COUNT, axis=1),
+        window_weights=np.repeat(np.eye(1, FILTER_NODE_COUNT), torque.size, axis=0),
+        window_angles=np.repeat(columns_by_name.get("q_motor", none)[:, None], FILTER_NODE_COUNT, axis=1),
         ripple_terms=np.zeros((torque.size, 0)),
         motor_torque=torque,
         gravity_torque=columns_by_name.get("gravity", none),
@@ -105,14 +105,14 @@ def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Sampl
         motor_angle=none,
         sensor_torque=columns_by_name.get("link_torque", none),
         is_held_out=np.arange(torque.size) % 3 == 1,
-        is_dynamic=np.zeros(torque.size, dtype=bool),
-        is_developed=columns_by_name["dq"] != 0.0,
+        is_of_dynamic_log=np.zeros(torque.size, dtype=bool),
+        is_friction_developed=columns_by_name["dq"] != 0.0,
     )
 
 
 def window_size(time_step: float) -> int:
     """Number of samples in the window of the filter, at a time step [s]; odd."""
-    return max(2 * round(0.5 * FILTER_WINDOW / time_step) + 1, FILTER_NODES)
+    return max(2 * round(0.5 * FILTER_WINDOW / time_step) + 1, FILTER_NODE_COUNT)
 
 
 def filter_values(values: Array, time_step: float, derivative_order: int = 0) -> Array:
@@ -122,8 +122,8 @@ def filter_values(values: Array, time_step: float, derivative_order: int = 0) ->
     )
 
 
-def dynamic_samples(
-    time: Array, time_step: float, columns_by_name: Mapping[str, Array], drive: Drive
+def make_dynamic_samples(
+    time: Array, time_step: float, columns_by_name: Mapping[str, Array], drive: DriveParameters
 ) -> Samples:
     """Filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
     none = np.full(time.size, np.nan)
@@ -156,8 +156,8 @@ def dynamic_samples(
         motor_angle=motor_angle,
         sensor_torque=filter_column("link_torque"),
         is_held_out=time > time[0] + 0.7 * (time[-1] - time[0]),
-        is_dynamic=np.ones(time.size, dtype=bool),
-        is_developed=_is_friction_developed(dq, time_step, window_size(time_step), drive),
+        is_of_dynamic_log=np.ones(time.size, dtype=bool),
+        is_friction_developed=_is_friction_developed(dq, time_step, window_size(time_step), drive),
     )
 
 
@@ -167,13 +167,13 @@ def _filter_nodes(window_width: int) -> tuple[SampleIndices, Array]:
     The weights are those for values that are linear between the nodes.
     """
     half = window_width // 2
-    nodes = np.round(np.linspace(-half, half, FILTER_NODES)).astype(int)
-    hats = [np.interp(np.arange(-half, half + 1), nodes, row) for row in np.eye(FILTER_NODES)]
+    nodes = np.round(np.linspace(-half, half, FILTER_NODE_COUNT)).astype(int)
+    hats = [np.interp(np.arange(-half, half + 1), nodes, row) for row in np.eye(FILTER_NODE_COUNT)]
     return nodes, np.array(hats) @ savgol_coeffs(window_width, FILTER_DEGREE, use="dot")
 
 
 def _is_friction_developed(
-    joint_speed: Array, time_step: float, window_width: int, drive: Drive
+    joint_speed: Array, time_step: float, window_width: int, drive: DriveParameters
 ) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
@@ -187,7 +187,7 @@ def _is_friction_developed(
     index = np.arange(joint_speed.size)
     rotation = np.concatenate([[0.0], np.cumsum(np.abs(joint_speed[1:]))]) * time_step * abs(drive.ratio)
     before, after = index - first[run], last[run] - 1 - index
-    developed = rotation - rotation[first[run]] > DEVELOPED_ROTATION_RATIO * drive.presliding
+    developed = rotation - rotation[first[run]] > DEVELOPED_FRICTION_ROTATION_RATIO * drive.presliding
     return np.asarray(developed & (before > window_width // 2) & (after > window_width // 2) & (sign != 0.0))
 
 
@@ -237,10 +237,10 @@ MAX_TORQUE_RATIO = 3.0
 """Largest plausible motor torque over max_torque/ratio [1]."""
 MIN_MOTOR_SPEED = 1e-3
 """Motor speed [rad/s] below which a log has no motion."""
-STEP_TOLERANCE, GAP_RATIO = 0.2, 10.0
+TIME_STEP_TOLERANCE, TIME_GAP_RATIO = 0.2, 10.0
 """Deviation of a time step from the median, over the median [1], up to which the sampling counts as even; and
 time step over the median [1] that counts as a gap."""
-SPEED_RATIO_RANGE = (0.5, 2.0)
+SPEED_OVER_DERIVATIVE_RANGE = (0.5, 2.0)
 """Allowed range of dq over the derivative of q [1]."""
 
 
@@ -284,7 +284,7 @@ def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]
 
 
 def make_log(
-    table: columns.Columns, torque_constant: float | None, drive: Drive, torque_at: str = "motor"
+    table: columns.Columns, torque_constant: float | None, drive: DriveParameters, torque_at: str = "motor"
 ) -> MeasuredLog:
     """Make the samples of a log from its columns.
 
@@ -309,10 +309,10 @@ def make_log(
     if "temperature" in have and table.units["temperature"] != "K":
         have["temperature"] = have["temperature"] + CELSIUS_ZERO_IN_KELVIN
     if "time" in have:
-        samples = _read_dynamic(table, have, torque, drive)
+        samples = _read_dynamic_log(table, have, torque, drive)
     else:
         table.require_column("dq", COLUMN_UNITS)
-        samples = steady_samples(have, torque)
+        samples = make_steady_speed_samples(have, torque)
         _check_samples(path, samples, drive)
     return MeasuredLog(path, samples, has_motor_torque)
 
@@ -353,15 +353,15 @@ def _joint_torque(
             f"{log_columns.path}: has the torque at the joint, link_torque, and no torque and no current of "
             f"the motor; expected {wanted}, or --torque-at joint"
         )
-    names = ", ".join(columns.read_names(log_columns.path))
+    names = ", ".join(columns.read_column_names(log_columns.path))
     raise ValueError(
         f"{log_columns.path}: has no torque and no current of the motor; expected {wanted}; the file has "
         f"{names}; a heading needs a unit, --columns 'i=HEADING [A]' states another heading"
     )
 
 
-def _read_dynamic(
-    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: Drive
+def _read_dynamic_log(
+    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: DriveParameters
 ) -> Samples:
     """Filtered samples of a dynamic log, one per window of the filter."""
     if "q" not in columns_by_name and "dq" not in columns_by_name:
@@ -379,7 +379,7 @@ def _read_dynamic(
             f"{log_columns.path}: takes {time[-1] - time[0]:.4g} s, expected at least "
             f"{2 * width * step:.3g} s"
         )
-    samples = dynamic_samples(even, step, columns_by_name, drive)
+    samples = make_dynamic_samples(even, step, columns_by_name, drive)
     if "dq" in columns_by_name and "q" in columns_by_name:
         _check_speed_column(log_columns, filter_values(columns_by_name["q"], step, 1), samples.dq)
     _check_samples(log_columns.path, samples, drive)
@@ -401,14 +401,14 @@ def _time_step(log_columns: columns.Columns) -> tuple[Array, float]:
             f"{time[first]:.9g} s runs back; expected rising times"
         )
     step = float(np.median(steps))
-    if np.any(wrong := steps > GAP_RATIO * step):
+    if np.any(wrong := steps > TIME_GAP_RATIO * step):
         first = int(np.argmax(wrong))
         raise ValueError(
             f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: a gap of "
             f"{steps[first]:.4g} s, allowed is "
-            f"{GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
+            f"{TIME_GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
         )
-    if np.max(np.abs(steps - step)) < STEP_TOLERANCE * step:
+    if np.max(np.abs(steps - step)) < TIME_STEP_TOLERANCE * step:
         step = float(time[-1] - time[0]) / (time.size - 1)
     return time, step
 
@@ -417,7 +417,10 @@ def _check_speed_column(log_columns: columns.Columns, derivative_of_q: Array, jo
     """Check that dq is the derivative of q. Raises ValueError if not."""
     most = float(np.max(np.abs(derivative_of_q)))
     scale = float(joint_speed @ derivative_of_q / (derivative_of_q @ derivative_of_q)) if most else 0.0
-    if np.max(np.abs(joint_speed)) and not SPEED_RATIO_RANGE[0] <= scale <= SPEED_RATIO_RANGE[1]:
+    if (
+        np.max(np.abs(joint_speed))
+        and not SPEED_OVER_DERIVATIVE_RANGE[0] <= scale <= SPEED_OVER_DERIVATIVE_RANGE[1]
+    ):
         hint = (
             "; likely one of them is in degrees"
             if 40.0 < max(abs(scale), 1.0 / abs(scale or 1.0)) < 80.0
@@ -428,7 +431,7 @@ def _check_speed_column(log_columns: columns.Columns, derivative_of_q: Array, jo
         )
 
 
-def _check_samples(path: Path, samples: Samples, drive: Drive) -> None:
+def _check_samples(path: Path, samples: Samples, drive: DriveParameters) -> None:
     """Check speeds and torques of a log. Raises ValueError if nothing moves or a value is implausible."""
     ratio = abs(drive.ratio)
     fastest = ratio * float(np.max(np.abs(samples.dq)))

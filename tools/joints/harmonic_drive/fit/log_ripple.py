@@ -15,9 +15,9 @@ from jointfmu.joints.harmonic_drive.drive import FRICTION_HARMONICS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....inputs.fitting.outcome import Facts
-from .log_friction import DRY_FRICTION, FittedLog, LinearTerms
-from .log_reading import FILTER_NODES, FILTER_WINDOW, Samples
+from ....inputs.fitting.outcome import FitFacts
+from .log_friction import DRY_FRICTION, FittedLogFriction, LinearTorqueTerms
+from .log_reading import FILTER_NODE_COUNT, FILTER_WINDOW, Samples
 
 MAX_RIPPLE_CHANCE, MIN_RIPPLE_SHARE = 1e-6, 0.02
 """Probability [1] that chance explains a ripple, and its amplitude over the dry friction [1]: ripple must be
@@ -39,17 +39,17 @@ class Ripple:
     phase_deviation: float
 
 
-def find_ripple_terms(samples: Samples, fitted_log: FittedLog) -> tuple[Samples, tuple[int, ...]]:
+def find_ripple_terms(samples: Samples, fitted_log: FittedLogFriction) -> tuple[Samples, tuple[int, ...]]:
     """Find harmonics of the friction in the residuals of a fit.
 
     Returns the samples with the terms of these harmonics, and the harmonics.
     """
-    angles = samples.window_angles[:, FILTER_NODES // 2]
+    angles = samples.window_angles[:, FILTER_NODE_COUNT // 2]
     turns = np.unique(np.round(np.mod(angles, 2.0 * np.pi) * MIN_TURN_ANGLES))
     if not np.all(np.isfinite(samples.window_angles)) or turns.size < MIN_TURN_ANGLES:
         return samples, ()
     residual = samples.motor_torque - fitted_log.evaluate_torque(samples)[1]
-    others = LinearTerms.at_samples(samples, abs(fitted_log.drive.ratio)).design_matrix
+    others = LinearTorqueTerms.evaluate_at_samples(samples, abs(fitted_log.drive.ratio)).design_matrix
     terms = [_harmonic_terms(samples, n, abs(fitted_log.drive.ratio)) for n in FRICTION_HARMONICS]
     matrix = np.concatenate([*terms, others], axis=1)
     values = np.linalg.lstsq(matrix, residual)[0]
@@ -73,8 +73,8 @@ def find_ripple_terms(samples: Samples, fitted_log: FittedLog) -> tuple[Samples,
 def _harmonic_terms(samples: Samples, harmonic: int, ratio: float) -> Array:
     """Filtered sense of rotation times sine and cosine (n, 2) [1] of a harmonic of the motor angle."""
     angle, sense = harmonic * samples.window_angles, np.sign(samples.window_speeds)
-    node_rotation = harmonic * ratio * np.abs(samples.dq) * FILTER_WINDOW / (FILTER_NODES - 1)
-    is_resolved = ~samples.is_dynamic | (node_rotation < MAX_NODE_ROTATION)
+    node_rotation = harmonic * ratio * np.abs(samples.dq) * FILTER_WINDOW / (FILTER_NODE_COUNT - 1)
+    is_resolved = ~samples.is_of_dynamic_log | (node_rotation < MAX_NODE_ROTATION)
     columns = [
         np.sum(samples.window_weights * sense * wave, axis=1) * is_resolved
         for wave in (np.sin(angle), np.cos(angle))
@@ -82,7 +82,7 @@ def _harmonic_terms(samples: Samples, harmonic: int, ratio: float) -> Array:
     return np.stack(columns, axis=1)
 
 
-def fitted_ripples(fitted_log: FittedLog, harmonics: Sequence[int]) -> list[Ripple]:
+def fitted_ripples(fitted_log: FittedLogFriction, harmonics: Sequence[int]) -> list[Ripple]:
     """Ripples of a fit with ripple terms, which are its last linear unknowns."""
     ripples, first = [], fitted_log.linear_unknowns.size - 2 * len(harmonics)
     for number, harmonic in enumerate(harmonics):
@@ -99,13 +99,13 @@ def fitted_ripples(fitted_log: FittedLog, harmonics: Sequence[int]) -> list[Ripp
 
 def add_ripples(
     parameter_file: ParameterFile, ripples: Sequence[Ripple], source: str, confidence_level: float
-) -> tuple[ParameterFile, Facts, list[str]]:
+) -> tuple[ParameterFile, FitFacts, list[str]]:
     """Parameter file with the ripples, facts about them, and notes.
 
     source           : source of the parameters, without their intervals
     confidence_level : of the intervals [1]
     """
-    facts: Facts = {}
+    facts: FitFacts = {}
     factor = float(stats.norm.ppf(0.5 + 0.5 * confidence_level))
     values, sources = {}, {}
     for ripple in ripples:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.law import ContactPairDrive
-from jointfmu.joints.harmonic_drive.prescribed_midline import TableDrive
+from jointfmu.joints.harmonic_drive.law import ContactPairDriveParameters
+from jointfmu.joints.harmonic_drive.prescribed_midline import TableDriveParameters
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
@@ -19,9 +19,9 @@ from ....inputs.fitting import backbone
 from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution, solve
 from ....inputs.fitting.measurement import COLUMN_SYNONYMS
 from ....inputs.fitting.outcome import (
-    Facts,
+    FitFacts,
+    FitPlot,
     FitResult,
-    Picture,
     correlation_note,
     fitted_parameters,
     make_predictor,
@@ -34,7 +34,7 @@ FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 """Parameters to fit; of the law `catalogue` they are K1, K2, K3."""
 MIN_POINTS = 10
 """Required number of points of a curve."""
-MAX_CREATED_ENERGY = 0.01
+MAX_CREATED_ENERGY_RATIO = 0.01
 """Created energy of a loop, from noise or drift, over torque range times angle range [1] that is accepted."""
 
 
@@ -116,8 +116,8 @@ def read_curve(
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
     start_file = start_parameters or load_default("harmonic_drive")
-    file = _resize_start(start_file, line.torque, rated_torque, table.path)
-    _check_size(line, file, table)
+    file = _resize_start_drive(start_file, line.torque, rated_torque, table.path)
+    _check_wind_up_and_loop_energy(line, file, table)
     size = start_file.values.rated_torque / file.values.rated_torque
     expected = float(np.ptp(drive.wind_up(start_file.values, size * line.torque)))
     COLUMN_NAMES.check_stiffness_ratio(
@@ -146,7 +146,7 @@ def make_result(
     line = measured_curve.midline
     residuals = line.angle - drive.wind_up(fitted_file.values, line.torque) - angle_offset
     grid = np.linspace(line.torque[0], line.torque[-1], 400)
-    picture = Picture(
+    picture = FitPlot(
         data_x=line.torque,
         data_y=(line.angle - angle_offset) / RAD_PER_ARCMIN,
         misfit=residuals / RAD_PER_ARCMIN,
@@ -162,7 +162,7 @@ def make_result(
     )
 
 
-def _resize_start(
+def _resize_start_drive(
     start_file: ParameterFile, torque: Array, rated_torque: float | None, path: Path
 ) -> ParameterFile:
     """Start parameters for a drive of the stated rated torque [N.m].
@@ -175,7 +175,7 @@ def _resize_start(
         start_file = drive.resize_drive(
             start_file, rated_torque, factor, "user", "stated with the torque-angle curve"
         )
-    if isinstance(start_file.values, ContactPairDrive) and reach > start_file.values.max_torque:
+    if isinstance(start_file.values, ContactPairDriveParameters) and reach > start_file.values.max_torque:
         raise InputRefusal(
             f"{path}: torque reaches {reach:g} N.m, beyond max_torque = "
             f"{start_file.values.max_torque:g} N.m of "
@@ -185,7 +185,9 @@ def _resize_start(
     return start_file
 
 
-def _check_size(midline: backbone.Backbone, start_file: ParameterFile, table: columns.Columns) -> None:
+def _check_wind_up_and_loop_energy(
+    midline: backbone.Backbone, start_file: ParameterFile, measured_columns: columns.Columns
+) -> None:
     """Check wind-up and loop energy before the fit.
 
     Raises InputRefusal for a wind-up that is implausible for this size, ValueError for a loop that creates
@@ -194,19 +196,20 @@ def _check_size(midline: backbone.Backbone, start_file: ParameterFile, table: co
     angle_range, torque_range = float(np.ptp(midline.angle)), float(np.ptp(midline.torque))
     rated = start_file.values.rated_torque
     low, high = drive.WIND_UP_RANGE
-    path, at_rated = table.path, angle_range * rated / torque_range
+    path, at_rated = measured_columns.path, angle_range * rated / torque_range
     if not low <= at_rated <= high:
         typical = float(np.sqrt(low * high))
         raise InputRefusal(
             f"{path}: the angle turns {angle_range:.3g} rad over {torque_range:.3g} N.m, that is "
             f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
-            f"{COLUMN_NAMES.describe_likely_unit_error(typical / at_rated, table.units)}, or state the "
+            f"{COLUMN_NAMES.describe_likely_unit_error(typical / at_rated, measured_columns.units)}, "
+            "or state the "
             "drive's rated torque",
             "rated_torque",
         )
     if midline.loop_area is not None:
         area, deviation = midline.loop_area
-        if area < -max(3.0 * deviation, MAX_CREATED_ENERGY * torque_range * angle_range):
+        if area < -max(3.0 * deviation, MAX_CREATED_ENERGY_RATIO * torque_range * angle_range):
             raise ValueError(
                 f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected 0 or more: the angle "
                 "must lag behind the torque; reverse the order of the rows if their time order is reversed"
@@ -215,7 +218,7 @@ def _check_size(midline: backbone.Backbone, start_file: ParameterFile, table: co
 
 def _curve_facts(
     midline: backbone.Backbone, angle_offset: float, residuals: Array, angle_noise: float
-) -> Facts:
+) -> FitFacts:
     """Facts about the measured curve: offset, loop area, backlash, drift, noise, largest error."""
     facts = {
         "points": (float(np.sum(midline.sample_counts)), "1", "samples used"),
@@ -248,7 +251,7 @@ def _curve_notes(midline: backbone.Backbone, residuals: Array) -> list[str]:
 
 MAX_TABLE_POINTS, MIN_TABLE_POINTS = 24, 4
 """Largest and smallest number of points of a table; noise reduces it until the torques and angles ascend."""
-SPACING_EXPONENT = 1.5
+TABLE_SPACING_EXPONENT = 1.5
 """Exponent of the spacing of the points [1]; above 1 they are closer near zero torque."""
 
 
@@ -271,7 +274,7 @@ def fit_table(
     values["table.torque"] = tuple(torque.tolist())
     values["table.angle"] = tuple(angle.tolist())
     table = {label: SourcedNumber(column, "calibration", name) for label, column in values.items()}
-    file = drive.change_law(start_file, TableDrive, name, table)
+    file = drive.change_law(start_file, TableDriveParameters, name, table)
     file = replace(fitted_parameters(file, values, "calibration", name, describe_range(line)), name=name)
     residuals = line.angle - offset - drive.wind_up(file.values, line.torque)
     noise = float(np.sqrt(np.average(line.sample_counts * residuals**2)))
@@ -292,7 +295,7 @@ def table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
     )
     size, angle = np.abs(midline.torque), np.sign(midline.torque) * (midline.angle - offset)
     for count in range(MAX_TABLE_POINTS, MIN_TABLE_POINTS - 1, -1):
-        edges = size.max() * np.linspace(0.0, 1.0, count + 1) ** SPACING_EXPONENT
+        edges = size.max() * np.linspace(0.0, 1.0, count + 1) ** TABLE_SPACING_EXPONENT
         bin_index = np.clip(np.searchsorted(edges, size, side="left") - 1, 0, count - 1)
         weight = np.bincount(bin_index, midline.sample_counts, count)
         is_filled = weight > 0.0

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import PLAY_WIDTH_RATIO, Drive
+from jointfmu.joints.harmonic_drive.drive import PLAY_WIDTH_RATIO, DriveParameters
 from jointfmu.joints.harmonic_drive.friction import (
     PRIOR_ROTATION_TIME,
     REFERENCE_TEMPERATURE,
@@ -14,7 +14,7 @@ from jointfmu.joints.harmonic_drive.friction import (
 from jointfmu.joints.harmonic_drive.hysteresis import slider_shares, stiffness_exponent
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flatten_fields
 
 from ....exchange.modelica.records import (
     ModelicaComponent,
@@ -31,7 +31,9 @@ from ....exchange.modelica.records import (
 _RECORD_ONLY_PARAMETERS = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion", "inertia1", "inertia2")
 """Parameters of the drive without a parameter of their own in the component: they are in the table and in the
 sliders of the record, or only the FMU uses them."""
-_COMPONENT_PARAMETERS = tuple(name for name, _ in flat_fields(Drive) if name not in _RECORD_ONLY_PARAMETERS)
+_COMPONENT_PARAMETERS = tuple(
+    name for name, _ in flatten_fields(DriveParameters) if name not in _RECORD_ONLY_PARAMETERS
+)
 """Parameters of the drive that are parameters of the component, too."""
 
 
