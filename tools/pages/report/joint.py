@@ -104,12 +104,15 @@ def _describe_loss(loops: HysteresisLoops) -> str:
 
 
 ORIGIN_MEANINGS = {
-    "published": "printed in the paper",
-    "derived": "computed from printed values or from a drawing",
+    "paper": "printed in a paper or handbook",
+    "standard": "a value of a standard",
     "catalogue": "a maker's catalogue",
+    "measured": "measured",
+    "derived": "computed from other values",
     "estimate": "an engineering estimate",
     "calibration": "fitted to published or measured points",
-    "user": "set by you",
+    "default": "not stated, the default of the package",
+    "user": "stated by you",
 }
 """{origin of a number: meaning}, for all parameters.ORIGINS."""
 VALIDITY_HEADINGS = {
