@@ -20,6 +20,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file, load_defau
 from jointfmu.quantity import units
 
 ROOT = Path(__file__).resolve().parents[2]
+PLATES = ["--plate", "100x100", "--bolts", "4xM12", "--at", "60x60", "--grip", "20", "--sides", "rigid"]
 LAWS = [(kind.name, law) for kind in KINDS.values() for law in kind.laws]
 
 
@@ -208,3 +209,13 @@ def test_topics_are_headings_of_the_pages_on_validity() -> None:
         text = (ROOT / page).read_text(encoding="utf-8")
         for heading in headings:
             assert f"\n## {heading}\n" in text
+
+
+def test_the_lesser_of_the_limits_of_law_and_bolts_is_said(tmp_path, monkeypatch):
+    """The law ends far above what an M12 bears."""
+    monkeypatch.chdir(tmp_path)
+    faces = ["--material", "steel", "--finish", "milled"]
+    assert cli.main(["new", "bolted-joint", *PLATES, *faces, "--out", "joint.toml"]) == 0
+    assert cli.main(["report", "joint.toml"]) == 0
+    (said,) = re.findall(r"Range of the law\.</b> (.*?)</li>", Path("joint.html").read_text(encoding="utf-8"))
+    assert said.startswith("Use it up to preload = 81.7 kN, the proof load of M12, class 12.9")
