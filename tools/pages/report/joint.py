@@ -312,8 +312,8 @@ def _describe_range(load_history: LoadHistory) -> str:
         if load_history.law_limit is None or largest < load_history.law_limit[0]:
             value, unit = _to_display_unit(largest, ramped.unit)
             return (
-                f"Use it up to {ramped.name} = {float(value):.3g} {unit}, {name}. The law of the interface ends "
-                "at a larger load only."
+                f"Use it up to {ramped.name} = {float(value):.3g} {unit}, {name}. The law of the interface "
+                "ends at a larger load only."
             )
     if load_history.law_limit is None:
         return f"The law is valid for {ramped.name} far beyond the load ramp."
