@@ -439,7 +439,7 @@ def fmu_with_parameters(path: Path, file) -> Path:
     """An archive with the parameters of an FMU where an FMU has them; nothing else of it is read."""
     path.parent.mkdir(parents=True)
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", f"<fmiModelDescription/>")
+        archive.writestr("modelDescription.xml", "<fmiModelDescription/>")
         archive.writestr(f"{REFERENCE_FOLDER}/parameters/mine.toml", format_parameter_file(file))
     return path
 
