@@ -13,6 +13,7 @@ law with the rms height h as a parameter computes h from them. For a law without
 `[comparison]`: its heights do not act, the stiffness of the law is only compared with the one they predict.
 """
 
+import textwrap
 import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import Field, dataclass, field, replace
@@ -46,6 +47,9 @@ ORIGIN_ALIASES = {"published": "paper"}
 """{former name of an origin: its name}."""
 _DEFAULT_SOURCE = "default choice"
 """Start of the source of a default."""
+_TOO_NESTED_TEXT = "has brackets or tables inside each other deeper than any file of this package"
+_MAX_SHOWN_LENGTH = 60
+"""Largest number of characters [1] of a wrong value in a message."""
 _NUMBERS_PER_LINE = 5
 """Numbers of a list per line of the file [1]."""
 _INPUTS_PREFIX = "inputs."
@@ -269,12 +273,19 @@ def read_document(path: Path, expected_content: str) -> dict[str, Any]:
         raise ValueError(f"{path}: is not a text file; expected {expected_content} (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path}: is not valid TOML ({error})") from None
+    except RecursionError:
+        raise ValueError(f"{path}: {_TOO_NESTED_TEXT}") from None
+    except ValueError:  # of int(): Python limits the digits
+        raise ValueError(f"{path}: has an integer of more digits than any number of this package") from None
     try:
         check_document(document)
+    except RecursionError:
+        raise ValueError(f"{path}: {_TOO_NESTED_TEXT}") from None
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     if type(document.get("schema")) is not int or document["schema"] != SCHEMA_VERSION:
-        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA_VERSION}")
+        stated = textwrap.shorten(repr(document.get("schema")), _MAX_SHOWN_LENGTH, placeholder="...")
+        raise ValueError(f"{path}: schema = {stated}, allowed is {SCHEMA_VERSION}")
     return document
 
 

@@ -393,3 +393,20 @@ def test_former_kinds_are_read_by_their_present_names(tmp_path):
     path = tmp_path / "former.toml"
     path.write_text(former, encoding="utf-8")
     assert format_parameter_file(load_parameter_file(path)) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"a = {'[' * 5000}{']' * 5000}", "deeper than any file of this package"),
+        (f"a{'.a' * 5000} = 1", "deeper than any file of this package"),
+        (f"schema = {'9' * 5000}", "an integer of more digits"),
+        (f"schema = {'9' * 4000}", "allowed is 1"),
+    ],
+)
+def test_a_hostile_file_is_named_in_one_line(file, text, said):
+    path = file(text)
+    with pytest.raises(ValueError, match=said) as error:
+        load_parameter_file(path)
+    assert str(error.value).startswith(f"{path}: ")
+    assert len(str(error.value)) < len(str(path)) + 120
