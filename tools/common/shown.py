@@ -80,7 +80,7 @@ class FileEntry(NamedTuple):
 
 def _format_source(parameter_file: ParameterFile, parameter_name: str) -> str:
     """Format the source of a number, with the range that the file states for it."""
-    text = parameter_file.sources.get(parameter_name, "default choice")
+    text = parameter_file.describe_source(parameter_name)[1]
     low, high = parameter_file.ranges.get(parameter_name, (0.0, 0.0))
     return f"{low:g} to {high:g}; {text}" if high > low else text
 
@@ -104,7 +104,7 @@ def list_entries(parameter_file: ParameterFile) -> list[FileEntry]:
             value,
             fields[name].get("unit"),
             fields[name]["doc"],
-            parameter_file.origins.get(name, "user"),
+            parameter_file.describe_source(name)[0],
             _format_source(parameter_file, name),
         )
         for name, value in values.items()

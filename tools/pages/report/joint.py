@@ -20,7 +20,7 @@ from jointfmu.quantity.units import conversion_factor
 from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
-from ...common.pressure import judge_joint_stiffness
+from ...common.pressure import judge_joint_stiffness, nominal_pressure
 from ...common.shown import FileEntry, choose_display_unit, format_quantity, format_unit, list_entries
 from ...run.ramps.loops import HysteresisLoops
 from .figure import ComparisonRow, Figure, Panel, Series, page_script, style_sheet
@@ -104,12 +104,15 @@ def _describe_loss(loops: HysteresisLoops) -> str:
 
 
 ORIGIN_MEANINGS = {
-    "published": "printed in the paper",
-    "derived": "computed from printed values or from a drawing",
+    "paper": "printed in a paper or handbook",
+    "standard": "a value of a standard",
     "catalogue": "a maker's catalogue",
+    "measured": "measured",
+    "derived": "computed from other values",
     "estimate": "an engineering estimate",
     "calibration": "fitted to published or measured points",
-    "user": "set by you",
+    "default": "not stated, the default of the package",
+    "user": "stated by you",
 }
 """{origin of a number: meaning}, for all parameters.ORIGINS."""
 VALIDITY_HEADINGS = {
@@ -300,8 +303,18 @@ def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
 
 
 def _describe_range(load_history: LoadHistory) -> str:
-    """Describe the load range in which the law is valid."""
+    """Describe the range of loads: the end of the law, or the load capacity of the parts if it is less."""
     ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
+    nominal = nominal_pressure(KINDS[load_history.file.joint])
+    capacity = nominal.load_capacity(load_history.file.values) if nominal else None
+    if nominal and capacity and nominal.load_variable == ramped.name:
+        largest, name = capacity
+        if load_history.law_limit is None or largest < load_history.law_limit[0]:
+            value, unit = _to_display_unit(largest, ramped.unit)
+            return (
+                f"Use it up to {ramped.name} = {float(value):.3g} {unit}, {name}. The law of the interface "
+                "ends at a larger load only."
+            )
     if load_history.law_limit is None:
         return f"The law is valid for {ramped.name} far beyond the load ramp."
     value, unit = _to_display_unit(load_history.law_limit[0], ramped.unit)

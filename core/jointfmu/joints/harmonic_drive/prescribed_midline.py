@@ -122,7 +122,7 @@ class CatalogueDrive(PrescribedDrive):
             ParameterLimit(
                 "corner",
                 Interval.from_bounds(ge=0.0, lt=(second - first) / (second + first)),
-                "the smooth corners must not overlap",
+                "the corners at T1 and T2 must not overlap; check first that K1, K2, T1 and T2 are right",
             ),
             ParameterLimit(
                 "lost_motion",
