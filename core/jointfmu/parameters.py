@@ -267,8 +267,9 @@ def read_document(path: Path, expected_content: str) -> dict[str, Any]:
     Raises ValueError with one line if the file cannot be read, is not TOML or of another schema, or if a key
     or a text is too long or has control characters.
     """
+    content = read_bytes(path, expected_content)
     try:
-        document = tomllib.loads(read_bytes(path, expected_content).decode("utf-8-sig"))
+        document = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is not a text file; expected {expected_content} (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:

@@ -52,6 +52,20 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
     assert not re.search(r"<link|<script[^>]*\bsrc=|<img[^>]*\bsrc=(?!\"data:)|@import|url\(", page)
 
 
+def test_titles_are_words_and_nothing_unknown_or_zero_is_drawn(tmp_path: Path) -> None:
+    """A catalogue drive has no K_TS, without hysteresis no loops; stiffnesses have the prefix kilo."""
+    page = written(tmp_path, load_default("harmonic_drive", "catalogue"))
+    titles = [panel["title"] for panels in figures(page) for panel in panels]
+    assert titles[:2] == ["Output torque over wind-up at the output", "Tangent stiffness over output torque"]
+    names = {series["name"] for panels in figures(page) for panel in panels for series in panel["series"]}
+    assert "K_TS" not in names
+    assert "<h2>Loops</h2>" not in page
+    plate = unescape(written(tmp_path, load_default("bolted_joint")))
+    assert "kN/µm" in plate
+    assert "e+04" not in plate
+    assert "e+05" not in plate
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:

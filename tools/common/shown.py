@@ -13,12 +13,19 @@ from jointfmu.quantity import describe_range, flat_fields
 from jointfmu.quantity.units import conversion_factor, display_unit
 
 STIFFNESS_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
-"""{SI unit: display unit on all pages} of stiffnesses. Other display units depend on the value."""
+"""{SI unit: display unit on all pages} of stiffnesses, with the prefix kilo for large ones.
+
+Other display units depend on the value."""
+_MIN_KILO_VALUE = 1e4
+"""Value in a display unit of stiffness with the prefix kilo from here on: 13.3 kN/um, not 1.33e+04 N/um."""
 
 
 def choose_display_unit(unit: str, typical_value: float) -> str:
     """Choose the display unit of a variable by its typical value."""
-    return STIFFNESS_UNITS.get(unit) or display_unit(unit, typical_value)
+    if unit not in STIFFNESS_UNITS:
+        return display_unit(unit, typical_value)
+    shown = STIFFNESS_UNITS[unit]
+    return f"k{shown}" if abs(typical_value) * conversion_factor(unit, shown) >= _MIN_KILO_VALUE else shown
 
 
 def format_unit(unit: str) -> str:

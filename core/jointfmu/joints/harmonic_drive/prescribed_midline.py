@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -66,6 +66,9 @@ class PrescribedDrive(Drive):
     The parts K_FTS and K_TS of the stiffness are unknown. K_FTS is set to twice the largest K_WTS: so K_TS
     equals K_FTS where the drive is stiffest, and is finite everywhere. There is no contact pressure: it is 0.
     """
+
+    unknown_outputs: ClassVar[tuple[str, ...]] = ("K_TS",)
+    """Outputs that a prescribed midline does not determine; they are not drawn."""
 
     @abstractmethod
     def make_nodes(self) -> Sequence[SplineNode]:
