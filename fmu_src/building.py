@@ -39,7 +39,7 @@ def build_fmus(
     variability : FMI variability of all parameters, one of VARIABILITIES
     alias       : name of the FMU instead of its own; only for a single FMU
     pool        : processes that build in parallel; None: build in this process
-    force       : also replace files that jointfmu did not write
+    overwrite   : also replace files that jointfmu did not write
 
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, an alias that is
     no identifier or is given for several FMUs, and files that may not or cannot be replaced. These checks

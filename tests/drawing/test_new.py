@@ -56,7 +56,9 @@ def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
         "user",
         "derived",
         "estimate",
-        "published",
+        "standard",
+        "paper",
+        "default",
         "catalogue",
         "calibration",
     }

@@ -63,8 +63,8 @@ def judge_joint_stiffness(
     """Judge the stiffness of a joint under loads.
 
     loads : values of `NominalPressureModel.load_variable` [SI]; None: the start value in the file, or, if it
-            is zero, the default load. At the default load the stiffness is only compared with the estimate from
-            roughness
+            is zero, the default load. At the default load the stiffness is only compared with the estimate
+            from roughness
     """
     kind = KINDS[parameter_file.joint]
     nominal = find_nominal_pressure_model(kind)

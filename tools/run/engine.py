@@ -162,12 +162,15 @@ class CompiledJoint:
         from jointfmu_fmu_src.native.library import make_joint_library
 
         self.model = model
-        self._start_values = {v.name: file.start_value(v.name) for v in model.inputs}
         self._messages: list[tuple[int, str]] = []
         self._lock = Lock()  # calls of the library release Python's own lock
         fields = model.parameter_fields()
-        names = ["time", *self._start_values, *(v.name for v in model.outputs), *fields]
-        self._references = {name: i for i, name in enumerate(names)}
+        inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
+        self._names = (*inputs, *outputs)
+        self._references = {name: i for i, name in enumerate(["time", *self._names, *fields])}
+        self._input_references, self._output_references = map(self._list_references, (inputs, outputs))
+        self._input_columns = {name: i for i, name in enumerate(inputs)}
+        self._start_row = np.array([[float(file.start_value(name)) for name in inputs]])
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
         library, messages = make_joint_library(model, file), self._messages
 
@@ -235,28 +238,24 @@ class CompiledJoint:
 
     def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
         """See `JointEngine.follow`."""
-        names = list(self._start_values)
-        columns = [np.atleast_1d(x) for x in (self._start_values | {**inputs}).values()]
-        values = np.empty((*np.broadcast_shapes(*(column.shape for column in columns)), len(columns)))
-        for i, column in enumerate(columns):
-            values[:, i] = column
-        outputs = [v.name for v in self.model.outputs]
-        results = np.empty((len(values), len(outputs)))
-        given, read = self._list_references(names), self._list_references(outputs)
+        sizes = {np.size(column) for column in inputs.values()} - {1}
+        values = np.repeat(self._start_row, next(iter(sizes), 1), axis=0)
+        for name, column in inputs.items():
+            values[:, self._input_columns[name]] = column
+        results = np.empty((len(values), len(self._output_references)))
+        given, read = self._input_references, self._output_references
         with self._lock:
             self._messages.clear()
             done = self._library.jointfmu_follow_path(
                 self._instance, each_from_rest, len(values),
-                len(names), given.ctypes.data, values.ctypes.data,
-                len(outputs), read.ctypes.data, results.ctypes.data,
+                len(given), given.ctypes.data, values.ctypes.data,
+                len(read), read.ctypes.data, results.ctypes.data,
             )  # fmt: skip
             if done < len(values):
                 raise ValueError(self._take_error_message())
-            warnings = tuple(
-                dict.fromkeys(text for status, text in self._messages if status == _WARNING_STATUS)
-            )
-        found = dict(zip((*names, *outputs), (*values.T, *results.T), strict=True))
-        return PathResult(found, warnings)
+            texts = [text for status, text in self._messages if status == _WARNING_STATUS]
+            warnings = tuple(dict.fromkeys(texts))
+        return PathResult(dict(zip(self._names, (*values.T, *results.T), strict=True)), warnings)
 
 
 def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> None:

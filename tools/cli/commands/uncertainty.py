@@ -95,6 +95,8 @@ def _is_fmu(joint_or_fmu: str | None) -> bool:
     """Whether the positional argument is the path of an FMU; ValueError if it is neither FMU nor joint."""
     if joint_or_fmu is None or joint_or_fmu in KINDS:
         return False
+    if joint_or_fmu.lower().endswith(".toml"):
+        raise ValueError(f"{joint_or_fmu}: is no FMU; state a parameter file with --params {joint_or_fmu}")
     if joint_or_fmu.lower().endswith(".fmu") or Path(joint_or_fmu).exists():
         return True
     allowed = f"{', '.join(KINDS)}, or the path of an FMU"

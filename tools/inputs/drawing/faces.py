@@ -282,9 +282,9 @@ def _face_from_scan(path: str, unit: str | None) -> Face:
         scan.h,
         scan.h,
         RZ_OVER_RA * scan.h / roughness.RQ_OVER_RA,
-        SourcedNumber(scan.slope, "user", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
+        SourcedNumber(scan.slope, "measured", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
         SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9"),
-        SourcedNumber(longest, "user", f"length of the {source}"),
+        SourcedNumber(longest, "measured", f"length of the {source}"),
         f"{source}, waves up to {longest:.3g} m",
         {"Rq": scan.h},
     )

@@ -1,6 +1,6 @@
 """Figures in the report of a bolted joint: pictures, stiffness shares, bolt forces, effect of friction."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
@@ -16,6 +16,7 @@ from jointfmu.joints.bolted_joint.outputs import bolt_force_name
 from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from ...common.shown import format_quantity
 from ...pages.report.figure import ComparisonRow, Figure
@@ -29,6 +30,8 @@ MAX_PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
+EQUAL_FORCE_TOLERANCE = 1e-3
+"""Difference of two bolt forces over the largest one [1], up to which they share a curve."""
 
 
 def joint_figures(load_history: LoadHistory) -> list[Figure]:
@@ -186,11 +189,34 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
     )
 
 
+def _group_equal_rows(columns: Array) -> list[list[int]]:
+    """Indices of the rows, those with equal values together; in the order of the first of each group."""
+    groups: list[list[int]] = []
+    scale = float(np.max(np.abs(columns), initial=0.0))
+    for j, row in enumerate(columns):
+        for group in groups:
+            if np.allclose(row, columns[group[0]], rtol=0.0, atol=EQUAL_FORCE_TOLERANCE * scale):
+                group.append(j)
+                break
+        else:
+            groups.append([j])
+    return groups
+
+
+def _name_bolts(bolts: Sequence[int]) -> str:
+    """Name of a curve of bolts with equal forces."""
+    names = ", ".join(bolt_force_name(j) for j in bolts)
+    return f"{names} (equal)" if len(bolts) > 1 else names
+
+
 def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, max_force: float) -> Panel:
     """Panel of the force of each bolt over a tensile force along z, up to `max_force` [N]."""
     pulls = np.linspace(0.0, max_force, 27)
     columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
-    series = [Series(bolt_force_name(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
+    series = [
+        Series(_name_bolts(bolts), 1e-3 * pulls[: len(columns[bolts[0]])], columns[bolts[0]])
+        for bolts in _group_equal_rows(columns)
+    ]
     return Panel(
         "Bolt forces under a tensile force along z", "tensile force along z [kN]", "bolt force [kN]", series
     )

@@ -22,6 +22,8 @@ MAX_SLIP_RATIO = 0.8
 """Largest shear force of the loop over the slip force [1]."""
 LOOP_LOAD_RATIOS = np.geomspace(0.02, 1.0, 5)
 """Loads of the loops over the end of the ramp [1]. The loss factor is interpolated between them."""
+START_EXPONENT = 12.0
+"""Exponent N of the pressure p ~ approach^N [1] from which the search of the amplitude of a loop starts."""
 MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
 """Limits of Newton's method for the amplitude of the loop [1]."""
 
@@ -52,12 +54,17 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
     """Loss factor (m) [1] of loops of the interface under SHEAR_RATIO of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
-    finds the displacement at which the shear force is reached: the virgin curve is concave, so the iteration
-    is monotone.
+    finds the displacement of the shear force, from that of a virgin curve with the same initial stiffness and
+    friction limit, for a pressure p ~ approach^START_EXPONENT.
     """
     loads, parameters = preload[-1] * LOOP_LOAD_RATIOS, sample.parameters
-    shear = parameters.n_bolts * loads * min(LOOP_SHEAR_FORCE_RATIO, MAX_SLIP_RATIO * parameters.mu)
-    amplitude = np.zeros_like(shear)
+    limit = parameters.mu * parameters.n_bolts * loads
+    shear = np.minimum(LOOP_SHEAR_FORCE_RATIO * parameters.n_bolts * loads, MAX_SLIP_RATIO * limit)
+    stiffness = sample.follow({"preload": loads, "s_rel_x": np.zeros_like(loads)}, INTERFACE_ONLY_PARAMETERS)[
+        "K_xx"
+    ]
+    start_ratio = START_EXPONENT * (1.0 - (1.0 - shear / limit) ** (1.0 / START_EXPONENT))
+    amplitude = start_ratio * limit / stiffness
     for _ in range(MAX_ITERATIONS):
         state = sample.follow({"preload": loads, "s_rel_x": amplitude}, INTERFACE_ONLY_PARAMETERS)
         step = (shear + state["f_x"]) / state["K_xx"]

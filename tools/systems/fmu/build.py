@@ -50,7 +50,7 @@ def build_system(
 
     versions  : of FMI, "2" and "3"
     platforms : of the binaries, names of FMI 3.0
-    force     : also replace files that jointfmu did not write
+    overwrite : also replace files that jointfmu did not write
 
     Raises ImportError if a package is missing, RuntimeError if the compiler fails, ValueError if a folder
     cannot be written or the system is too large.

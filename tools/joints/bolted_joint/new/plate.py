@@ -137,7 +137,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
 def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
     if options["hole"] is None:
-        return thread.hole, ("published", f"{thread_source('hole')} for {thread.name}")
+        return thread.hole, ("standard", f"{thread_source('hole')} for {thread.name}")
     return parse_value("hole", options["hole"]), ("user", "stated on the drawing")
 
 
