@@ -67,7 +67,10 @@ def add_command(command_parsers: SubParsers) -> None:
     export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
     text = f"units of the file (default: {SI_UNIT_SET.name})"
     export.add_argument("--units", choices=list(UNIT_SETS), default=SI_UNIT_SET.name, help=text)
-    text = f"tables: largest relative error of linear interpolation (default: {DEFAULT_LOAD_ERROR:g})"
+    text = (
+        f"tables: largest relative error of linear interpolation (default: {DEFAULT_LOAD_ERROR:g}; a contact "
+    )
+    text += "for calculix: the smallest above it whose table fits 200 rows)"
     declare_argument(export, "--error", float, text, "E")
     text = f"{', '.join(ROBOT_FORMATS)}: largest torque of the fit [N.m] (default: rated torque)"
     declare_argument(export, "--torque", float, text, "T")
@@ -153,7 +156,7 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
     units = UNIT_SETS[args.units]
     error = DEFAULT_LOAD_ERROR if args.error is None else args.error
     if args.what == "contact":
-        return writing.export_contact(args.form, parameter_file, units, error)
+        return writing.export_contact(args.form, parameter_file, units, args.error)
     state = _read_working_point(args, parameter_file.joint)
     if args.what == "curve":
         return writing.export_curve(args.form, parameter_file, state, units, error)

@@ -82,7 +82,8 @@ def format_contact(
     )
     if max_rows is not None and len(rows) > max_rows:
         raise InputRefusal(
-            f"the table has {len(rows)} rows, CalculiX holds {max_rows}; state a larger error", "error"
+            f"the table has {len(rows)} rows, CalculiX holds {max_rows}; state a larger error, or none",
+            "error",
         )
     lines = [
         *comment_header(comment_lines, "**"),

@@ -8,7 +8,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
 from . import ansys, keywords, tables
-from .exports import LoadCurve, require_content
+from .exports import DEFAULT_LOAD_ERROR, LoadCurve, require_content
 from .mesh import NodePairs
 from .placing import Placement, Springs, UnitSet
 
@@ -45,6 +45,10 @@ _CONTACT_WRITERS: dict[str, tuple[Callable[[tables.LoadTable, UnitSet, list[str]
     "csv": (tables.format_contact_csv, ()),
 }
 """{format: (function that formats a contact, comment lines)}."""
+
+
+_MAX_CONTACT_ROWS = {"calculix": keywords.MAX_CALCULIX_ROWS}
+"""{format: largest number of rows of a contact table, with the extrapolated row}."""
 
 
 def export_springs(
@@ -89,14 +93,28 @@ def export_springs(
 
 
 def export_contact(
-    file_format: str, parameter_file: ParameterFile, unit_set: UnitSet, max_error: float
+    file_format: str, parameter_file: ParameterFile, unit_set: UnitSet, max_error: float | None = None
 ) -> ExportedFile:
     """Export the interface's pressure over its approach, for a contact of two surfaces.
 
-    Raises ValueError if the joint does not offer it.
+    max_error : largest relative error [1] of the pressure; None: DEFAULT_LOAD_ERROR, or the smallest larger
+                error whose table the solver can read
+
+    Raises ValueError if the joint does not offer it, or if the table has more rows than the solver can read.
     """
     curve, more = require_content(parameter_file.joint, "contact")(parameter_file.values)
-    table = tables.tabulate_law(curve, max_error)
+    table = tables.tabulate_law(curve, DEFAULT_LOAD_ERROR if max_error is None else max_error)
+    warnings: tuple[str, ...] = ()
+    limit = _MAX_CONTACT_ROWS.get(file_format)
+    if max_error is None and limit is not None and len(table.rows) > limit - 1:
+        rows = len(table.rows) + 1
+        max_error, table = tables.fit_row_limit(
+            lambda error: tables.tabulate_law(curve, error), DEFAULT_LOAD_ERROR, limit - 1
+        )
+        warnings = (
+            f"error = {max_error:g}: smallest error whose table fits the {limit} rows of {file_format} "
+            f"({DEFAULT_LOAD_ERROR:g} needs {rows} rows)",
+        )
     about = [
         "normal contact of the rough interface: pressure over overclosure from first touch",
         f"parameters: {parameter_file.name} ({parameter_file.joint})",
@@ -109,7 +127,7 @@ def export_contact(
         *more,
     ]
     write, notes = _CONTACT_WRITERS[file_format]
-    return ExportedFile(write(table, unit_set, [*about, *notes]), _table_facts(table))
+    return ExportedFile(write(table, unit_set, [*about, *warnings, *notes]), _table_facts(table), warnings)
 
 
 def export_curve(
