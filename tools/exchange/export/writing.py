@@ -6,9 +6,11 @@ from functools import partial
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
-from . import ansys, keywords, tables
+from . import ansys, aster, keywords, nastran, tables
 from .exports import DEFAULT_LOAD_ERROR, LoadCurve, require_content
+from .joint_stiffness import JointStiffness, describe
 from .mesh import NodePairs
 from .placing import Placement, Springs, UnitSet
 
@@ -90,6 +92,44 @@ def export_springs(
     }
     facts |= field.joint_totals
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
+
+
+_STIFFNESS_WRITERS: dict[str, Callable[[JointStiffness, Placement, list[str]], str]] = {
+    "ansys": ansys.format_joint_stiffness,
+    "calculix": keywords.format_coupled_springs,
+    "abaqus": keywords.format_user_element,
+    "nastran": nastran.format_joint_stiffness,
+    "aster": aster.format_joint_stiffness,
+}
+"""{format in STIFFNESS_FORMATS: function that formats the stiffness matrix of a complete joint}."""
+
+
+def export_stiffness(
+    file_format: str,
+    parameter_file: ParameterFile,
+    working_point: object,
+    node_positions: Array,
+    placement: Placement,
+) -> ExportedFile:
+    """Export the stiffness matrix of a complete joint between two nodes.
+
+    node_positions : (2, 3) of the nodes of side 1 and side 2 from the centroid of the contact, along the
+                     model's axes and in its units
+
+    Raises ValueError if the joint does not offer it, or if the working point is outside the law.
+    """
+    tangent = require_content(parameter_file.joint, "stiffness")(parameter_file.values, working_point)
+    positions = node_positions / placement.units.convert(1.0, "m")
+    stiffness = JointStiffness.from_tangent(tangent, positions)
+    about = [
+        f"complete {KINDS[parameter_file.joint].title} between two nodes, linear about a working point",
+        f"parameters: {parameter_file.name} ({parameter_file.joint})",
+        f"working point: {working_point}",
+        f"units: {placement.units.name}",
+        *describe(stiffness, placement),
+    ]
+    facts: dict[str, object] = {**stiffness.totals(), "coupling": stiffness.max_coupling}
+    return ExportedFile(_STIFFNESS_WRITERS[file_format](stiffness, placement, about), facts)
 
 
 def export_contact(
