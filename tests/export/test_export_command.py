@@ -14,7 +14,15 @@ from jointfmu_tools.exchange.export.exports import CONTENTS_BY_FORMAT
 from jointfmu import __version__
 from jointfmu.parameters import format_parameter_file, load_default
 
-MARKS = {"ansys": "!", "calculix": "**", "abaqus": "**", "modelica": "#", "csv": "#"}
+MARKS = {
+    "ansys": "!",
+    "calculix": "**",
+    "abaqus": "**",
+    "nastran": "$",
+    "aster": "#",
+    "modelica": "#",
+    "csv": "#",
+}
 
 
 @pytest.fixture(autouse=True)
@@ -146,7 +154,7 @@ E = [
     (("ansys", "springs", "--preload", 9e3, "--first", 0), "--first = 0 is outside [1, 10000000]"),
     (("csv", "springs", "--nodes", "own.csv", "--preload", 9e3), "own.csv states the pressures; leave out"),
     (("modelica", "curve", "--preload", 9e3, "--units", "mm-N-MPa-t"), "a Modelica table is in m-N-Pa-kg"),
-    (("nastran", "springs"), "argument FORMAT: invalid choice: 'nastran'"),
+    (("radioss", "springs"), "argument FORMAT: invalid choice: 'radioss'"),
     (("csv", "springs", "--preload", 9e3, "--units", "inch"), "argument --units: invalid choice: 'inch'"),
     (("csv", "contact", "--params", "none.toml"), "none.toml: cannot be read"),
 ]

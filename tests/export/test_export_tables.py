@@ -20,7 +20,7 @@ from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import load_default
+from jointfmu.parameters import load_default, load_parameter_file
 
 MM = UNIT_SETS["mm-N-MPa-t"]
 STATE = TightenedState(9e3, 0.0)
@@ -144,6 +144,39 @@ def test_calculix_refuses_more_rows_than_it_holds():
     assert rows > 200
     with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; state a larger error"):
         writing.export_contact("calculix", file, SI_UNIT_SET, 1e-4)
+
+
+@pytest.mark.parametrize("finish", ["ground", "milled", "turned", "lapped"])
+def test_calculix_gets_the_smallest_error_that_fits(finish, tmp_path, capsys, monkeypatch):
+    """The contact of an ordinary steel joint: more than 200 rows at the default error."""
+    monkeypatch.chdir(tmp_path)
+    new = "new bolted-joint --plate 80x40 --bolts 2xM10 --at 40x0 --grip 10 15 --hole 11 --sides rigid"
+    assert cli.main([*new.split(), "--material", "steel", "--finish", finish, "--out", "c.toml"]) == 0
+    file = load_parameter_file("c.toml")
+    needed = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-3).facts_by_name["rows"] + 1
+    assert needed > 200
+    capsys.readouterr()
+    assert (
+        cli.main(
+            ["export", "calculix", "contact", "--params", "c.toml", "--units", "mm-N-MPa-t", "--out", "c.inp"]
+        )
+        == 0
+    )
+    said = capsys.readouterr().err
+    found = re.search(r"error = (\S+): smallest error whose table fits the 200 rows of calc.*", said)
+    assert f"(0.001 needs {needed} rows)" in found[0]
+    error = float(found[1])
+    rows = len(np.loadtxt("c.inp", delimiter=",", comments="*"))
+    curve = BoltedJointSpring.for_interface_nodes(file.values).curve
+    assert rows == len(tables.tabulate_law(curve, error).rows) + 1 <= 200
+    smaller = error - 10.0 ** np.floor(np.log10(error * 1.0001) - 1.0)
+    assert len(tables.tabulate_law(curve, smaller).rows) + 1 > 200
+
+
+def test_error_that_no_table_has():
+    table = tables.LoadTable(np.zeros((300, 3)), (0.0, 0.0), (0.0, 0.0))
+    with pytest.raises(ValueError, match=r"no table with an error below 0\.5 has at most 200 rows"):
+        tables.fit_row_limit(lambda error: table, 1e-3, 200)
 
 
 @pytest.mark.parametrize(

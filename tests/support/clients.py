@@ -297,6 +297,11 @@ CLIENTS = {
         "the code on the page of Pinocchio gives the numbers of `jointfmu robot`",
         "`pip install pin`",
     ),
+    "pyNastran": Client(
+        script("import numpy; numpy.in1d = numpy.isin; from pyNastran.bdf.bdf import BDF; BDF(debug=False)"),
+        "exported bulk data of NASTRAN, read back",
+        "`pip install pyNastran`",
+    ),
     "robosuite": Client(
         lambda: require(metadata.files("robosuite"), "the package lists no files"),
         "five more robots of others with elastic joints",

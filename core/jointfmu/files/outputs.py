@@ -77,8 +77,10 @@ HTML_FILE = FileKind("page", (".html", ".htm"))
 PICTURE_FILE = FileKind("picture", (".png", ".svg"))
 ARCHIVE_FILE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
 EXCHANGE_FILE = FileKind(
-    "text for another tool", (".cdb", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml")
+    "text for another tool",
+    (".bdf", ".cdb", ".comm", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"),
 )
+ACTUATOR_FILE = FileKind("list of actuators", (".json",))
 MESH_FILE = FileKind("mesh", (".vtu",))
 OUTPUT_FOLDER = FileKind("folder", ())
 _PROGRAM_FILE_ENDINGS = {

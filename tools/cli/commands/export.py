@@ -18,7 +18,9 @@ from ...exchange.export.exports import (
     CONTENTS_BY_FORMAT,
     DEFAULT_MAX_LOAD_ERROR,
     EXPORT_CONTENTS,
+    INTERFACE_FORMATS,
     ROBOT_FORMATS,
+    STIFFNESS_FORMATS,
 )
 from ...exchange.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
 from ..command import CommandResult, SubParsers, declare_argument, declare_command, parse_joint_name
@@ -27,6 +29,8 @@ from ..outputs import declare_output
 if TYPE_CHECKING:
     from ...exchange.export.writing import ExportedFile
 
+_MODEL_ORIGIN = (0.0, 0.0, 0.0)
+"""Default position of a node of a complete joint: the centroid of the contact."""
 _FORMATS_WITH_ELEMENT_NUMBERS = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
 """{argument: formats that need this first number together with --nodes}."""
 _FIRST_FREE_NUMBER_MEANINGS = {
@@ -34,7 +38,7 @@ _FIRST_FREE_NUMBER_MEANINGS = {
     "first_set": "a number above all element types and sets of real constants of your model",
 }
 """Meanings for error messages: {argument for a first free number: meaning}."""
-_PRINTED_QUANTITY_UNITS = {"K_": "N/m", "C_": "N.s/m"}
+_PRINTED_QUANTITY_UNITS = {"K_r": "N.m/rad", "K_": "N/m", "C_": "N.s/m"}
 """{first letters of a printed quantity: its SI unit}."""
 
 
@@ -47,7 +51,8 @@ def add_command(command_parsers: SubParsers) -> None:
     export.add_argument(
         "what",
         metavar="WHAT",
-        help="springs: springs and dashpots between node pairs "
+        help="springs: stiffness matrix of the complete joint between two nodes, or, with rigid sides or "
+        "--interface, springs and dashpots between node pairs "
         f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
         f"curve: load over displacement of the complete joint; for {', '.join(ROBOT_FORMATS)}: parameter "
         "file of a drive or its name in the catalogue",
@@ -63,6 +68,12 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     for name, texts in _working_point_meanings().items():
         declare_argument(export, format_option_flag(name), float, "; ".join(texts))
+    text = "springs: the interface alone between node pairs, for your own model of members and bolts"
+    export.add_argument("--interface", action="store_true", default=None, help=text)
+    for side in (1, 2):
+        text = f"springs of the complete joint: position of the node of side {side} from the centroid of the "
+        text += "contact, along the axes and in the units of your model (default: 0 0 0)"
+        declare_argument(export, f"--node-{side}", float, text, "V", nargs=3)
     text = "springs: your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a column "
     declare_argument(export, "--nodes", Path, text + "pressure [MPa] replaces the working point", "CSV")
     declare_argument(export, "--first", int, "springs: first free number for elements and nodes (default: 1)")
@@ -72,7 +83,8 @@ def add_command(command_parsers: SubParsers) -> None:
     export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
     text = f"units of the file (default: {SI_UNIT_SET.name})"
     export.add_argument("--units", choices=list(UNIT_SETS), default=SI_UNIT_SET.name, help=text)
-    text = f"tables: largest relative error of linear interpolation (default: {DEFAULT_MAX_LOAD_ERROR:g})"
+    text = f"tables: largest relative error of linear interpolation (default: {DEFAULT_MAX_LOAD_ERROR:g}; "
+    text += "a contact for calculix: the smallest above it whose table fits 200 rows)"
     declare_argument(export, "--error", float, text, "E")
     text = f"{', '.join(ROBOT_FORMATS)}: largest torque of the fit [N.m] (default: rated torque)"
     declare_argument(export, "--torque", float, text, "T")
@@ -108,16 +120,45 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
     lines = [f"wrote {args.out}: {args.what} for {args.form}, {args.units}"]
     for name, value in written.facts_by_name.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
-        lines.append(f"  {name:<24}  {number} {_PRINTED_QUANTITY_UNITS.get(name[:2], '')}".rstrip())
-    judgement = _judge_export(args, file).with_warnings([*written.warnings, *warn_missing_members(file)])
+        lines.append(f"  {name:<24}  {number} {_printed_unit(name)}".rstrip())
+    is_complete = args.interface or _exports_complete_joint(args, file)
+    missing = [] if is_complete else warn_missing_members(file)
+    stiffness_judgement = _judge_export(args, file).with_warnings([*written.warnings, *missing])
     return CommandResult(
-        json_document={**facts, **written.facts_by_name}, lines=lines, stiffness_judgement=judgement
+        json_document={**facts, **written.facts_by_name}, lines=lines, stiffness_judgement=stiffness_judgement
+    )
+
+
+def _printed_unit(name: str) -> str:
+    """SI unit of a printed quantity; empty for a number without unit."""
+    return next((unit for start, unit in _PRINTED_QUANTITY_UNITS.items() if name.startswith(start)), "")
+
+
+def _exports_complete_joint(args: argparse.Namespace, parameter_file: ParameterFile) -> bool:
+    """Whether the springs are the stiffness matrix of the complete joint, not those of its interface."""
+    has_members = getattr(parameter_file.values, "has_elastic_members", False)
+    return (
+        args.what == "springs"
+        and args.form in STIFFNESS_FORMATS
+        and not args.interface
+        and (has_members or args.form not in INTERFACE_FORMATS)
     )
 
 
 def _export_drive(args: argparse.Namespace) -> CommandResult:
     """Write a drive for a robot simulator; the output lists effects that the format cannot represent."""
-    idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_point_meanings())
+    idle = (
+        "params",
+        "nodes",
+        "first",
+        "first_set",
+        "normal",
+        "error",
+        "interface",
+        "node_1",
+        "node_2",
+        *_working_point_meanings(),
+    )
     _refuse_unused_options(args, dict.fromkeys(idle, args.form))
     if args.units != SI_UNIT_SET.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI_UNIT_SET.name}")
@@ -154,16 +195,27 @@ def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Pl
 
 
 def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "ExportedFile":
+    import numpy as np
+
     from ...exchange.export import writing
     from ...exchange.export.mesh import read_node_pairs
 
     units = UNIT_SETS[args.units]
     error = DEFAULT_MAX_LOAD_ERROR if args.error is None else args.error
     if args.what == "contact":
-        return writing.export_contact(args.form, parameter_file, units, error)
+        return writing.export_contact(args.form, parameter_file, units, args.error)
     state = _read_working_point(args, parameter_file.joint)
     if args.what == "curve":
         return writing.export_curve(args.form, parameter_file, state, units, error)
+    if _exports_complete_joint(args, parameter_file):
+        if state is None:
+            available = exports.load_exports(parameter_file.joint)
+            assert available.working_point_class is not None
+            values = {name: parameter_file.start_value(name) for name in available.working_point}
+            state = available.working_point_class(**values)
+        nodes = np.array([args.node_1 or _MODEL_ORIGIN, args.node_2 or _MODEL_ORIGIN])
+        placing = Placement(units, args.normal or "z", args.first or 1, args.first_set or 1)
+        return writing.export_stiffness(args.form, parameter_file, state, nodes, placing)
     mesh = read_node_pairs(args.nodes) if args.nodes else None
     first, text = next(iter(exports.load_exports(parameter_file.joint).working_point.items()), ("", ""))
     if mesh is not None and mesh.pressure is not None and state is not None:
@@ -221,10 +273,20 @@ def _check_options(args: argparse.Namespace, parameter_file: ParameterFile) -> N
     """Check the options. Raises ValueError if one has no effect, is missing or is out of range."""
     exports.require_export(parameter_file.joint, args.what)
     _check_working_point(args, parameter_file.joint)
-    if args.what == "springs":
+    node_options = ("node_1", "node_2")
+    if args.what != "springs":
+        names = ("nodes", "first", "normal", "interface", *node_options)
+        idle = dict.fromkeys(names, f"a {args.what}; it is for springs")
+    elif _exports_complete_joint(args, parameter_file):
         idle = {"error": "springs; it is for tables"}
+        idle["nodes"] = "the stiffness matrix of a complete joint; --interface exports the interface alone"
+        if args.form not in INTERFACE_FORMATS:
+            idle["nodes"] = f"{args.form}; it is for {', '.join(INTERFACE_FORMATS)}"
     else:
-        idle = dict.fromkeys(("nodes", "first", "normal"), f"a {args.what}; it is for springs")
+        idle = {"error": "springs; it is for tables"}
+        idle |= dict.fromkeys(node_options, "springs of the interface; it is for a complete joint")
+    if args.interface and args.form not in INTERFACE_FORMATS:
+        idle["interface"] = f"{args.form}; it is for {', '.join(INTERFACE_FORMATS)}"
     if args.form != "ansys":
         idle["first_set"] = f"{args.form}; it is for ansys"
     _refuse_unused_options(args, idle)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.files.outputs import (
+    ACTUATOR_FILE,
     EXCHANGE_FILE,
     OUTPUT_FOLDER,
     PARAMETER_FILE,
@@ -65,13 +66,20 @@ def run(args: argparse.Namespace) -> CommandResult:
     plots.check_picture_path(pictures[0])
     check_outputs(pictures, PICTURE_FILE, args.force)
     written = args.out / f"{args.robot.stem}_elastic.xml"
-    models = [written, *([args.out / f"{args.robot.stem}_plugin.xml"] if args.plugin else [])]
+    rigid = args.out / f"{args.robot.stem}_rigid.xml"
+    actuators = args.out / f"{args.robot.stem}_actuators.json"
+    models = [
+        written,
+        rigid,
+        *([args.out / f"{args.robot.stem}_plugin.xml"] if args.plugin else []),
+    ]
     check_input_overwrite(models, args, ("out",))
     check_outputs(models, EXCHANGE_FILE, args.force)
+    check_output(actuators, ACTUATOR_FILE, args.force)
     with require_package("read robots", "mujoco"):
         import mujoco  # noqa: F401
     from ...api import load
-    from ...exchange.robots import elastic, poses
+    from ...exchange.robots import elastic, poses, rigid_joints
     from ...exchange.robots import pictures as drawn
     from ...exchange.robots.names import check_plugin_names, make_identifier
     from ...joints.harmonic_drive.transmission import make_transmission
@@ -94,9 +102,9 @@ def run(args: argparse.Namespace) -> CommandResult:
     model = spec.compile()
     pose, tip = elastic.joint_positions(model, angles), elastic.find_body(model, args.tip, axes)
     made = elastic.add_drives(spec, axes)
-    elastic.make_mesh_folders_absolute(made, args.robot)
-    made.compile()
-    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{made.to_xml()}")
+    _write_robot(written, made, args)
+    _write_robot(rigid, rigid_joints.add_rigid_drives(spec, axes), args)
+    write_text(actuators, rigid_joints.format_actuators(axes))
     grid, found = drawn.compute_frequencies_over_grid(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
@@ -141,7 +149,7 @@ def run(args: argparse.Namespace) -> CommandResult:
             f"{longest:.3g} s"
         )
     facts = {
-        "written": [str(path) for path in (written, *pictures, *more)],
+        "written": [str(path) for path in (written, rigid, actuators, *pictures, *more)],
         "payload": args.payload,
         "tip": model.body(tip).name,
         "pose": {
@@ -158,6 +166,7 @@ def run(args: argparse.Namespace) -> CommandResult:
             "stiffness": {axis.joint: axis.spring.stiffness(torque) for axis, torque in under},
             "tip_error": plain_sunk,
         },
+        "rigid_joints": {axis.joint: rigid_joints.joint_figures(axis) for axis in axes},
         "longest_step": longest,
         "notes": notes,
     }
@@ -179,21 +188,27 @@ def _describe_other_poses(
     return lines
 
 
+def _write_robot(path: Path, robot_spec: Any, args: argparse.Namespace) -> None:
+    """Write a robot as MJCF; the folders of its meshes are relative to the file."""
+    from ...exchange.robots import elastic
+
+    elastic.make_mesh_folders_absolute(robot_spec, args.robot)
+    robot_spec.compile()
+    text = elastic.format_with_relative_folders(robot_spec.to_xml(), robot_spec, args.out)
+    write_text(path, f"<!-- {PROGRAM_MARK} -->\n{text}")
+
+
 def _write_robot_with_plugins(
-    args: argparse.Namespace,
-    robot_spec: Any,
-    axes: Any,
-    drive_files: Any,
+    args: argparse.Namespace, robot_spec: Any, axes: Any, drive_files: Any
 ) -> list[Path]:
     """Write the robot with MuJoCo plugins, and compile the plugins; returns the paths."""
     from ...exchange.robots import elastic, plugin_robot
 
     elastic.make_mesh_folders_absolute(robot_spec, args.robot)
     written = args.out / f"{args.robot.stem}_plugin.xml"
-    write_text(
-        written,
-        f"<!-- {PROGRAM_MARK} -->\n{plugin_robot.format_robot_with_plugins(robot_spec, axes, drive_files)}",
-    )
+    text = plugin_robot.format_robot_with_plugins(robot_spec, axes, drive_files)
+    text = elastic.format_with_relative_folders(text, robot_spec, args.out)
+    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{text}")
     return [written, *plugin_robot.compile_plugins(drive_files, args.out).values()]
 
 
@@ -225,6 +240,7 @@ def _write_axes_system(
 
 def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
     from ...exchange.robots.elastic import coordinate_unit
+    from ...exchange.robots.rigid_joints import format_figures
 
     span, payload, plain = result_values["frequencies"], result_values["payload"], result_values["plain"]
     return [
@@ -239,6 +255,10 @@ def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
             f"at {result_values['torque'][name]:.4g} N.m; in the plain file "
             f"{1e3 * plain['wind_up'][name]:.4g} mrad, {plain['stiffness'][name]:.4g} N.m/rad"
             for name, x in result_values["wind_up"].items()
+        ),
+        *(
+            f"{name} as a rigid joint: {format_figures(figures)}"
+            for name, figures in result_values["rigid_joints"].items()
         ),
         f"tip error at {result_values['tip']}: {1e3 * result_values['tip_error']:.4g} mm; in the plain file "
         f"{1e3 * plain['tip_error']:.4g} mm",

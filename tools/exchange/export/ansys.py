@@ -1,16 +1,19 @@
-"""ANSYS archive file: MATRIX27 stiffness and damping between node pairs (Zhao 2018, section 2).
+"""ANSYS archive file: MATRIX27 stiffness and damping between node pairs (Zhao 2018, section 2), or the
+stiffness matrix of a complete joint between two nodes.
 
 KEYOPT(2) = 0 is a symmetric matrix: the real constants C1 to C78 are its upper triangle row by row, with the
 degrees of freedom UX UY UZ ROTX ROTY ROTZ of node I, then of node J. KEYOPT(3) = 4 is stiffness, 5 damping.
 A spring K along x is C1 = C58 = K, C7 = -K (element reference, MATRIX27).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
+from .joint_stiffness import JointStiffness
 from .placing import Placement, Springs, format_comment_header
 
 MATRIX27_TYPE_NUMBER, STIFFNESS_MATRIX_OPTION, DAMPING_MATRIX_OPTION = 27, 4, 5
@@ -41,13 +44,43 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     lines = [
         *format_comment_header(comment_lines, "!"),
         "/PREP7",
-        *(_format_nodes(springs, placement) if placement.has_own_nodes else []),
+        *(
+            _format_nodes(springs.node_labels, placement.model_coordinates(springs.position))
+            if placement.has_own_nodes
+            else []
+        ),
         *_format_element_type(first_set, STIFFNESS_MATRIX_OPTION),
         *_format_element_type(first_set + 1, DAMPING_MATRIX_OPTION),
-        *_format_real_constants(sets),
+        *_format_real_constants(
+            {number: compute_upper_triangle(np.array(v, dtype=np.float64)) for v, number in sets.items()}
+        ),
         f"EBLOCK,19,SOLID,{first + 2 * count - 1:10d},{2 * count:10d}",
         "(19i10)",
         *(_format_integers((1, t, r, 1, 0, 0, 0, 0, 2, 0, e, *nodes)) for t, r, e, nodes in rows),
+        "        -1",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def format_joint_stiffness(
+    stiffness: JointStiffness, placement: Placement, comment_lines: Sequence[str]
+) -> str:
+    """Format a complete joint as an ANSYS archive: two nodes with one stiffness element.
+
+    comment_lines : lines for the head of the file
+    """
+    first, first_set = placement.first_free_number, placement.first_free_set_number
+    labels = np.array([[first, first + 1]])
+    constants = stiffness.node_matrix(placement)[_UPPER_TRIANGLE_INDICES]
+    lines = [
+        *format_comment_header(comment_lines, "!"),
+        "/PREP7",
+        *_format_nodes(labels, stiffness.model_positions(placement)),
+        *_format_element_type(first_set, STIFFNESS_MATRIX_OPTION),
+        *_format_real_constants({first_set: constants}),
+        f"EBLOCK,19,SOLID,{first:10d},{1:10d}",
+        "(19i10)",
+        _format_integers((1, first_set, first_set, 1, 0, 0, 0, 0, 2, 0, first, first, first + 1)),
         "        -1",
     ]
     return "\n".join(lines) + "\n"
@@ -71,12 +104,13 @@ def _number_real_constant_set(
     )
 
 
-def _format_real_constants(numbers_by_values: dict[tuple[str, ...], int]) -> Iterable[str]:
-    sizes = (len(numbers_by_values), max(numbers_by_values.values()), _UPPER_TRIANGLE_INDICES[0].size, 7)
+def _format_real_constants(constants_by_number: Mapping[int, Array]) -> Iterable[str]:
+    """Format sets of real constants: {number: C1 to C78 (78)}."""
+    sizes = (len(constants_by_number), max(constants_by_number), _UPPER_TRIANGLE_INDICES[0].size, 7)
     yield ",".join(["RLBLOCK", *(f"{size:8d}" for size in sizes)])
     yield from ("(2i8,6g16.9)", "(7g16.9)")
-    for values, number in numbers_by_values.items():
-        cells = [f"{v:16.8E}" for v in compute_upper_triangle(np.array(values, dtype=np.float64))]
+    for number, constants in constants_by_number.items():
+        cells = [f"{v:16.8E}" for v in constants]
         yield f"{number:8d}{len(cells):8d}" + "".join(cells[:6])
         yield from ("".join(cells[i : i + 7]) for i in range(6, len(cells), 7))
 
@@ -87,16 +121,21 @@ def _format_element_type(type_number: int, matrix_option: int) -> Iterable[str]:
     yield f"KEYOP,{type_number:9d},{3:3d},{matrix_option:9d}"
 
 
-def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
-    coordinates = placement.model_coordinates(springs.position)
-    yield f"NBLOCK,6,SOLID,{springs.node_labels.max():10d},{springs.node_labels.size:10d}"
+def _format_nodes(node_labels: NDArray[np.int64], coordinates: Array) -> Iterable[str]:
+    """Format nodes with labels (n, 2) on side 1 and side 2.
+
+    coordinates : (n, 3) of pairs of coincident nodes, or (2, 3) of the two nodes of one pair
+    """
+    yield f"NBLOCK,6,SOLID,{node_labels.max():10d},{node_labels.size:10d}"
     yield "(3i9,6e21.13e3)"
+    count = len(node_labels)
     for side in (0, 1):
-        for node, xyz in zip(springs.node_labels[:, side], coordinates, strict=True):
+        of_side = coordinates if len(coordinates) == count else coordinates[side : side + 1]
+        for node, xyz in zip(node_labels[:, side], of_side, strict=True):
             yield f"{node:9d}{0:9d}{0:9d}" + "".join(_format_exponential(v) for v in xyz)
     yield "N,R5.3,LOC,       -1,"
     for side in (0, 1):
-        labels = np.sort(springs.node_labels[:, side])
+        labels = np.sort(node_labels[:, side])
         yield f"CMBLOCK,JOINT_SIDE_{side + 1},NODE,{labels.size:8d}"
         yield "(8i10)"
         yield from (_format_integers(labels[i : i + 8]) for i in range(0, labels.size, 8))

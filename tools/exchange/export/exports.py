@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Variable
-from jointfmu.quantity import flatten_fields
+from jointfmu.quantity import Array, flatten_fields
 
 from ...common.joint_parts import load_tool_module
 
@@ -26,10 +26,16 @@ CONTENTS_BY_FORMAT = {
     "ansys": ("springs",),
     "calculix": ("springs", "contact"),
     "abaqus": ("springs", "contact"),
+    "nastran": ("springs",),
+    "aster": ("springs",),
     "modelica": ("curve",),
     "csv": ("springs", "contact", "curve"),
 }
 """{format: contents that a file of this format can have}."""
+STIFFNESS_FORMATS = ("ansys", "calculix", "abaqus", "nastran", "aster")
+"""Formats whose springs are the stiffness matrix of the complete joint, if its sides are elastic."""
+INTERFACE_FORMATS = ("ansys", "calculix", "abaqus", "csv")
+"""Formats whose springs can be those of the interface alone, between node pairs."""
 ROBOT_FORMATS = ("mjcf", "urdf")
 """Formats of robot simulators; a file has a drive."""
 EXPORT_CONTENTS = ("springs", "contact", "curve")
@@ -62,6 +68,8 @@ class Exports:
                           are zero by default
     springs             : (parameters, working point, node pairs of the user or None, placement) -> springs,
                           and their description; the working point is None if the pairs state the pressure
+    stiffness           : (parameters, working point) -> tangent stiffness (6, 6) [N/m, N, N.m/rad] of the
+                          complete joint about the centroid of the contact
     contact             : parameters -> pressure [Pa] over approach [m], and additional comment lines
     curve               : load over displacement; it needs the working point if the joint has one
     missing_reasons     : {content: why it cannot be written, and which content can}
@@ -69,6 +77,7 @@ class Exports:
 
     working_point_class: type[object] | None = None
     springs: "Callable[[Any, Any, NodePairs | None, Placement], tuple[Springs, str]] | None" = None
+    stiffness: Callable[[Any, Any], Array] | None = None
     contact: "Callable[[Any], tuple[Curve, Sequence[str]]] | None" = None
     curve: LoadCurveExport | None = None
     missing_reasons: Mapping[str, str] = field(default_factory=dict)

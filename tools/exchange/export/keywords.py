@@ -1,4 +1,6 @@
-"""CalculiX and Abaqus keywords: springs and dashpots between node pairs, and tabular contact."""
+"""CalculiX and Abaqus keywords: springs and dashpots between node pairs, stiffness of a complete joint, and
+tabular contact.
+"""
 
 from collections.abc import Iterable, Sequence
 
@@ -6,11 +8,14 @@ import numpy as np
 
 from jointfmu.quantity.refusal import InputRefusal
 
+from .joint_stiffness import JointStiffness
 from .placing import Placement, Springs, UnitSet, format_comment_header
 from .tables import LoadTable
 
 MAX_CALCULIX_ROWS = 200
 """Largest number of rows of a table in CalculiX (its arrays `xiso(200)`)."""
+USER_ELEMENT_TYPE = "U901"
+"""Abaqus: type of the linear user element of a complete joint."""
 EXTRAPOLATED_OVERCLOSURE = 1.0
 """Overclosure [m] by which the table is extended linearly, so that no solver evaluates beyond its end."""
 
@@ -66,6 +71,84 @@ def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
             yield f"{node}, " + ", ".join(f"{v:.12E}" for v in xyz)
 
 
+def format_user_element(stiffness: JointStiffness, placement: Placement, comment_lines: Sequence[str]) -> str:
+    """Format a complete joint for Abaqus: two nodes with a linear user element.
+
+    comment_lines : lines for the head of the file
+
+    The matrix is the upper triangle column by column. Each column begins a new line; a line has four entries.
+    """
+    first = placement.first_free_number
+    K = stiffness.node_matrix(placement)
+    columns = [[f"{K[i, j]:.9E}" for i in range(j + 1)] for j in range(12)]
+    lines = [
+        *format_comment_header(comment_lines, "**"),
+        *_format_joint_nodes(stiffness, placement),
+        f"*USER ELEMENT, TYPE={USER_ELEMENT_TYPE}, NODES=2, LINEAR, COORDINATES=3",
+        "1, 2, 3, 4, 5, 6",
+        "*MATRIX, TYPE=STIFFNESS",
+        *(", ".join(column[i : i + 4]) for column in columns for i in range(0, len(column), 4)),
+        f"*ELEMENT, TYPE={USER_ELEMENT_TYPE}, ELSET=JOINT",
+        f"{first}, {first}, {first + 1}",
+        "*UEL PROPERTY, ELSET=JOINT",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def format_coupled_springs(
+    stiffness: JointStiffness, placement: Placement, comment_lines: Sequence[str]
+) -> str:
+    """Format a complete joint for CalculiX: springs between the degrees of freedom of four nodes.
+
+    comment_lines : lines for the head of the file
+
+    In CalculiX, the rotations of a rigid body are the displacements of its ROT NODE. The degrees of freedom
+    u_i (12) are those of the two reference nodes and the two rotation nodes. A spring -K_ij between each two
+    of them (SPRING2) and a spring sum_j K_ij at each of them (SPRING1) have the energy u^T K u/2.
+    """
+    first = placement.first_free_number
+    K = stiffness.node_matrix(placement)
+    node = [first + i // 6 + 2 * (i % 6 // 3) for i in range(12)]
+    lines = [
+        *format_comment_header(
+            [
+                *comment_lines,
+                f"rotations: nodes {first + 2} (side 1) and {first + 3} (side 2); in your model, write",
+                f"*RIGID BODY, NSET=your nodes of side 1, REF NODE={first}, ROT NODE={first + 2}",
+                f"*RIGID BODY, NSET=your nodes of side 2, REF NODE={first + 1}, ROT NODE={first + 3}",
+            ],
+            "**",
+        ),
+        *_format_joint_nodes(stiffness, placement),
+        "*NODE, NSET=JOINT_ROTATIONS",
+        f"{first + 2}, 0., 0., 0.",
+        f"{first + 3}, 0., 0., 0.",
+    ]
+    element = first
+    for i in range(12):
+        for j in range(i, 12):
+            value = float(K[i].sum() if i == j else -K[i, j])
+            if not value:
+                continue
+            name = f"JOINT_{i + 1}_{j + 1}"
+            ends = [i] if i == j else [i, j]
+            lines += [
+                f"*ELEMENT, TYPE=SPRING{len(ends)}, ELSET={name}",
+                ", ".join(map(str, (element, *(node[end] for end in ends)))),
+                f"*SPRING, ELSET={name}",
+                ", ".join(str(end % 3 + 1) for end in ends),
+                f"{value:.12E}",
+            ]
+            element += 1
+    return "\n".join(lines) + "\n"
+
+
+def _format_joint_nodes(stiffness: JointStiffness, placement: Placement) -> Iterable[str]:
+    for side, xyz in enumerate(stiffness.model_positions(placement)):
+        yield f"*NODE, NSET=JOINT_SIDE_{side + 1}"
+        yield f"{placement.first_free_number + side}, " + ", ".join(f"{v:.12E}" for v in xyz)
+
+
 def format_contact(
     load_table: LoadTable, unit_set: UnitSet, comment_lines: Sequence[str], max_rows: int | None = None
 ) -> str:
@@ -82,7 +165,8 @@ def format_contact(
     )
     if max_rows is not None and len(rows) > max_rows:
         raise InputRefusal(
-            f"the table has {len(rows)} rows, CalculiX holds {max_rows}; state a larger error", "error"
+            f"the table has {len(rows)} rows, CalculiX holds {max_rows}; state a larger error",
+            "error",
         )
     lines = [
         *format_comment_header(comment_lines, "**"),

@@ -1,6 +1,7 @@
 """Curves as tables for linear interpolation, written as CSV and for Modelica's CombiTable1D blocks."""
 
-from collections.abc import Collection, Sequence
+from bisect import bisect_left
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -16,6 +17,8 @@ from .placing import Placement, Springs, UnitSet, format_comment_header
 
 MAX_STIFFNESS_ERROR = 0.01
 """Relative error of the stiffness [1] above which a warning is printed."""
+MAX_TABLE_ERROR = 0.5
+"""Upper limit of the relative error [1] of a table."""
 _SAMPLES_PER_SEGMENT = 64
 """Sample points per segment of a curve, at which errors are measured."""
 _MIN_CURVE_SAMPLES = 10_000
@@ -53,6 +56,34 @@ def tabulate_law(curve: Curve, max_error: float) -> LoadTable:
     table = decimate_curve(x[in_range] - curve.displacement[0], y[in_range], k[in_range], max_error)
     rows = np.vstack([[0.0, 0.0, 0.0], table.rows])
     return LoadTable(rows, table.linear_errors, table.monotone_cubic_errors)
+
+
+def fit_row_limit(
+    tabulate: Callable[[float], LoadTable], min_error: float, max_rows: int
+) -> tuple[float, LoadTable]:
+    """Smallest error [1], with two digits, whose table has at most `max_rows` rows; and this table.
+
+    tabulate  : (largest relative error [1]) -> table; a larger error gives fewer rows
+    min_error : an error [1], a power of ten, whose table has more rows
+
+    Raises ValueError if no error below 0.5 is enough.
+    """
+    errors = [
+        digits * min_error / 10.0 * 10.0**decade
+        for decade in range(3)
+        for digits in range(10, 100)
+        if digits * min_error / 10.0 * 10.0**decade < MAX_TABLE_ERROR
+    ]
+    found: dict[int, LoadTable] = {}
+
+    def fits(i: int) -> bool:
+        found[i] = tabulate(errors[i])
+        return len(found[i].rows) <= max_rows
+
+    i = bisect_left(range(len(errors)), True, lo=1, key=fits)
+    if i == len(errors):
+        raise ValueError(f"no table with an error below {MAX_TABLE_ERROR:g} has at most {max_rows} rows")
+    return float(f"{errors[i]:.2g}"), found[i]
 
 
 def tabulate_load(curve: Curve, area: float, max_error: float) -> LoadTable:
@@ -104,8 +135,8 @@ def decimate_curve(
 
     The points are selected one after the other. Raises ValueError if the error is out of range or too small.
     """
-    if not 0.0 < max_error < 0.5:
-        raise ValueError(f"error = {max_error:g} is outside (0, 0.5)")
+    if not 0.0 < max_error < MAX_TABLE_ERROR:
+        raise ValueError(f"error = {max_error:g} is outside (0, {MAX_TABLE_ERROR:g})")
     size = np.maximum(np.abs(load), min_reference[0])
     size = np.where(size > 0.0, size, np.inf)
 

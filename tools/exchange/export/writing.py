@@ -6,9 +6,11 @@ from functools import partial
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
-from . import ansys, keywords, tables
-from .exports import LoadCurveExport, require_export
+from . import ansys, aster, keywords, nastran, tables
+from .exports import DEFAULT_MAX_LOAD_ERROR, LoadCurveExport, require_export
+from .joint_stiffness import JointStiffness, describe
 from .mesh import NodePairs
 from .placing import Placement, Springs, UnitSet
 
@@ -45,6 +47,10 @@ _CONTACT_WRITERS: dict[str, tuple[Callable[[tables.LoadTable, UnitSet, list[str]
     "csv": (tables.format_contact_csv, ()),
 }
 """{format: (function that formats a contact, comment lines)}."""
+
+
+_MAX_CONTACT_ROWS = {"calculix": keywords.MAX_CALCULIX_ROWS}
+"""{format: largest number of rows of a contact table, with the extrapolated row}."""
 
 
 def export_springs(
@@ -88,15 +94,67 @@ def export_springs(
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
 
 
+_STIFFNESS_WRITERS: dict[str, Callable[[JointStiffness, Placement, list[str]], str]] = {
+    "ansys": ansys.format_joint_stiffness,
+    "calculix": keywords.format_coupled_springs,
+    "abaqus": keywords.format_user_element,
+    "nastran": nastran.format_joint_stiffness,
+    "aster": aster.format_joint_stiffness,
+}
+"""{format in STIFFNESS_FORMATS: function that formats the stiffness matrix of a complete joint}."""
+
+
+def export_stiffness(
+    file_format: str,
+    parameter_file: ParameterFile,
+    working_point: object,
+    node_positions: Array,
+    placement: Placement,
+) -> ExportedFile:
+    """Export the stiffness matrix of a complete joint between two nodes.
+
+    node_positions : (2, 3) of the nodes of side 1 and side 2 from the centroid of the contact, along the
+                     model's axes and in its units
+
+    Raises ValueError if the joint does not offer it, or if the working point is outside the law.
+    """
+    tangent = require_export(parameter_file.joint, "stiffness")(parameter_file.values, working_point)
+    positions = node_positions / placement.units.convert(1.0, "m")
+    stiffness = JointStiffness.from_tangent(tangent, positions)
+    about = [
+        f"complete {KINDS[parameter_file.joint].title} between two nodes, linear about a working point",
+        f"parameters: {parameter_file.name} ({parameter_file.joint})",
+        f"working point: {working_point}",
+        f"units: {placement.units.name}",
+        *describe(stiffness, placement),
+    ]
+    facts: dict[str, object] = {**stiffness.totals(), "coupling": stiffness.max_coupling}
+    return ExportedFile(_STIFFNESS_WRITERS[file_format](stiffness, placement, about), facts)
+
+
 def export_contact(
-    file_format: str, parameter_file: ParameterFile, unit_set: UnitSet, max_error: float
+    file_format: str, parameter_file: ParameterFile, unit_set: UnitSet, max_error: float | None = None
 ) -> ExportedFile:
     """Export the interface's pressure over its approach, for a contact of two surfaces.
 
-    Raises ValueError if the joint does not offer it.
+    max_error : largest relative error [1] of the pressure; None: DEFAULT_MAX_LOAD_ERROR, or the smallest
+                larger error whose table the solver can read
+
+    Raises ValueError if the joint does not offer it, or if the table has more rows than the solver can read.
     """
     curve, more = require_export(parameter_file.joint, "contact")(parameter_file.values)
-    table = tables.tabulate_law(curve, max_error)
+    table = tables.tabulate_law(curve, DEFAULT_MAX_LOAD_ERROR if max_error is None else max_error)
+    warnings: tuple[str, ...] = ()
+    limit = _MAX_CONTACT_ROWS.get(file_format)
+    if max_error is None and limit is not None and len(table.rows) > limit - 1:
+        rows = len(table.rows) + 1
+        max_error, table = tables.fit_row_limit(
+            lambda error: tables.tabulate_law(curve, error), DEFAULT_MAX_LOAD_ERROR, limit - 1
+        )
+        warnings = (
+            f"error = {max_error:g}: smallest error whose table fits the {limit} rows of {file_format} "
+            f"({DEFAULT_MAX_LOAD_ERROR:g} needs {rows} rows)",
+        )
     about = [
         "normal contact of the rough interface: pressure over overclosure from first touch",
         f"parameters: {parameter_file.name} ({parameter_file.joint})",
@@ -109,7 +167,7 @@ def export_contact(
         *more,
     ]
     write, notes = _CONTACT_WRITERS[file_format]
-    return ExportedFile(write(table, unit_set, [*about, *notes]), _table_facts(table))
+    return ExportedFile(write(table, unit_set, [*about, *warnings, *notes]), _table_facts(table), warnings)
 
 
 def export_curve(

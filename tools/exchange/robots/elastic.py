@@ -1,10 +1,14 @@
 """Robot (MJCF or URDF) with elastic drives in named joints: motors and tendons added, actuators moved."""
 
+import os
+import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
@@ -16,6 +20,8 @@ from .mjcf import check_mujoco_version
 from .spring_fit import FittedSpring, fit_spring
 from .transmission import Transmission
 
+ASSET_FOLDERS = ("meshdir", "texturedir")
+"""Attributes of `<compiler>` with the folders of meshes and textures."""
 MOTOR_SUFFIX = "_motor"
 """Suffix in the name of a motor joint, after the name of the driven joint."""
 MOTOR_BODY_PREFIX = "drive_motors"
@@ -277,6 +283,24 @@ def find_body(model: Any, name: str | None, axes_with_drive: list[ElasticAxis]) 
 
 
 def make_mesh_folders_absolute(robot_spec: Any, path: Path) -> None:
-    """Make the folders of meshes and textures absolute, so that the robot can be saved elsewhere."""
-    for name in ("meshdir", "texturedir"):
+    """Make the folders of meshes and textures absolute, so that the robot compiles in every folder."""
+    for name in ASSET_FOLDERS:
         setattr(robot_spec, name, str((path.parent / getattr(robot_spec, name)).resolve()))
+
+
+def format_with_relative_folders(text: str, robot_spec: Any, out: Path) -> str:
+    """MJCF text with the folders of meshes and textures relative to the folder of the file.
+
+    text       : MJCF of `robot_spec`, whose folders are absolute
+    out        : folder of the file
+
+    On Windows, a folder on another drive stays absolute.
+    """
+    for name in ASSET_FOLDERS:
+        folder = getattr(robot_spec, name)
+        with suppress(ValueError):  # another drive
+            relative = Path(os.path.relpath(folder, out.resolve())).as_posix()
+            for attribute in (name, "assetdir"):
+                pattern = rf'\b{attribute}="{re.escape(escape(folder))}[/\\]?"'
+                text = re.sub(pattern, lambda _: f"{attribute}={quoteattr(relative + '/')}", text)  # noqa: B023
+    return text

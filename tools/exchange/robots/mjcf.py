@@ -16,6 +16,7 @@ from jointfmu.quantity import Array
 from jointfmu.version import __version__
 
 from .bristles import format_friction, presliding_angle
+from .rigid_joints import describe_drive
 from .spring_fit import FittedSpring, fit_spring
 from .transmission import RAMP_POINTS, Transmission, loop_area
 
@@ -187,6 +188,7 @@ def format_mjcf(drive: Transmission, torque: float) -> tuple[str, FitErrors, lis
         f"the inertias are placeholders: the link has {EXAMPLE_LINK_FREQUENCY:g} Hz with locked motor, "
         "the motor is "
         "as large",
+        *describe_drive(drive),
         *(_friction_comments(drive, motor) if drive.static_friction else ()),
         "not included:" if drive.omitted_effects else "all effects of the drive are included",
         *(f"  {line}" for line in drive.omitted_effects),

@@ -46,7 +46,7 @@ def compile_plugins(drive_files: Mapping[str, ParameterFile], out: Path) -> dict
 def format_robot_with_plugins(
     robot_spec: Any, axes: Sequence[ElasticAxis], drive_files: Mapping[str, ParameterFile]
 ) -> str:
-    """Format the MJCF of a robot with plugins as drives.
+    """Format the MJCF of a robot with plugins as drives; the folders of meshes are those of the robot.
 
     axes        : axes with a drive
     drive_files : {joint: parameter file of its drive}

@@ -3,6 +3,7 @@
 from dataclasses import asdict
 
 from . import mjcf, urdf
+from .rigid_joints import JointFriction, describe_drive
 from .transmission import Transmission
 
 
@@ -24,9 +25,24 @@ def format_drive(
             f"--torque = {fit_torque:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
         )
     text, miss, lacks = FORMAT_WRITERS[robot_format](drive, fit_torque)
-    lines = [*(miss.format_lines(fit_torque) if miss else ()), *(f"not included: {line}" for line in lacks)]
+    figures = asdict(JointFriction.for_drive(drive))
+    lines = [
+        *describe_drive(drive),
+        *(miss.format_lines(fit_torque) if miss else ()),
+        *(f"not included: {line}" for line in lacks),
+    ]
     errors = asdict(miss) if miss else {}
-    return text, lines, {"drive": drive.name, "torque": fit_torque, **errors, "lacks": lacks}
+    return (
+        text,
+        lines,
+        {
+            "drive": drive.name,
+            "torque": fit_torque,
+            **errors,
+            "rigid_joint": figures,
+            "lacks": lacks,
+        },
+    )
 
 
 FORMAT_WRITERS = {"mjcf": mjcf.format_mjcf, "urdf": urdf.format_urdf}

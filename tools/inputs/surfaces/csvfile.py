@@ -9,7 +9,7 @@ The first line declares the layout:
 
 import contextlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -59,8 +59,13 @@ def read_declaration(path: Path) -> str | None:
     return None
 
 
-def read_declared_file(path: Path, first_line: str) -> tuple[Heights, str]:
-    """Read a file whose first line declares its layout; return the heights and the unit along x."""
+def read_declared_file(
+    path: Path, first_line: str, mark_missing: Callable[[Array], Array] = np.asarray
+) -> tuple[Heights, str]:
+    """Read a file whose first line declares its layout; return the heights and the unit along x.
+
+    mark_missing : replaces the heights of missing points by NaN
+    """
     match = _DECLARATION_PATTERN.match(first_line)
     assert match
     layout, declaration = match[1], match[2]
@@ -74,8 +79,14 @@ def read_declared_file(path: Path, first_line: str) -> tuple[Heights, str]:
         spacings = {name: _parse_spacing(path, declaration, name) for name in ("dx", "dy")}
         dx, dy = (size for size, _ in spacings.values())
         unit_x = spacings["dx"][1]
-        return ArealMap(z=read_table(path) * factors["z"], dx=dx, dy=dy, name=str(path)), unit_x
-    return heights_from_columns(path, read_table(path), [factors[name] for name in needed]), units["x"]
+        return ArealMap(z=mark_missing(read_table(path)) * factors["z"], dx=dx, dy=dy, name=str(path)), unit_x
+    table = _mark_missing_points(read_table(path), mark_missing)
+    return heights_from_columns(path, table, [factors[name] for name in needed]), units["x"]
+
+
+def _mark_missing_points(table: Array, mark_missing: Callable[[Array], Array]) -> Array:
+    """Columns (n, 2 or 3) with NaN in the last one, the heights, at the missing points."""
+    return np.column_stack([table[:, :-1], mark_missing(table[:, -1])])
 
 
 def read_column_titles(path: Path) -> list[ColumnHead] | None:
@@ -103,12 +114,14 @@ def read_titled_file(
     column_heads: Sequence[ColumnHead],
     option_units: Mapping[str, str | None],
     header_lines: int = 1,
+    mark_missing: Callable[[Array], Array] = np.asarray,
 ) -> tuple[Heights, str]:
     """Read columns below title lines; return the heights and the unit along x.
 
     column_heads : name and unit of each column, as the file states them
     option_units : {"x": unit, "z": unit} of columns without a unit in the file; y has the unit of x
     header_lines : number of title lines
+    mark_missing : replaces the heights of missing points by NaN
 
     Raises ValueError for a column whose unit is missing, or given both in the file and as option.
     """
@@ -129,7 +142,8 @@ def read_titled_file(
     factors = [
         parse_unit(text, f"{path}: {name}") for text, (name, _) in zip(units, column_heads, strict=True)
     ]
-    return heights_from_columns(path, read_table(path, header_lines), factors), units[0]
+    table = _mark_missing_points(read_table(path, header_lines), mark_missing)
+    return heights_from_columns(path, table, factors), units[0]
 
 
 def _parse_spacing(path: Path, text: str, name: str) -> tuple[float, str]:

@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -10,12 +11,14 @@ import numpy as np
 
 from jointfmu.files import archives
 from jointfmu.files.reading import check_regular_file
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
 from ...common.columns import find_separator, parse_number, split_cells
-from . import csvfile
+from . import csvfile, scan_text
 from . import heights as sift
 from .heights import ArealMap, Heights, Profile
+from .scan_text import ScanOptions
 
 MIN_PROFILE_LENGTH = 50e-6
 """Shortest plausible profile [m]: the cut-off of a stylus instrument is longer."""
@@ -30,6 +33,9 @@ TYPICAL_LENGTH = 1e-3
 TEXT_SUFFIXES = (".csv", ".txt", ".dat", ".xy", ".prf")
 """Suffixes of text files that may have columns of numbers without a header."""
 
+_INTERNAL_NAME_PATTERN = re.compile(r"`|\w_\w|\(\)|<\w")
+"""Names of variables and functions in the messages of readers."""
+
 
 def read_heights(
     path: str | Path,
@@ -37,6 +43,8 @@ def read_heights(
     accept_any_size: bool = False,
     unit_x: str | None = None,
     unit_z: str | None = None,
+    spacing: tuple[float, float] | None = None,
+    missing_value: float | None = None,
 ) -> Heights:
     """Read a profile or an areal map, in metres.
 
@@ -44,15 +52,18 @@ def read_heights(
     unit_x   : unit of x and y, for columns without units; instead of `unit`
     unit_z   : unit of z, for columns without units; instead of `unit`
     accept_any_size : accept a size outside of PLAUSIBLE_LENGTHS
+    spacing  : spacing of the points along x and y [m], for a file without spacing
+    missing_value : number in the file that marks a missing point, in the unit of its heights
 
-    Raises ValueError (one line): no file, no surface, a unit is missing or given twice, too few points,
-    constant heights, all heights missing, a size that suggests another unit.
+    Raises ValueError (one line): no file, no surface, a unit or a spacing is missing or given twice, too few
+    points, constant heights, all heights missing, a size that suggests another unit.
     """
     path = Path(path)
     check_regular_file(path, "height data")
     if not path.is_file():
         raise ValueError(f"{path}: is not a file; expected height data")
     option_units = {"x": unit_x or unit, "z": unit_z or unit}
+    options = ScanOptions(option_units["x"], option_units["z"], spacing, missing_value)
     for name, value in {"unit": unit, "unit_x": unit_x, "unit_z": unit_z}.items():
         if value is not None and value not in csvfile.LENGTH_UNITS:
             raise InputRefusal(f"{name} = {value!r} is not one of {csvfile.UNIT_LIST}", name)
@@ -63,20 +74,34 @@ def read_heights(
         if any(option_units.values()):
             value = next(filter(None, option_units.values()))
             raise InputRefusal(f"{path}: states its units; leave the unit {value} out", "unit")
-        heights, file_unit = csvfile.read_declared_file(path, line)
+        options.refuse_spacing(path, "states the positions of its points")
+        heights, file_unit = csvfile.read_declared_file(path, line, options.mark_missing)
     elif is_text and (titles := csvfile.read_column_titles(path)):
-        heights, file_unit = csvfile.read_titled_file(path, titles, option_units)
+        options.refuse_spacing(path, "states the positions of its points")
+        heights, file_unit = csvfile.read_titled_file(
+            path, titles, option_units, mark_missing=options.mark_missing
+        )
     elif is_text and (count := _count_columns(path)):
-        if not all(option_units.values()):
+        if not (all(option_units.values()) or (count == 1 and options.unit_z)):
             raise _missing_unit_error(path)
-        names = csvfile.LAYOUT_COLUMNS["profile" if count == 2 else "points"]
-        heads = [(name, None) for name in names]
-        heights, file_unit = csvfile.read_titled_file(path, heads, option_units, header_lines=0)
+        if count == 1:
+            heights, file_unit = scan_text.read_height_list(path, options)
+        else:
+            options.refuse_spacing(path, f"has {count} columns, with the positions of its points")
+            names = csvfile.LAYOUT_COLUMNS["profile" if count == 2 else "points"]
+            heads = [(name, None) for name in names]
+            heights, file_unit = csvfile.read_titled_file(
+                path, heads, option_units, header_lines=0, mark_missing=options.mark_missing
+            )
+    elif is_text and (header_lines := scan_text.find_matrix(path)) is not None:
+        heights, file_unit = scan_text.read_matrix(path, header_lines, options)
+    elif is_text and scan_text.find_wide_table(path):
+        heights, file_unit = scan_text.read_wide_table(path, options)
     elif unit_x or unit_z:
         name = "unit_x" if unit_x else "unit_z"
         raise InputRefusal(f"{path}: is not a table of columns; expected one unit for all axes", name)
     else:
-        heights, file_unit = _read_instrument(path, unit)
+        heights, file_unit = _read_instrument(path, unit, options)
     if not accept_any_size:
         _check_size(heights, file_unit)
     return heights
@@ -109,15 +134,15 @@ def _missing_unit_error(path: Path) -> InputRefusal:
 
 
 def _count_columns(path: Path) -> int:
-    """Number of columns (2 or 3) of a text file that begins with a line of numbers; 0 for other files."""
+    """Number of columns (1 to 3) of a text file that begins with a line of numbers; 0 for other files."""
     with path.open("rb") as file:
         first = file.readline(10000).decode("utf-8-sig", errors="replace").rstrip("\r\n")
     delimiter = find_separator(first)
     row = split_cells(first, delimiter) if delimiter else first.split()
-    return len(row) if len(row) in (2, 3) and all(parse_number(cell) is not None for cell in row) else 0
+    return len(row) if len(row) in (1, 2, 3) and all(parse_number(cell) is not None for cell in row) else 0
 
 
-def _read_instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
+def _read_instrument(path: Path, unit: str | None, options: ScanOptions) -> tuple[Heights, str]:
     """Read the default channel of any format of SurfaceTopography; return the heights and the length unit.
 
     Raises ValueError if the package is missing or cannot read the file, or if the unit is unknown.
@@ -136,14 +161,18 @@ def _read_instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
         quiet = io.StringIO()
         with warnings.catch_warnings(), contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
             warnings.simplefilter("ignore")
-            topography = SurfaceTopography.read_topography(str(path))
+            topography = _read_topography(path, unit, options)
             size, heights = topography.physical_sizes, topography.heights()
     except SurfaceTopography.Exceptions.CannotDetectFileFormat:
         raise ValueError(
             f"{path}: is not a surface scan: neither our CSV nor a format of SurfaceTopography"
         ) from None
+    except InputRefusal:
+        raise
     except Exception as error:  # the readers raise exceptions of any kind
-        reason = " ".join(str(error).split())[:120] or type(error).__name__
+        reason = " ".join(str(error).split())[:120]
+        if not reason or _INTERNAL_NAME_PATTERN.search(reason):
+            reason = "its content does not match its format"
         raise ValueError(f"{path}: is not a surface that SurfaceTopography can read ({reason})") from None
     if topography.unit is None and unit is None:
         raise _missing_unit_error(path)
@@ -156,7 +185,35 @@ def _read_instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
         factor = _unit_size(file_unit)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    return _convert_heights(path, topography, size, heights, factor), file_unit
+    z = options.mark_missing(np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan))
+    return _convert_heights(path, topography, size, z, factor), file_unit
+
+
+def _read_topography(path: Path, unit: str | None, options: ScanOptions) -> Any:
+    """Read the default channel of a file, with the stated spacing if the file states no lateral size.
+
+    Raises InputRefusal if the spacing is missing, or given both in the file and as an option.
+    """
+    import SurfaceTopography
+
+    try:
+        topography = SurfaceTopography.read_topography(str(path))
+    except Exception as error:  # the readers raise exceptions of any kind
+        if "physical_sizes" not in str(error):
+            raise
+        spacing = options.require_spacing(path)
+        with SurfaceTopography.open_topography(str(path)) as reader:
+            channel = reader.default_channel
+            file_unit = channel.unit or unit
+            if file_unit is None:
+                raise _missing_unit_error(path) from None
+            sizes = tuple(
+                n * step / _unit_size(file_unit)
+                for n, step in zip(channel.nb_grid_pts, spacing, strict=False)
+            )
+            return reader.topography(physical_sizes=sizes)
+    options.refuse_spacing(path, "states its lateral size")
+    return topography
 
 
 def _unit_size(unit: str) -> float:
@@ -176,12 +233,15 @@ def _unit_size(unit: str) -> float:
 
 
 def _convert_heights(
-    path: Path, topography: Any, side_lengths: Any, heights: Any, unit_size: float
+    path: Path, topography: Any, side_lengths: Any, heights: Array, unit_size: float
 ) -> Heights:
-    """Heights of SurfaceTopography as profile or areal map with axes (y, x), missing points as NaN."""
-    z = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * unit_size
+    """Heights of SurfaceTopography as profile or areal map with axes (y, x), missing points as NaN.
+
+    unit_size : unit of the heights and side lengths [m]
+    """
+    z = heights * unit_size
     if side_lengths is None or any(length is None for length in side_lengths):
-        raise ValueError(f"{path}: states no lateral size; resave it with its size, or as our CSV")
+        raise InputRefusal(f"{path}: states no spacing of its points; state it, e.g. 5um", "spacing")
     if z.ndim == 1 and not topography.is_uniform:
         x = np.asarray(topography.positions(), dtype=np.float64) * unit_size
         return csvfile.heights_from_columns(path, np.stack([x, z], axis=1), [1.0, 1.0])

@@ -1,8 +1,8 @@
 """Export of a bolted joint to other solvers.
 
-Three forms: springs and dashpots between node pairs at a working point (Zhao 2018, section 2), the contact
-law of the interface, and a table of the normal force as a function of the separation. The springs contain the
-interface only: the bolts belong to the surrounding structure.
+Four forms: springs and dashpots between node pairs at a working point (Zhao 2018, section 2), the stiffness
+matrix of the complete joint, the contact law of the interface, and a table of the normal force as a function
+of the separation. The springs contain the interface only: the bolts belong to the surrounding structure.
 """
 
 from collections.abc import Sequence
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.compliances import condense_stiffness
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure
 from jointfmu.joints.model import Variable
@@ -277,6 +278,14 @@ def _make_springs(
     return springs, f"{tightened_state}, on the nodes of {node_pairs.path.name}"
 
 
+def _joint_stiffness(joint: AnyBoltedJoint, tightened_state: TightenedState) -> Array:
+    """Tangent stiffness (6, 6) of the tightened joint about the centroid of the contact, without slip."""
+    spring = BoltedJointSpring.for_joint(joint)
+    preload, moment = tightened_state.preload, tightened_state.moment
+    spring.checked_preloaded_approach(preload, moment)
+    return condense_stiffness(spring.tangent_stiffness(preload, moment))
+
+
 def _contact_curve(joint: AnyBoltedJoint) -> "tuple[Curve, Sequence[str]]":
     ratio = float(joint.shear_stiffness_ratio())
     note = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
@@ -300,6 +309,7 @@ _JOINT_VARIABLES = KIND.variables
 EXPORTS = Exports(
     working_point_class=TightenedState,
     springs=_make_springs,
+    stiffness=_joint_stiffness,
     contact=_contact_curve,
     curve=LoadCurveExport(
         meaning="force that holds the interface together over its separation from the tightened state, "

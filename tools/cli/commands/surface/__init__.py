@@ -14,6 +14,7 @@ from jointfmu.quantity.refusal import InputRefusal
 from ....common.judgement import find_rms_height
 from ....inputs.surfaces.heights import FORM_NAMES
 from ....inputs.surfaces.reading import MAX_RMS_HEIGHT, read_heights
+from ....inputs.surfaces.scan_text import parse_spacing
 from ....inputs.surfaces.spectrum import SCAN_SIDES, SERIES_METHODS
 from ...command import (
     DEFAULT_SUBCOMMANDS,
@@ -51,6 +52,10 @@ def add_command(command_parsers: SubParsers) -> None:
     declare_argument(find, "--unit", str, "length unit of files that state none: m, mm, um, nm", "UNIT")
     declare_argument(find, "--unit-x", str, "length unit of x and y only, for files of columns", "UNIT")
     declare_argument(find, "--unit-z", str, "length unit of z only", "UNIT")
+    text = "spacing of the points along x and y, or one for both, in files that state none, e.g. 5um"
+    declare_argument(find, "--spacing", str, text, "LENGTH", nargs="+")
+    text = "number that marks a missing point, in the unit of the heights, e.g. -99999.9999"
+    declare_argument(find, "--missing", float, text, "VALUE")
     find.add_argument(
         "--form", choices=FORM_NAMES, default=FORM_NAMES[0], help="form to remove (default: tilt)"
     )
@@ -94,7 +99,11 @@ def add_command(command_parsers: SubParsers) -> None:
 def _run_identify(args: argparse.Namespace) -> CommandResult:
     base = _load_start_file(args)
     _check_arguments(args)
-    heights = [read_heights(path, args.unit, args.force, args.unit_x, args.unit_z) for path in args.files]
+    spacing = parse_spacing(args.spacing) if args.spacing else None
+    heights = [
+        read_heights(path, args.unit, args.force, args.unit_x, args.unit_z, spacing, args.missing)
+        for path in args.files
+    ]
     from ....inputs.surfaces.identify import identify  # needs scipy: loaded after the quick checks
     from ....inputs.surfaces.joint_parameters import with_surface
     from . import results

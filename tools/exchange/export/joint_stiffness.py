@@ -1,0 +1,100 @@
+"""Stiffness matrix of a complete joint between two nodes of the user's model, with rigid arms."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointfmu.quantity import Array
+
+from .placing import AXIS_ORDER, Placement
+
+DOF_NAMES = ("x", "y", "z", "rx", "ry", "rz")
+"""Degrees of freedom of a node: displacements along x, y, z and rotations about x, y, z."""
+MAX_ROUND_OFF = 1e-9
+"""Magnitude of K_ij over sqrt(K_ii K_jj) [1] that counts as zero: exported numbers have ten digits."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointStiffness:
+    """Stiffness of side 2 relative to side 1, about the centroid of the contact.
+
+    matrix         : symmetric K (6, 6) [N/m, N, N.m/rad] in the frame of the joint: force and moment that
+                     move side 2 at the centroid, over its relative displacement and rotation
+    node_positions : (2, 3) [m] of the nodes of side 1 and side 2 from the centroid, along the model's axes.
+                     Each node moves with the attachment of its side as a rigid body
+    """
+
+    matrix: Array
+    node_positions: Array
+
+    @classmethod
+    def from_tangent(cls, tangent_stiffness: Array, node_positions: Array) -> "JointStiffness":
+        """Symmetric part of a tangent stiffness (6, 6), without round-off."""
+        K = 0.5 * (tangent_stiffness + tangent_stiffness.T)
+        size = np.sqrt(np.abs(np.diag(K)))
+        return cls(np.where(np.abs(K) > MAX_ROUND_OFF * np.outer(size, size), K, 0.0), node_positions)
+
+    @property
+    def max_coupling(self) -> float:
+        """Largest |K_ij|/sqrt(K_ii K_jj) [1] of two different directions."""
+        size = np.sqrt(np.diag(self.matrix))
+        return float(np.max(np.abs(self.matrix / np.outer(size, size) - np.eye(6))))
+
+    def model_matrix(self, placement: Placement) -> Array:
+        """K (6, 6) about the centroid, along the model's axes and in its units."""
+        axes = list(AXIS_ORDER[placement.normal_axis])
+        order = [*axes, *(axis + 3 for axis in axes)]
+        length = placement.units.convert(1.0, "m")
+        exponent = np.repeat([-0.5, 0.5], 3)
+        K = np.zeros((6, 6))
+        K[np.ix_(order, order)] = self.matrix * length ** np.add.outer(exponent, exponent)
+        return K
+
+    def node_matrix(self, placement: Placement) -> Array:
+        """K (12, 12) of the nodes of side 1 and side 2, along the model's axes and in its units.
+
+        The motion of the centroid is u + theta x (-r) for a node at r with displacement u and rotation theta
+        (rigid arm). So K_nodes = B^T K B with B = [-T(r1), T(r2)].
+        """
+        arms = [rigid_arm(placement.units.convert(r, "m")) for r in self.node_positions]
+        B = np.hstack([-arms[0], arms[1]])
+        return np.asarray(B.T @ self.model_matrix(placement) @ B)
+
+    def model_positions(self, placement: Placement) -> Array:
+        """Positions (2, 3) of the nodes in the units of the model."""
+        return placement.units.convert(self.node_positions, "m")
+
+    def totals(self) -> dict[str, float]:
+        """{name: diagonal of K [N/m, N.m/rad] in the frame of the joint, about the centroid}."""
+        return {
+            f"K_{name if len(name) > 1 else 2 * name}": float(value)
+            for name, value in zip(DOF_NAMES, np.diag(self.matrix), strict=True)
+        }
+
+
+def rigid_arm(node_position: Array) -> Array:
+    """Matrix T (6, 6): motion of the origin by that of a node at r on the same rigid body."""
+    x, y, z = node_position
+    T = np.eye(6)
+    T[:3, 3:] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+    return T
+
+
+def describe(stiffness: JointStiffness, placement: Placement) -> Sequence[str]:
+    """Comment lines: meaning, frame and point of the stiffness, positions of the nodes."""
+    axes = ["xyz"[axis] for axis in AXIS_ORDER[placement.normal_axis]]
+    diagonal = ", ".join(f"{name} {value:.9g}" for name, value in stiffness.totals().items())
+    nodes = [
+        f"node {placement.first_free_number + side} moves with the attachment of side {side + 1} as a rigid "
+        f"body; from the centroid: {', '.join(f'{value:.9g}' for value in position)}"
+        for side, position in enumerate(stiffness.model_positions(placement))
+    ]
+    return [
+        "stiffness: complete joint with interface, members and bolts; symmetric part of the tangent",
+        f"stiffness about the centroid of the contact, joint's x, y, z [N/m, N.m/rad]: {diagonal}",
+        f"largest coupling K_ij/sqrt(K_ii K_jj): {stiffness.max_coupling:.3g}",
+        f"frame: the joint's x (along the bolt rows), y, z (normal, from side 1 to side 2) are the model's "
+        f"{', '.join(axes)}; origin: centroid of the contact",
+        *nodes,
+    ]

@@ -1,0 +1,108 @@
+"""Joints of a robot with rigid drives: armature and friction of each motor, as values of the joint.
+
+Robot simulators without elastic drives (Isaac Lab, Newton) take these values. The motor turns by the ratio
+times the angle of the joint. So its friction torques are multiplied by the ratio, and its viscous friction
+and inertia by the square of the ratio.
+"""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from jointfmu.files.outputs import PROGRAM_MARK
+
+from .transmission import Transmission
+
+if TYPE_CHECKING:
+    from .elastic import ElasticAxis
+
+FIGURE_UNITS = {
+    "armature": "kg.m2",
+    "static_friction": "N.m",
+    "dynamic_friction": "N.m",
+    "viscous_friction": "N.m.s/rad",
+}
+"""{value of a joint with a rigid drive: its unit}."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointFriction:
+    """Friction of the motor of a drive at the joint.
+
+    static_friction  : largest torque [N.m] at which the joint stays at rest
+    dynamic_friction : friction torque [N.m] at speed
+    viscous_friction : friction torque over joint speed [N.m.s/rad]
+    """
+
+    static_friction: float
+    dynamic_friction: float
+    viscous_friction: float
+
+    @classmethod
+    def for_drive(cls, drive: Transmission) -> "JointFriction":
+        """Friction of a drive, seen from its output."""
+        ratio = abs(drive.ratio)
+        return cls(
+            drive.static_friction * ratio, drive.dry_friction * ratio, drive.viscous_friction * ratio**2
+        )
+
+
+def joint_figures(axis: "ElasticAxis") -> dict[str, float]:
+    """{name in FIGURE_UNITS: value} of a joint with a rigid drive."""
+    friction = JointFriction.for_drive(axis.drive)
+    return {
+        "armature": axis.rotor_inertia,
+        "static_friction": friction.static_friction,
+        "dynamic_friction": friction.dynamic_friction,
+        "viscous_friction": friction.viscous_friction,
+    }
+
+
+def format_figures(figures: Mapping[str, float]) -> str:
+    """Values of a joint as one line."""
+    return ", ".join(
+        f"{name.replace('_', ' ')} {value:.4g} {FIGURE_UNITS[name]}" for name, value in figures.items()
+    )
+
+
+def format_actuators(axes: "Sequence[ElasticAxis]") -> str:
+    """JSON text with `actuators`: {joint: arguments of Isaac Lab's ImplicitActuatorCfg}.
+
+    In Isaac Lab, `friction` is the static friction. Since Isaac Sim 5.0, friction is a torque [N.m].
+    """
+    groups = {}
+    for axis in axes:
+        figures = joint_figures(axis)
+        groups[axis.joint] = {
+            "joint_names_expr": [axis.joint],
+            "armature": figures["armature"],
+            "friction": figures["static_friction"],
+            "dynamic_friction": figures["dynamic_friction"],
+            "viscous_friction": figures["viscous_friction"],
+        }
+    about = f"{PROGRAM_MARK}; units kg.m2, N.m, N.m.s/rad at the joint; Isaac Sim 5.0 or newer"
+    return json.dumps({"about": about, "actuators": groups}, indent=2) + "\n"
+
+
+def add_rigid_drives(robot_spec: Any, axes: "Sequence[ElasticAxis]") -> Any:
+    """Copy the robot, with armature and friction of the drives in its joints.
+
+    Friction and damping of the robot file are added. `frictionloss` of MJCF is the dynamic friction.
+    """
+    rigid_spec = robot_spec.copy()
+    for axis in axes:
+        figures, joint = joint_figures(axis), rigid_spec.joint(axis.joint)
+        joint.armature = figures["armature"]
+        joint.frictionloss = float(joint.frictionloss) + figures["dynamic_friction"]
+        damping = list(joint.damping)
+        joint.damping = [damping[0] + figures["viscous_friction"], *damping[1:]]
+    return rigid_spec
+
+
+def describe_drive(drive: Transmission) -> Iterator[str]:
+    """Lines with the values of a joint with this drive, for a motor whose inertia is not known."""
+    friction = JointFriction.for_drive(drive)
+    figures = {name: getattr(friction, name) for name in FIGURE_UNITS if name != "armature"}
+    yield f"as a rigid joint: {format_figures(figures)}"
+    yield f"  armature: {drive.ratio**2:g} times the inertia of the rotor and the wave generator"
