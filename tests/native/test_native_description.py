@@ -645,7 +645,7 @@ def test_the_page_lists_every_variable_and_every_parameter(name: str) -> None:
     for parameter, value in flatten_parameters(file.values).items():
         shown, _, allowed, _, kind, source = rows[parameter]
         assert allowed
-        assert kind == file.origins.get(parameter, "user")
+        assert kind == file.origins.get(parameter, "default")
         assert source == file.sources.get(parameter, "default choice")
         if isinstance(value, float):
             assert float(shown) == pytest.approx(value, rel=1e-5)  # six digits

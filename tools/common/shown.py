@@ -74,7 +74,7 @@ class ParameterFileEntry(NamedTuple):
     """Entry of a parameter file: a number in SI units or a choice, with meaning, origin and source.
 
     unit : SI unit; None for a choice
-    kind : origin, one of parameters.ORIGINS
+    origin : kind of source, one of parameters.ORIGINS
     """
 
     name: str

@@ -5,10 +5,10 @@ The kernel keeps none itself. The tools set a store when they are imported; a py
 
 from collections.abc import Callable, Sequence
 from hashlib import sha256
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ..quantity import Array
+if TYPE_CHECKING:
+    from ..quantity import Array
 
 ResultStore = Callable[[str, Callable[[], bytes]], bytes]
 """Function (key, function that computes the bytes) -> bytes, kept or computed."""
@@ -20,11 +20,13 @@ def set_result_store(store: ResultStore | None) -> None:
     _stores[:] = [] if store is None else [store]
 
 
-def compute_once(name: str, arguments: Sequence[Array], compute: Callable[[], Array]) -> Array:
+def compute_once(name: str, arguments: "Sequence[Array]", compute: "Callable[[], Array]") -> "Array":
     """Result (...) of float64 that depends on the arguments alone, from the store if it is there.
 
     name : of the computation, and of numbers on which it depends besides the arguments
     """
+    import numpy as np  # here: the tools import this module before they can report an interrupt
+
     if not _stores:
         return compute()
     digest = sha256(name.encode())

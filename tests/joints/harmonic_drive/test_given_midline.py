@@ -122,7 +122,7 @@ def test_parts_and_pressure_of_a_given_midline():
         ({"K1": 0.0}, r"K1 = 0 N.m/rad is outside \(0, 1e\+12\]: stiffness below T1"),
         (
             {"corner": 0.5},
-            r"corner = 0.5 is outside \[0, 0.425868\): the smooth corners must",
+            r"corner = 0.5 is outside \[0, 0.425868\): the corners at T1 and T2 must not overlap",
         ),
         ({"corner": -0.1}, r"corner = -0.1 is outside \[0, 1\)"),
     ],
