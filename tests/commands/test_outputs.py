@@ -33,7 +33,9 @@ INPUTS = frozenset(
 """Arguments that name what a command reads; all others that take a path are outputs."""
 COMMANDS = {one.prog: one for one in _iterate_parsers(build_parser()) if one._actions}
 OUTPUTS = [
-    (prog, name, kind) for prog, one in COMMANDS.items() for name, kind in getattr(one, "outputs", {}).items()
+    (prog, name, kind)
+    for prog, one in COMMANDS.items()
+    for name, kind in getattr(one, "output_file_kinds", {}).items()
 ]
 FILES = [(prog, name, kind) for prog, name, kind in OUTPUTS if kind is not OUTPUT_FOLDER]
 NEW = ["new", "harmonic-drive", "--catalogue", "CSG-17-100", "--out"]
@@ -51,7 +53,7 @@ def words(prog, name, path):
         value = (action.choices and next(iter(action.choices))) or (
             "input.toml" if action.type in (Path, str) else "1"
         )
-        count = len(one.outputs) and 1
+        count = len(one.output_file_kinds) and 1
         found += [*action.option_strings[:1], *[str(value)] * count]
     if "params" in {action.dest for action in one._actions}:
         found += ["--params", "input.toml"]
@@ -62,7 +64,7 @@ def words(prog, name, path):
 def test_every_path_is_declared_as_input_or_output(prog):
     one = COMMANDS[prog]
     paths = {a.dest for a in one._actions if a.type is Path}
-    assert paths - INPUTS == set(getattr(one, "outputs", {})) - INPUTS
+    assert paths - INPUTS == set(getattr(one, "output_file_kinds", {})) - INPUTS
 
 
 @pytest.mark.parametrize(

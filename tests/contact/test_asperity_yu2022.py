@@ -246,7 +246,7 @@ def test_elastic_load(law, u):
         power = (3 - z - D) / 2
         expected += law.lambda_ * c * a_l ** (z / 2) * (a_l**power - paper.a_nec**power)
     s = law.spot_distribution()
-    elastic = sum(term.integral(s.size_exponent, u) for term in s.regime_terms["load"][3:])
+    elastic = sum(term.integrate_over_spots(s.size_exponent, u) for term in s.regime_terms["load"][3:])
     # difference of powers: 1e-11 of a_nec over 0.1 * 0.025
     assert s.size_exponent * s.size_prefactor * np.exp(s.size_exponent * u) * elastic == pytest.approx(
         expected, rel=1e-8

@@ -210,7 +210,7 @@ away = st.floats(-8.0, 9.0).filter(lambda u: min(abs(u - edge) for edge in EDGES
 @pytest.mark.parametrize("name", TERMS)
 def test_total_is_the_integral_of_all_spots(name, u):
     def density(t):
-        return 0.71 * 1.3 * np.exp(0.71 * (u - t)) * sum(float(term.spot_value(t)) for term in TERMS[name])
+        return 0.71 * 1.3 * np.exp(0.71 * (u - t)) * sum(float(term.evaluate_spot(t)) for term in TERMS[name])
 
     inside = sorted(edge for edge in EDGES if edge < u)
     ends = [-130.0, *inside, u]  # exp((1 - m) t) is below 1e-16 of the total there

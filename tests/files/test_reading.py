@@ -159,7 +159,7 @@ INPUTS = {
     (one.prog.partition(" ")[2], action.dest)
     for one in _iterate_parsers(build_parser())
     for action in one._actions
-    if action.type is Path and action.dest not in (*one.outputs, "fmus")
+    if action.type is Path and action.dest not in (*one.output_file_kinds, "fmus")
 }
 """(command, argument) of every file that is read."""
 FILES = {

@@ -51,7 +51,7 @@ def loops(law, amplitudes, rng, cycles=2, points=100, noise=NOISE):
 def decay(law, inertia, amplitude, periods=60, steps=500, kept=25):
     """Time and motion of a body released at an amplitude after first loading, by velocity Verlet."""
     grid = np.linspace(0.0, 1.1 * amplitude, 4001)
-    friction = law.friction(grid)
+    friction = law.friction_force(grid)
     elastic = law.elastic_spring.force(grid) if law.elastic_spring else 0.0 * grid
     stiffness = (friction[1] + elastic[1]) / grid[1]
     h = 2.0 * np.pi * np.sqrt(inertia / stiffness) / steps
@@ -81,7 +81,7 @@ def decay(law, inertia, amplitude, periods=60, steps=500, kept=25):
 def forced(law, inertia, force, frequency, reach, periods=60, steps=400):
     """Steady amplitude under a harmonic force, integrated from rest with parallel sliders."""
     grid = np.linspace(0.0, reach, 400)
-    stiffness = -np.diff(np.diff(law.friction(grid)) / grid[1], append=0.0)
+    stiffness = -np.diff(np.diff(law.friction_force(grid)) / grid[1], append=0.0)
     limit = stiffness * grid[1:]
     w, h = 2.0 * np.pi * frequency, 1.0 / frequency / steps
     x = v = 0.0

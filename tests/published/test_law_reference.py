@@ -20,7 +20,7 @@ from jointfmu.contact.laws.zhao2018 import Zhao2018
 from jointfmu.contact.powerlaw import PowerTerm, SlipTerm, SmoothTerm
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive import prescribed_midline
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flatten_fields
 
 
 def test_all_laws_agree():
@@ -33,7 +33,7 @@ def test_all_laws_agree():
 def test_every_choice_of_a_law_has_a_case():
     for law, cls in LAWS.items():
         cases = [case["parameters"] for case in read_reference_cases() if case["law"] == law]
-        for name, item in flat_fields(cls):
+        for name, item in flatten_fields(cls):
             if "allowed" in item.metadata:
                 assert {case[name] for case in cases} == set(item.metadata["allowed"]), (law, name)
 
@@ -55,7 +55,7 @@ def scaled(spots, quantity, factor):
 @pytest.mark.parametrize("quantity", ["load", "normal", "tangential", "area"])
 def test_a_quantity_of_a_law_that_moves_by_a_percent_is_missed(law, quantity, monkeypatch):
     cls = LAWS[law]
-    own = cls.spots
+    own = cls.spot_distribution
     case = next(case for case in read_reference_cases() if case["law"] == law)
     if law == "roughness" and quantity == "area":
         monkeypatch.setattr(cls, "real_area", moved_area(cls.real_area))
@@ -63,7 +63,7 @@ def test_a_quantity_of_a_law_that_moves_by_a_percent_is_missed(law, quantity, mo
         assert "K_T" not in case["values"]  # the law has none
         return
     else:
-        monkeypatch.setattr(cls, "spots", lambda self: scaled(own(self), quantity, 1.01))
+        monkeypatch.setattr(cls, "spot_distribution", lambda self: scaled(own(self), quantity, 1.01))
     missed = missed_quantities(compare_laws())
     assert missed
     assert {name.partition(".")[0] for name in missed} == {law}
@@ -75,18 +75,21 @@ def moved_area(real_area):
 
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_a_midline_that_moves_by_a_percent_is_missed(law, monkeypatch):
-    cls = {"catalogue": prescribed_midline.CatalogueDrive, "table": prescribed_midline.TableDrive}[law]
-    own = cls.make_nodes
+    cls = {
+        "catalogue": prescribed_midline.CatalogueDriveParameters,
+        "table": prescribed_midline.TableDriveParameters,
+    }[law]
+    own = cls.make_midline_nodes
     monkeypatch.setattr(
         cls,
-        "make_nodes",
+        "make_midline_nodes",
         lambda self: [n._replace(torque=1.01 * n.torque, stiffness=1.01 * n.stiffness) for n in own(self)],
     )
     assert missed_quantities(compare_laws()) == [f"{law}.tau", f"{law}.K_WTS"]
 
 
 def test_validate_misses_the_plastic_load_of_zhao_times_one_and_a_half(monkeypatch, capsys):
-    own = Zhao2018.spots
+    own = Zhao2018.spot_distribution
 
     def spots(self):
         found = own(self)
@@ -95,7 +98,7 @@ def test_validate_misses_the_plastic_load_of_zhao_times_one_and_a_half(monkeypat
             found, regime_terms=dict(found.regime_terms) | {"load": (scale_term(plastic, 1.5), elastic)}
         )
 
-    monkeypatch.setattr(Zhao2018, "spots", spots)
+    monkeypatch.setattr(Zhao2018, "spot_distribution", spots)
     assert main(["validate"]) == 1
     assert "zhao2018.K_N" in capsys.readouterr().out
 

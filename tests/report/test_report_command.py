@@ -110,7 +110,7 @@ def test_kinds_of_sources_are_what_they_are(tmp_path, monkeypatch):
         for name in ("drive", "joint")
     )
     assert "<em>user</em>" not in drive_page
-    assert "<em>default</em>, not stated, the default of the package: 14" in drive_page
+    assert "<em>default</em>, not stated, the default of the package: 18" in drive_page
     assert "<em>catalogue</em>" in drive_page
     assert "<em>standard</em>, a value of a standard: " in joint_page
     assert "<em>paper</em>" not in joint_page

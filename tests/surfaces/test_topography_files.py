@@ -24,16 +24,12 @@ from jointfmu.parameters import format_parameter_file, load_default, load_parame
 
 @pytest.fixture(scope="module")
 def area():
-    return synthesis.synthesize_isotropic(
-        synthesis.Waves(sample_length=1e-3, point_count=128, gamma=1.5), 2.5, 1e-9, 20, 1
-    )
+    return synthesis.synthesize_isotropic(synthesis.Waves(size=1e-3, points=128, gamma=1.5), 2.5, 1e-9, 20, 1)
 
 
 @pytest.fixture(scope="module")
 def line():
-    return synthesis.synthesize_profile(
-        synthesis.Waves(sample_length=1e-3, point_count=1024, gamma=1.5), 1.42, 1.21e-8, 1
-    )
+    return synthesis.synthesize_profile(synthesis.Waves(size=1e-3, points=1024, gamma=1.5), 1.42, 1.21e-8, 1)
 
 
 @pytest.fixture
@@ -127,7 +123,7 @@ def test_the_effect_of_spikes_on_sq_is_said(area):
 
 def test_clean_surfaces_have_no_spikes():
     for D in (1.1, 1.5, 1.9):
-        waves = synthesis.Waves(sample_length=1e-3, point_count=256, gamma=1.5)
+        waves = synthesis.Waves(size=1e-3, points=256, gamma=1.5)
         for made in (
             synthesis.synthesize_isotropic(waves, D + 1, 1e-9, 20, 1),
             synthesis.synthesize_profile(waves, D, 1e-9, 1),

@@ -27,7 +27,7 @@ SIZE, GAMMA = 1e-3, 1.5
 
 
 def waves(points):
-    return synthesis.Waves(sample_length=SIZE, point_count=points, gamma=GAMMA)
+    return synthesis.Waves(size=SIZE, points=points, gamma=GAMMA)
 
 
 def gaussian_profile(points, H, G, seed, dx=1e-6):

@@ -40,7 +40,7 @@ def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
     A line has profile_share of the power of the surface that it is cut from.
     """
     H = fractal.hurst_exponent(D)
-    waves = synthesis.Waves(sample_length=SIZE, point_count=5000, gamma=gamma)
+    waves = synthesis.Waves(size=SIZE, points=5000, gamma=gamma)
     missing = gamma ** (-2.0 * H * waves.frequencies.size)  # waves shorter than two spacings
     h = fractal.rms_height(D, G, SIZE, gamma=gamma) * np.sqrt(
         fractal.profile_power_ratio(H) * (1.0 - missing)

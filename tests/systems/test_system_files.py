@@ -383,7 +383,7 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
 
 def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
     """Of the motor and the link on the drive at rest, and at the largest torque of a run."""
-    monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, force: [])
+    monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, overwrite: [])
     path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
     drive = HarmonicDriveSpring.tabulate(read_system(path).joints["drive"].parameter_file.values)
 
@@ -447,7 +447,7 @@ def fmu_with_parameters(path: Path, file) -> Path:
 @pytest.mark.parametrize("is_own", [True, False], ids=["other", "same"])
 def test_the_systems_replace_no_joint_of_the_user(tmp_path, monkeypatch, is_own):
     """`build --systems` put the shipped joint in place of the one built with --params."""
-    monkeypatch.setattr(ssp, "check_outputs", lambda paths, kind, force: None)  # tested by itself
+    monkeypatch.setattr(ssp, "check_outputs", lambda paths, kind, overwrite: None)  # tested by itself
     monkeypatch.setattr(ssp, "map_jobs", lambda *_: pytest.fail("built") if is_own else [])
     monkeypatch.setattr(ssp, "write_archives", lambda system, out: [])
     file = load_default("bolted_joint")
@@ -459,4 +459,4 @@ def test_the_systems_replace_no_joint_of_the_user(tmp_path, monkeypatch, is_own)
             ssp.build_systems(tmp_path, column)
         assert str(error.value).startswith(f"{path}: ")
         monkeypatch.setattr(ssp, "map_jobs", lambda *_: [])
-    ssp.build_systems(tmp_path, column, force=is_own)
+    ssp.build_systems(tmp_path, column, overwrite=is_own)

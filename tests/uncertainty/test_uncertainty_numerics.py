@@ -101,7 +101,7 @@ def linear_gear(monkeypatch):
         values = {**self.file.values_by_name, **settings}
         load = settings.get("f")
         factor = 1.0 if load is None else load if self.load_is_relative else load / self.loads[-1]
-        rows = slice(None) if self.rows is None else self.rows
+        rows = slice(None) if self.load_indices is None else self.load_indices
         K_N = factor * self.loads[rows] * (2.0 * values["mu"] + values["traction_ratio"])
         return {"K_N": K_N, "s_rel": 0.0 * K_N}
 

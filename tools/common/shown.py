@@ -73,7 +73,7 @@ def facts_to_json(facts_by_name: Mapping[str, tuple[float, str, str]]) -> dict[s
 class ParameterFileEntry(NamedTuple):
     """Entry of a parameter file: a number in SI units or a choice, with meaning, origin and source.
 
-    unit : SI unit; None for a choice
+    unit   : SI unit; None for a choice
     origin : kind of source, one of parameters.ORIGINS
     """
 

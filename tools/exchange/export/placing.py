@@ -51,9 +51,9 @@ class Springs:
     pressure             : (n)    [Pa]
     K_n, K_t             : (n)    [N/m] stiffness along z; along x and along y
     C_n, C_t             : (n)    [N.s/m] damping along z; along x and along y
-    joint_totals         : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, summed over pairs
-    stiffness_correction : [1] factor on the stiffness of the pairs, so that their sum is that of the joint
-    open_pairs           : number of open pairs, which are left out
+    total_stiffness_and_damping         : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, summed over pairs
+    stiffness_correction_factor : [1] factor on the stiffness of the pairs, so that their sum is that of the joint
+    open_pair_count      : number of open pairs, which are left out
     """
 
     node_labels: NDArray[np.int64]

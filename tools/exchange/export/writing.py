@@ -72,25 +72,26 @@ def export_springs(
     )
     units = placement.units
     sums = ", ".join(
-        f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in field.joint_totals.items()
+        f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}"
+        for n, v in field.total_stiffness_and_damping.items()
     )
     about = [
         f"springs of a {KINDS[parameter_file.joint].title} between node pairs, linear about a working point",
         f"parameters: {parameter_file.name} ({parameter_file.joint})",
         f"working point: {where}",
         f"units: {units.name}",
-        f"pairs: {len(field.node_labels)}, left out because they are open: {field.open_pairs}",
+        f"pairs: {len(field.node_labels)}, left out because they are open: {field.open_pair_count}",
         f"sums over the pairs, SI: {sums}",
-        f"stiffness multiplied by {field.stiffness_correction:.9g} to add up to the joint's",
+        f"stiffness multiplied by {field.stiffness_correction_factor:.9g} to add up to the joint's",
         f"the joint's normal is the model's {placement.normal_axis}",
     ]
     write, notes = _SPRING_WRITERS[file_format]
     facts = {
         "pairs": len(field.node_labels),
-        "open": field.open_pairs,
-        "correction": field.stiffness_correction,
+        "open": field.open_pair_count,
+        "correction": field.stiffness_correction_factor,
     }
-    facts |= field.joint_totals
+    facts |= field.total_stiffness_and_damping
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
 
 

@@ -22,22 +22,20 @@ class Waves(CheckedParameters):
     The shortest wavelength is at least twice the spacing.
     """
 
-    sample_length: float = quantity_field("m", "side length of the surface, and its longest wave", gt=0.0)
-    point_count: int = quantity_field("1", "points along a side", ge=2.0, is_integer=True)
+    size: float = quantity_field("m", "side length of the surface, and its longest wave", gt=0.0)
+    points: int = quantity_field("1", "points along a side", ge=2.0, is_integer=True)
     gamma: float = quantity_field("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 
     @property
     def positions(self) -> Array:
         """Positions (points,) [m] along one side."""
-        return np.asarray(
-            np.arange(self.point_count) * (self.sample_length / self.point_count), dtype=np.float64
-        )
+        return np.asarray(np.arange(self.points) * (self.size / self.points), dtype=np.float64)
 
     @property
     def frequencies(self) -> Array:
         """Frequencies gamma^n/L (n_max + 1,) [1/m]; n_max = int(ln(L/L_s)/ln gamma), L_s = 2 L/points."""
-        count = int(np.log(0.5 * self.point_count) / np.log(self.gamma) * (1.0 + 1e-12)) + 1
-        return np.asarray(self.gamma ** np.arange(count) / self.sample_length, dtype=np.float64)
+        count = int(np.log(0.5 * self.points) / np.log(self.gamma) * (1.0 + 1e-12)) + 1
+        return np.asarray(self.gamma ** np.arange(count) / self.size, dtype=np.float64)
 
     def amplitudes(self, H: float, G: float) -> Array:
         """Amplitude G^(1-H) sqrt(ln gamma) l^H [m] of each wave, with wavelength l and roughness G [m]."""
@@ -64,7 +62,7 @@ def synthesize_isotropic(waves: Waves, D: float, G: float, direction_count: int,
     along_y = np.multiply.outer(waves.positions, (wave * np.sin(angle)).ravel()) + phases.ravel()
     z = (amplitude * np.sin(along_y)) @ np.sin(along_x).T - (amplitude * np.cos(along_y)) @ np.cos(along_x).T
     z += float(np.sum(amplitude * np.cos(phases.ravel())))
-    spacing = waves.sample_length / waves.point_count
+    spacing = waves.size / waves.points
     return ArealMap(z=z, dx=spacing, dy=spacing, name="synthetic surface")
 
 
@@ -76,7 +74,7 @@ def profile_heights(waves: Waves, D: float, G: float, rng: np.random.Generator) 
     rng : generator of the random phases
     """
     _check_open_interval("D", D, 1.0, 2.0, "fractal dimension of the profile")
-    z = np.zeros(waves.point_count)
+    z = np.zeros(waves.points)
     x, amplitudes = waves.positions, waves.amplitudes(2.0 - D, G)
     for f, a, phase in zip(
         waves.frequencies, amplitudes, rng.uniform(0.0, 2.0 * np.pi, amplitudes.size), strict=True
@@ -88,7 +86,7 @@ def profile_heights(waves: Waves, D: float, G: float, rng: np.random.Generator) 
 def synthesize_profile(waves: Waves, D: float, G: float, seed: int) -> Profile:
     """Profile with random phases from a seed; D and G as in `profile_heights`."""
     z = profile_heights(waves, D, G, np.random.default_rng(seed))
-    return Profile(z=z, dx=waves.sample_length / waves.point_count, name="synthetic profile")
+    return Profile(z=z, dx=waves.size / waves.points, name="synthetic profile")
 
 
 def synthesize_textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed: int) -> ArealMap:
@@ -98,7 +96,7 @@ def synthesize_textured(waves: Waves, D: tuple[float, float], G: tuple[float, fl
     """
     rng = np.random.default_rng(seed)
     along_x, along_y = (profile_heights(waves, d, g, rng) for d, g in zip(D, G, strict=True))
-    spacing = waves.sample_length / waves.point_count
+    spacing = waves.size / waves.points
     z = along_x[None, :] + along_y[:, None]
     return ArealMap(z=z, dx=spacing, dy=spacing, name="synthetic textured surface")
 

@@ -87,7 +87,7 @@ def _make_heights(args: argparse.Namespace) -> Heights:
     if not 1 <= args.ridges <= MAX_WAVE_DIRECTIONS:
         raise ValueError(f"ridges = {args.ridges}, allowed are 1, 2, 3, ... {MAX_WAVE_DIRECTIONS}")
     _check_memory(args)
-    waves = synthesis.Waves(sample_length=args.size, point_count=args.points, gamma=args.gamma)
+    waves = synthesis.Waves(size=args.size, points=args.points, gamma=args.gamma)
     if args.shape == "isotropic":
         return synthesis.synthesize_isotropic(waves, args.D[0], args.G[0], args.ridges, args.seed)
     if args.shape == "textured":

@@ -40,9 +40,9 @@ class Samples:
 
     time           : [s]
     q, dq, ddq     : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
-    window_speeds  : (n, FILTER_NODES) [rad/s] of the joint, within the window of the filter
-    window_weights : (n, FILTER_NODES) [1] of the filter at these speeds
-    window_angles  : (n, FILTER_NODES) [rad] of the motor at these speeds; NaN if unknown
+    window_speeds  : (n, FILTER_NODE_COUNT) [rad/s] of the joint, within the window of the filter
+    window_weights : (n, FILTER_NODE_COUNT) [1] of the filter at these speeds
+    window_angles  : (n, FILTER_NODE_COUNT) [rad] of the motor at these speeds; NaN if unknown
     ripple_terms   : (n, 2 k) [1] filtered sense of rotation times sine and cosine of k harmonics of the motor
                      angle; k = 0 until friction ripple is found
     motor_torque   : [N.m] of the motor
