@@ -13,6 +13,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.report import loss_factor
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.runs import Execution
 from scipy.integrate import quad
 
 from jointfmu.joints import KINDS
@@ -106,7 +107,8 @@ def test_pattern_of_the_bolts_may_be_uncertain():
 
 def test_slip_force_has_the_band_of_friction():
     task = state_problem(load_default("bolted_joint"), {"mu": "0.1..0.3"}, None, 2)
-    found = propagate.compute_bands(task, propagate.sample_designs(task, 1024, 0)[0])
+    points = propagate.sample_designs(task, 1024, 0)[0]
+    found = propagate.compute_bands(task, points, Execution(workers=1))
     slip, mu = found.quantiles["slip_force"][:, -1], 0.1 + 0.2 * np.array(propagate.QUANTILES)
     assert slip == pytest.approx(
         mu / task.evaluator.file.values.mu * found.nominal["slip_force"][-1], rel=2e-3
