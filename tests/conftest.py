@@ -52,6 +52,16 @@ RELEASED = ("-target", ZIG_TARGETS[platform_tuple], "-O2", "-s")
 optimization, 20 s without."""
 SLOW_FIXTURES = frozenset({"fmus", "native", "system_files", "elastic_joint", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
+LONGEST_FILES = frozenset(
+    {
+        "test_native_c.py",
+        "test_uncertainty_sweep.py",
+        "test_fmu_build.py",
+        "test_elastic_sides.py",
+        "test_systems.py",
+    }
+)
+"""Files of tests that take about a minute: no process must begin one when the others have nothing left."""
 
 
 RUN = "JOINTFMU_TEST_RUN"
@@ -86,7 +96,8 @@ def pytest_collection() -> Iterator[None]:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark as slow what uses a slow fixture; other tests of more than a second or two say it themselves.
 
-    Files with slow tests go first: the others fill up what the processes have left at the end.
+    Files with slow tests go first, the longest before all: the others fill up what the processes have left at
+    the end.
     """
     for item in items:
         if not SLOW_FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
@@ -94,7 +105,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for mark in item.iter_markers("needs"):
             clients.count_tests(mark.args)
     slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: item.path not in slow)
+    items.sort(key=lambda item: (item.path not in slow, item.path.name not in LONGEST_FILES))
 
 
 def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:

@@ -19,10 +19,10 @@ pytestmark = needs("tamaas")
 
 @pytest.fixture(scope="module")
 def pressed():
-    """Boundary elements and law on three Hurst exponents and two bands, 128 points."""
+    """Boundary elements and law on the lowest and the highest Hurst exponent and two bands, 128 points."""
     return {
         (H, roll_off): cases.elastic_contacts(H, roll_off, seeds=seeds, points=128)
-        for H in cases.HURST
+        for H in (min(cases.HURST), max(cases.HURST))
         for roll_off, seeds in SEEDS.items()
     }
 
@@ -55,7 +55,7 @@ def test_few_single_surfaces_of_many_hills_are_beyond(pressed):
             held = cases.in_valid_range(roll_off, one["area"])
             missed += int((np.abs(one["law"] / one["k"] - 1.0) > 0.3)[held].sum())
             count += int(held.sum())
-    assert count > 30
+    assert count > 20
     assert missed < 0.1 * count
 
 

@@ -257,6 +257,7 @@ def test_without_a_load_to_close_it_the_contact_is_refused(plates, law, factor):
 def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
     """Without the look at the loads: by the solver, or by the look at the contact that it returns."""
     monkeypatch.setattr(RigidBodyBalance, "check_loads", lambda self: None)
+    monkeypatch.setattr(newton, "MAX_NEWTON_STEPS", 15)
     model, loads = pulled(plates, law, 1.0, 1.0)
     with pytest.raises(RuntimeError, match=r"positive definite|not settled|stays closed|not in balance"):
         model.solve(loads, 1e5)

@@ -16,7 +16,7 @@ from jointfmu.mechanics.footprint.reproducible import (
     take_power_of_two_root,
 )
 
-TIMES = 20
+TIMES = 8
 """Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
 AGREE = 1e-9
 NUMBERS = ("area_share", "position", "preload_pressure_ratio", "moment_pressure_ratio")

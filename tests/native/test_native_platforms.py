@@ -29,7 +29,7 @@ from jointfmu.joints.model import Model
 
 pytestmark = [pytest.mark.slow, needs("Linux on x86_64")]
 
-POINTS = 200
+POINTS = 60
 HOSTS = Path(__file__).parent / "hosts"
 VERSIONS = ("fmi2", "fmi3")
 

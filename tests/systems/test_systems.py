@@ -461,7 +461,7 @@ def simulated_once(path: str, step: float, stop: float, changes: tuple[tuple[str
     return simulate_ssp(path, stop_time=stop, step_size=step, parameter_set=parameters)
 
 
-STEPS = 2000
+STEPS = 800
 """In which importers are compared: the robot's axes are on their way."""
 
 

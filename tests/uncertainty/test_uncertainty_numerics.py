@@ -5,7 +5,7 @@ import pytest
 from jointfmu_tools.studies.uncertainty import propagate, study, worker
 from jointfmu_tools.studies.uncertainty.curves import spline_weights
 from jointfmu_tools.studies.uncertainty.problem import state_problem
-from jointfmu_tools.studies.uncertainty.runs import evaluate_runs
+from jointfmu_tools.studies.uncertainty.runs import Execution, evaluate_runs
 from jointfmu_tools.studies.uncertainty.study import parse_distribution
 from scipy import stats
 from scipy.interpolate import CubicSpline
@@ -152,7 +152,7 @@ def test_results_do_not_depend_on_order_and_processes(monkeypatch):
     back = evaluate_runs(task.evaluator, runs[::-1], task.units, 4).outputs
     monkeypatch.setattr(worker.JointRamp, "runs_per_process", 4)
     monkeypatch.setattr(worker.JointRamp, "runs_per_job", 3)
-    two = evaluate_runs(task.evaluator, runs, task.units, 4).outputs
+    two = evaluate_runs(task.evaluator, runs, task.units, 4, Execution(workers=2)).outputs
     for name, values in one.items():
         assert np.array_equal(values, back[name][:, ::-1])
         assert np.array_equal(values, two[name])

@@ -46,7 +46,7 @@ _MEMBER_NAME_PATTERN = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
 
 
 class CompiledModel(NamedTuple):
-    """C sources and libraries shared by all FMUs with the same C code (see `ParameterSplit.code_structure_key`).
+    """C sources and libraries of all FMUs with the same C code (see `ParameterSplit.code_structure_key`).
 
     sources   : {file name: text} of all C files but data.c
     libraries : {FMI version: {platform: library}} with placeholders for data and name

@@ -48,12 +48,13 @@ def rigid_file(**changes):
 
 @pytest.fixture(scope="module")
 def elastic_file(tmp_path_factory):
-    """Four M8 on a plate of 80 x 80 mm, whole."""
+    """Four M8 on a plate of 80 x 80 mm, whole: the plate of test_elastic_sides.py, which is solved once."""
     path = tmp_path_factory.mktemp("lift_off") / "joint.toml"
     drawing = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", "--material", "steel"]
-    stated = ["--Ra", "0.8", "--embedding", str(EMBEDDING), "--preload", str(PRELOAD), "--out", str(path)]
+    stated = ["--Ra", "0.8", "--embedding", "0", "--preload", str(PRELOAD), "--out", str(path)]
     assert cli.main(["new", "bolted-joint", *drawing, *stated]) == 0
-    return load_parameter_file(path).with_values({"bolt_stiffness": STIFFNESS}, "user", "test")
+    changes = {"bolt_stiffness": STIFFNESS, "embedding": EMBEDDING}
+    return load_parameter_file(path).with_values(changes, "user", "test")
 
 
 @pytest.fixture(

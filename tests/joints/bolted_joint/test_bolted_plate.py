@@ -439,20 +439,18 @@ THIN += ["--material", "aluminium", "--Ra", "0.8"]
 
 
 @pytest.mark.parametrize("sides", ["rigid", pytest.param("elastic", marks=[pytest.mark.slow, needs("gmsh")])])
-def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path, capsys, few_points, sides):
-    """1745 N of 4000 and of 1800 N: loops are drawn under a preload of which embedding leaves some."""
-    for preload in {"rigid": ("4000", "1800"), "elastic": ("4000",)}[sides]:
-        path, page = (tmp_path / f"{preload}.{kind}" for kind in ("toml", "html"))
-        words = ["--preload", preload, "--attached", "edge", "--out", str(path)]
-        assert cli.main(["new", "bolted-joint", *THIN, "--sides", sides, *words]) == 0
-        file = load_parameter_file(path)
-        assert file.values.embedding == pytest.approx(1745.0, rel=1e-3)
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
-            assert b"Loops at preload" in make_documentation(model, file)["index.html"]
-            assert cli.main(["report", str(path), "--out", str(page)]) == 0
-        capsys.readouterr()
+def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path, few_points, sides):
+    """1745 N of 1800 or of 4000 N: loops are drawn under a preload of which embedding leaves some."""
+    path, preload = tmp_path / "thin.toml", {"rigid": "1800", "elastic": "4000"}[sides]
+    words = ["--preload", preload, "--attached", "edge", "--out", str(path)]
+    assert cli.main(["new", "bolted-joint", *THIN, "--sides", sides, *words]) == 0
+    file = load_parameter_file(path)
+    assert file.values.embedding == pytest.approx(1745.0, rel=1e-3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
+        assert b"Loops at preload" in make_documentation(model, file)["index.html"]
+        assert cli.main(["report", str(path), "--out", str(tmp_path / "thin.html")]) == 0
 
 
 def test_embedding_that_takes_all_of_the_preload_is_refused(tmp_path, capsys):

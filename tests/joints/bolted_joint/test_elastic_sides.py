@@ -400,13 +400,15 @@ def test_a_bolt_of_no_stiffness_leaves_an_open_joint_without_force(made):
 
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
 def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavour):
-    """Co-simulation and model exchange, over random histories. Absolute: forces and stiffnesses vanish."""
+    """Co-simulation and model exchange, over random histories of each version. Absolute: forces and
+    stiffnesses vanish."""
     joint = embedded(made(*FOUR, preload=15e3), tmp_path / "joint.toml")
     with here_alone():
         build_fmus(["BoltedJoint"], [flavour], joint.file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     least = {"f": 1e-5, "m": 1e-6, "F": 1e-5, "K": 100.0, "s": 1e-9, "C": 1e-2, "E": 1e-12, "e": 1e-9}
-    for seed, exchange in enumerate((False, True, False, True)):
+    for exchange in (False, True):
+        seed = 2 * (flavour == "fmi3") + exchange
         rng, memory = np.random.default_rng(seed), joint.spring.initial_history()
         fmu = Fmu(path, exchange=exchange).start({"preload": 15e3})
         _, memory = at(joint.spring, *STILL, preload=15e3, memory=memory)

@@ -271,7 +271,7 @@ def stored(law, memory, out):
     return law.curve.energy(np.abs(out["phi_rel"])) + sliders
 
 
-WAVES, STEPS, RUNS = 3, 1000, 1000
+WAVES, STEPS, RUNS = 3, 1000, 200
 
 
 def smooth(rng, size, t):
@@ -285,12 +285,12 @@ def smooth(rng, size, t):
     )
 
 
-@pytest.mark.slow  # 1000 trajectories of 1000 steps
+@pytest.mark.slow  # 200 trajectories of 1000 steps
 @pytest.mark.parametrize("ratio", [100.0, -80.0])
 def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio, native, fmus):
     """All friction on and the temperature moving. Work is that of both torques by the trapezium rule.
 
-    The first trajectory is that of every flavour too.
+    The beginning of the first trajectory is that of every flavour too.
     """
     law, rng = spring(**ALL, d=0.3, ratio=ratio), np.random.default_rng(24)
     t = np.linspace(0.0, 2.0, STEPS)
@@ -326,7 +326,7 @@ def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio,
     for folder in (native / "fmi2", native / "fmi3", fmus):
         drive = Fmu(folder / "HarmonicDriveSpring.fmu")
         drive.start(ALL | {"d": 0.3, "ratio": ratio} | rows[0])
-        for row, expected in zip(rows, first, strict=True):
+        for row, expected in zip(rows[:250], first[:250], strict=True):
             assert drive.at(row) == close(expected)
             drive.step()
         drive.free_instance()

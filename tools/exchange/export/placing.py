@@ -45,15 +45,15 @@ UNIT_SETS = {
 class Springs:
     """Springs and dashpots of the closed node pairs. x and y lie in the joint's plane, z is its normal.
 
-    node_labels          : (n, 2) labels on side 1 and side 2
-    position             : (n, 2) [m] relative to the centroid of the contact
-    area                 : (n)    [m2]
-    pressure             : (n)    [Pa]
-    K_n, K_t             : (n)    [N/m] stiffness along z; along x and along y
-    C_n, C_t             : (n)    [N.s/m] damping along z; along x and along y
-    total_stiffness_and_damping         : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, summed over pairs
-    stiffness_correction_factor : [1] factor on the stiffness of the pairs, so that their sum is that of the joint
-    open_pair_count      : number of open pairs, which are left out
+    node_labels                 : (n, 2) labels on side 1 and side 2
+    position                    : (n, 2) [m] relative to the centroid of the contact
+    area                        : (n) [m2]
+    pressure                    : (n) [Pa]
+    K_n, K_t                    : (n) [N/m] stiffness along z; along x and along y
+    C_n, C_t                    : (n) [N.s/m] damping along z; along x and along y
+    total_stiffness_and_damping : {name: stiffness K_ [N/m] or damping C_ [N.s/m]}, summed over pairs
+    stiffness_correction_factor : [1] on the stiffness of each pair, so that the sum is that of the joint
+    open_pair_count             : number of open pairs, which are left out
     """
 
     node_labels: NDArray[np.int64]

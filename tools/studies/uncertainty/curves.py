@@ -6,7 +6,6 @@ from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Variable
@@ -104,6 +103,8 @@ def spline_weights(knots: Array, points: Array, derivative: int = 0) -> Array:
 
 @lru_cache(maxsize=16)
 def _spline_weights(knots: bytes, points: bytes, derivative: int) -> Array:
+    from scipy.interpolate import CubicSpline  # takes most of the start of a process that runs FMUs
+
     x = np.frombuffer(knots)
     spline = CubicSpline(x, np.eye(x.size))
     spline = (
