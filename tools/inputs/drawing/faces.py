@@ -15,6 +15,7 @@ from ...common.options import Option, option_flag
 from .. import fractal
 from ..catalogue import SourcedNumber
 from ..surfaces import form, reading
+from ..surfaces.scan_text import parse_spacing
 from .part import DrawingOptions, ParameterSheet
 from .reading import expand_to_sides, parse_number
 from .tables import TableRow, find_row
@@ -38,6 +39,13 @@ FACE_OPTIONS = (
     Option("Rq", "Rq or Sq of both sides, or of each side [um]", "RQ", is_list=True),
     Option("surface", "scan of both sides, or of each side", "SCAN", is_list=True),
     Option("unit", "length unit of scans that state none: m, mm, um, nm", "UNIT"),
+    Option(
+        "spacing",
+        "spacing of the points of scans that state none, e.g. 5um; or two, along x and y",
+        "LENGTH",
+        is_list=True,
+    ),
+    Option("missing", "number that marks a missing point of scans, in the unit of their heights"),
     Option("longest_wave", "longest wavelength of the roughness [mm] (default: the cut-off of its Ra)"),
     Option("hardness", "hardness of the softer side [MPa] (default: of the material)"),
     Option("mu", "coefficient of friction [1] (default: 0.15)"),
@@ -214,8 +222,8 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
     texts = expand_to_sides(name, options[name])
     assert texts is not None  # `heights` has set options only
     if name == "surface":
-        first = _face_from_scan(texts[0], options["unit"])
-        return first, first if texts[1] == texts[0] else _face_from_scan(texts[1], options["unit"])
+        first = _face_from_scan(texts[0], options)
+        return first, first if texts[1] == texts[0] else _face_from_scan(texts[1], options)
     rows = (
         (find_row("finishes", finishes[0]), find_row("finishes", finishes[1])) if finishes else (None, None)
     )
@@ -268,8 +276,16 @@ def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | 
     )
 
 
-def _face_from_scan(path: str, unit: str | None) -> Face:
-    prepared = form.prepare_scan(reading.read_heights(Path(path), unit))
+def _face_from_scan(path: str, options: DrawingOptions) -> Face:
+    """Roughness of a scan; options: unit, spacing and missing value of files that do not state them."""
+    spacing, missing = options["spacing"], options["missing"]
+    heights = reading.read_heights(
+        Path(path),
+        options["unit"],
+        spacing=parse_spacing(spacing) if spacing else None,
+        missing_value=None if missing is None else parse_number("missing", missing, "1", "1", None),
+    )
+    prepared = form.prepare_scan(heights)
     longest = form.default_longest_wave(prepared.filled_heights)
     scan = form.scan_roughness(prepared.heights_with_gaps, prepared.filled_heights, longest)
     source = f"scan {Path(path).name}"
