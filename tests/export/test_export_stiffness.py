@@ -282,6 +282,7 @@ def test_comment_states_frame_point_and_state(tmp_path, capsys, monkeypatch):
             "--node-1 has no effect for springs of the interface",
         ),
         ("nastran springs --preload 9e3 --node-2 0 0", "argument --node-2: expected 3 arguments"),
+        ("nastran springs --node-2 0 nan 0", "--node-2 = [0.0, nan, 0.0]: expected three finite numbers"),
         ("nastran springs --preload -5", "preload = -5 N per bolt with moment = 0 N.m is outside the law"),
         ("nastran springs --preload 9e3 --error 0.1", "--error has no effect for springs"),
         ("nastran contact", "nastran contact cannot be written; nastran has springs"),

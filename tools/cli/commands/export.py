@@ -66,14 +66,20 @@ def add_command(command_parsers: SubParsers) -> None:
         default=with_springs[0],
         help=f"joint with its default parameters (default: {with_springs[0]})",
     )
+    complete = {
+        name
+        for joint in exports.joints_with_content("stiffness")
+        for name in exports.exports_of(joint).working_point
+    }
     for name, texts in _working_point_meanings().items():
-        declare_argument(export, option_flag(name), float, "; ".join(texts))
+        text = "; ".join(texts) + "; default of a complete joint: that of --params"
+        declare_argument(export, option_flag(name), float, text if name in complete else "; ".join(texts))
     text = "springs: the interface alone between node pairs, for your own model of members and bolts"
     export.add_argument("--interface", action="store_true", default=None, help=text)
     for side in (1, 2):
         text = f"springs of the complete joint: position of the node of side {side} from the centroid of the "
         text += "contact, along the axes and in the units of your model (default: 0 0 0)"
-        declare_argument(export, f"--node-{side}", float, text, "V", nargs=3)
+        export.add_argument(f"--node-{side}", type=float, nargs=3, metavar=("X", "Y", "Z"), help=text)
     text = "springs: your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a column "
     declare_argument(export, "--nodes", Path, text + "pressure [MPa] replaces the working point", "CSV")
     declare_argument(export, "--first", int, "springs: first free number for elements and nodes (default: 1)")
@@ -213,6 +219,11 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
             assert available.working_point_class is not None
             values = {name: parameter_file.start_value(name) for name in available.working_point}
             state = available.working_point_class(**values)
+        for name in ("node_1", "node_2"):
+            if not np.all(np.isfinite(getattr(args, name) or _MODEL_ORIGIN)):
+                raise ValueError(
+                    f"{option_flag(name)} = {getattr(args, name)}: expected three finite numbers"
+                )
         nodes = np.array([args.node_1 or _MODEL_ORIGIN, args.node_2 or _MODEL_ORIGIN])
         placing = Placement(units, args.normal or "z", args.first or 1, args.first_set or 1)
         return writing.export_stiffness(args.form, parameter_file, state, nodes, placing)
