@@ -29,6 +29,8 @@ from jointfmu_fmu_src.native.compiled.cache import (
 from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries
 from jointfmu_tools.run.host import Instance
 
+from jointfmu.progress import STATUS_DELAY_ENVIRONMENT_VARIABLE
+
 settings.register_profile("jointfmu", deadline=None, max_examples=60, derandomize=True)
 settings.load_profile("jointfmu")
 
@@ -40,6 +42,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
+os.environ.setdefault(STATUS_DELAY_ENVIRONMENT_VARIABLE, "inf")  # standard error is compared
 # tests without kept parts compile with a warm cache
 os.environ.setdefault(COMPILER_CACHE_ENVIRONMENT_VARIABLE, str(compiler_cache_folder()))
 

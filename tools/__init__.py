@@ -1,5 +1,18 @@
 """Tools for joints: drawings, surfaces, fits, fields, finite elements, exports, systems, pages."""
 
+from collections.abc import Callable
+
+from jointfmu.files.results import set_result_store
+
 from .joints import PARTS
 
 __all__ = ["PARTS"]
+
+
+def _get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
+    from jointfmu_fmu_src.native.compiled.compiled_models import get_kernel_result
+
+    return get_kernel_result(key, compute_result)
+
+
+set_result_store(_get_kernel_result)

@@ -4,7 +4,7 @@ A file is `schema = 1`, `joint = KIND`, `law = LAW` (absent: the joint's first o
 entry per parameter,
 
     [surface]
-    D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
+    D = { value = 1.42, unit = "1", kind = "paper", source = "Zhao 2018, section 2" }
 
 `kind` is one of ORIGINS. The unit must be the SI unit that the code declares; nothing is converted.
 A section `[inputs]` of the same form gives start values of the joint's inputs; other inputs start at their
@@ -13,6 +13,7 @@ law with the rms height h as a parameter computes h from them. For a law without
 `[comparison]`: its heights do not act, the stiffness of the law is only compared with the one they predict.
 """
 
+import textwrap
 import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import Field, dataclass, field, replace
@@ -36,9 +37,19 @@ from .quantity import (
 EntryValue = TypeVar("EntryValue")
 
 SCHEMA_VERSION = 1
-ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
-"""Origin of a value (`kind`): printed in the paper, computed from printed values, a catalogue,
-an engineering estimate, fitted to calibration points, or set by the user."""
+ORIGINS = (
+    *("paper", "standard", "catalogue", "measured", "derived", "estimate", "calibration"),
+    *("default", "user"),
+)
+"""Origin of a value (`kind`): printed in a paper or handbook, a standard, a maker's catalogue, measured,
+computed from other values, an engineering estimate, fitted to points, a default, or set by the user."""
+ORIGIN_ALIASES = {"published": "paper"}
+"""{former name of an origin: its name}."""
+_DEFAULT_SOURCE = "default choice"
+"""Start of the source of a default."""
+_TOO_NESTED_TEXT = "has brackets or tables inside each other deeper than any file of this package"
+_MAX_SHOWN_LENGTH = 60
+"""Largest number of characters [1] of a wrong value in a message."""
 _NUMBERS_PER_LINE = 5
 """Numbers of a list per line of the file [1]."""
 _INPUTS_PREFIX = "inputs."
@@ -82,6 +93,10 @@ class ParameterFile:
         check_text("name", self.name, MAX_NAME_LENGTH)
         for name, text in self.sources.items():
             check_text(f"{name}: source", text)
+        origins = {
+            name: _name_origin(kind, self.sources.get(name, "")) for name, kind in self.origins.items()
+        }
+        object.__setattr__(self, "origins", origins)
         object.__setattr__(self, "values_by_name", flatten_parameters(self.values))
 
     @property
@@ -93,6 +108,10 @@ class ParameterFile:
     def heights_prefix(self) -> str:
         """Prefix of the names of the surface heights: `roughness.` or `comparison.`."""
         return _heights_prefix(type(self.values))
+
+    def describe_source(self, name: str) -> tuple[str, str]:
+        """Origin and source of a value, by its structured name; a default if the file states none."""
+        return self.origins.get(name, "default"), self.sources.get(name, _DEFAULT_SOURCE)
 
     def start_value(self, input_name: str) -> float:
         """Start value of an input in its SI unit: that of the file, else the default of the joint."""
@@ -142,6 +161,13 @@ class ParameterFile:
             | dict.fromkeys(law_height, _height_source(self.heights_prefix, all_heights, sources)),
             ranges=_drop_names(law_height, self.ranges),
         )
+
+
+def _name_origin(origin: str, source: str) -> str:
+    """Origin by its present name; a value of the user whose source says that it is a default is `default`."""
+    if origin == "user" and source.startswith(_DEFAULT_SOURCE):
+        return "default"
+    return ORIGIN_ALIASES.get(origin, origin)
 
 
 def load_parameter_file(path: str | Path, joint_name: str | None = None) -> ParameterFile:
@@ -241,18 +267,26 @@ def read_document(path: Path, expected_content: str) -> dict[str, Any]:
     Raises ValueError with one line if the file cannot be read, is not TOML or of another schema, or if a key
     or a text is too long or has control characters.
     """
+    content = read_bytes(path, expected_content)
     try:
-        document = tomllib.loads(read_bytes(path, expected_content).decode("utf-8-sig"))
+        document = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is not a text file; expected {expected_content} (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path}: is not valid TOML ({error})") from None
+    except RecursionError:
+        raise ValueError(f"{path}: {_TOO_NESTED_TEXT}") from None
+    except ValueError:  # of int(): Python limits the digits
+        raise ValueError(f"{path}: has an integer of more digits than any number of this package") from None
     try:
         check_document(document)
+    except RecursionError:
+        raise ValueError(f"{path}: {_TOO_NESTED_TEXT}") from None
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     if type(document.get("schema")) is not int or document["schema"] != SCHEMA_VERSION:
-        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA_VERSION}")
+        stated = textwrap.shorten(repr(document.get("schema")), _MAX_SHOWN_LENGTH, placeholder="...")
+        raise ValueError(f"{path}: schema = {stated}, allowed is {SCHEMA_VERSION}")
     return document
 
 
@@ -286,7 +320,7 @@ def read_entries(
             unit = declared_fields[name].metadata.get("unit")
             if entry.get("unit") != unit:
                 raise ValueError(f"{path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
-        if entry.get("kind") not in ORIGINS:
+        if entry.get("kind") not in (*ORIGINS, *ORIGIN_ALIASES):
             raise ValueError(
                 f"{path}: {name}: kind = {entry.get('kind')!r}, allowed are {', '.join(ORIGINS)}"
             )
@@ -404,8 +438,8 @@ def format_parameter_file(parameters: ParameterFile) -> str:
         fields = [f"value = {_format_toml(value)}", *([f'unit = "{unit}"'] if unit else [])]
         if name in parameters.ranges:
             fields += [f"range = [{', '.join(map(repr, parameters.ranges[name]))}]"]
-        fields += [f'kind = "{parameters.origins.get(name, "user")}"']
-        fields += [f"source = {format_toml_string(parameters.sources.get(name, 'default choice'))}"]
+        kind, source = parameters.describe_source(name)
+        fields += [f'kind = "{kind}"', f"source = {format_toml_string(source)}"]
         lines.append(f"{leaf} = {{ {', '.join(fields)} }}")
     return "\n".join(lines) + "\n"
 

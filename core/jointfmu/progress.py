@@ -17,10 +17,14 @@ Job = TypeVar("Job")
 Result = TypeVar("Result")
 MAX_JOB_ATTEMPTS = 4
 """Largest number of attempts [1] for a job whose process dies."""
+STATUS_DELAY_ENVIRONMENT_VARIABLE = "JOINTFMU_STATUS_DELAY"
+"""Environment variable with the time [s] of the first status line; inf: none."""
 STATUS_DELAY = 2.0
-"""Time [s] after which a command prints a status line."""
-_status_line: dict[str, Any] = {"step": "", "bars": 0}
-"""Text of the current step of the work, and number of progress bars on the screen."""
+"""Time [s] after which long work prints a status line."""
+MAX_STATUS_PERIOD = 60.0
+"""Time [s] between status lines where standard error is no terminal."""
+_status_line: dict[str, Any] = {"step": "", "bars": 0, "is_shown": False}
+"""Text of the current step of the work, number of progress bars on the screen, whether a status is shown."""
 _PROCESS_START_LOCK = Lock()
 """Lock held while a process starts: its start redirects standard error, which all threads share."""
 
@@ -49,9 +53,27 @@ def set_status_text(status_text: str) -> None:
 
 @contextmanager
 def show_status(command_name: str) -> Iterator[None]:
-    """Context that shows a status line with name, step and seconds, on a terminal without a progress bar."""
-    if not sys.stderr.isatty():
+    """Context that shows a status line with name, step and seconds, on a terminal without a progress bar.
+
+    Where standard error is no terminal (a pipe, a notebook), it prints one line after STATUS_DELAY, and one
+    every MAX_STATUS_PERIOD. Inside another such context it does nothing.
+    """
+    if _status_line["is_shown"]:
         yield
+        return
+    _status_line["is_shown"] = True
+    try:
+        with _show_outer_status(command_name):
+            yield
+    finally:
+        _status_line["is_shown"] = False
+
+
+@contextmanager
+def _show_outer_status(command_name: str) -> Iterator[None]:
+    if not sys.stderr.isatty():
+        with _print_status_lines(command_name):
+            yield
         return
     out, finished, began = sys.stdout, Event(), time.monotonic()
     set_status_text("")
@@ -77,6 +99,31 @@ def show_status(command_name: str) -> Iterator[None]:
         shower.join()
         if time.monotonic() - began > STATUS_DELAY:
             clear_status()
+
+
+@contextmanager
+def _print_status_lines(command_name: str) -> Iterator[None]:
+    """Context that prints whole status lines to standard error, for pipes and notebooks."""
+    stream, finished, began = sys.stderr, Event(), time.monotonic()
+    delay = float(os.environ.get(STATUS_DELAY_ENVIRONMENT_VARIABLE, STATUS_DELAY))
+    set_status_text("")
+
+    def print_lines() -> None:
+        wait_time = delay
+        while wait_time < float("inf") and not finished.wait(wait_time):
+            step = _status_line["step"] or "working"
+            line = f"{command_name}: {step}, {time.monotonic() - began:.0f} s"
+            with suppress(OSError, ValueError):  # the stream is closed
+                print(line, file=stream, flush=True)
+            wait_time = MAX_STATUS_PERIOD
+
+    printer = Thread(target=print_lines, daemon=True)
+    printer.start()
+    try:
+        yield
+    finally:
+        finished.set()
+        printer.join()
 
 
 class _StatusClearingStream:

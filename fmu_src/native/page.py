@@ -120,7 +120,7 @@ def _parameter_rows(parameters: ParameterFile) -> list[_ParameterRow]:
             allowed = "1, 2, 3, ..." if meta.get("whole") else str(meta["interval"])
         if isinstance(value, tuple):
             value = describe_range(value)
-        kind, source = parameters.origins.get(name, "user"), parameters.sources.get(name, "default choice")
+        kind, source = parameters.describe_source(name)
         rows.append(_ParameterRow(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
     return rows
 

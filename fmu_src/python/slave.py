@@ -31,6 +31,8 @@ from jointfmu.quantity import build_parameter_set
 from jointfmu.version import __version__
 
 Result = TypeVar("Result")
+MAX_LISTED_INPUTS = 4
+"""Largest number of inputs in a refusal."""
 
 
 class AcceptedStep(NamedTuple):
@@ -154,7 +156,11 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             self.log_and_raise(str(error))
         outputs = {name: float(value) for name, value in results.items()}
         if not_finite := [name for name, value in outputs.items() if not math.isfinite(value)]:
-            inputs_text = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
+            largest = sorted(filter(inputs.get, inputs), key=lambda name: -abs(inputs[name]))
+            listed = {*largest[:MAX_LISTED_INPUTS]}
+            inputs_text = ", ".join(f"{name} = {inputs[name]:g}" for name in inputs if name in listed)
+            if more := len(largest) - len(listed):
+                inputs_text += f" and {more} more"
             self.log_and_raise(f"{inputs_text}: too large, {not_finite[0]} is not finite")
         for key, message in self.model.find_warnings(
             self.get_tabulated_joint(), {**inputs, **outputs}

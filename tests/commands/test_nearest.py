@@ -44,7 +44,7 @@ def test_a_name_that_no_catalogue_has(capsys):
     ("words", "said"),
     [
         ("law roughness --pressure 1e6 --set Ra1=0.8 Ra2=0.8e-6", "Ra1 = 0.8 m is outside (0, 0.0001]"),
-        ("new bolted-joint {} --grip 40 --Ra 800", "--Ra = '800' is outside (0, 100] um"),
+        ("new bolted-joint {} --grip 40 --Ra 800", "plausible are 0.005 to 100 um; if it is in nm"),
         ("new bolted-joint {} --grip 4000 --Ra 0.8", "--grip = 4000 mm is outside (0, 600] mm: 50 times M12"),
     ],
 )

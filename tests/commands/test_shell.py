@@ -35,6 +35,7 @@ def test_long_work_says_what_it_does_on_a_terminal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     monkeypatch.setattr(progress, "STATUS_DELAY", 0.2)
+    monkeypatch.setenv(progress.STATUS_DELAY_ENVIRONMENT_VARIABLE, "inf")
     for stream, shown in ((Terminal(), True), (io.StringIO(), False)):
         monkeypatch.setattr(sys, "stderr", stream)
         out = sys.stdout
@@ -46,6 +47,19 @@ def test_long_work_says_what_it_does_on_a_terminal(
         assert stream.getvalue().endswith("\r\x1b[K" * shown)  # and is gone again
         assert sys.stdout is out
         assert capsys.readouterr().out == "done\n"
+
+
+def test_long_work_prints_one_line_where_there_is_no_terminal(monkeypatch):
+    """A pipe, or a notebook: silence looks like a program that hangs."""
+    monkeypatch.setenv(progress.STATUS_DELAY_ENVIRONMENT_VARIABLE, "0.2")
+    monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
+    with progress.show_status("jointfmu report"):
+        progress.set_status_text("loops")
+        time.sleep(0.6)
+    assert stream.getvalue() == "jointfmu report: loops, 0 s\n"
+    with progress.show_status("jointfmu report"):
+        pass
+    assert stream.getvalue().count("\n") == 1
 
 
 @pytest.mark.parametrize("shell", COMPLETION_SHELLS)

@@ -2,12 +2,14 @@
 
 import json
 import math
+import re
 import shlex
 
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.common.joint_parts import load_tool_module
+from jointfmu_tools.inputs.drawing.quantities import QUANTITIES, parse_quantity, parse_value, parse_values
 from jointfmu_tools.inputs.drawing.reading import parse_number, parse_numbers
 from jointfmu_tools.inputs.drawing.tables import (
     MATERIAL_COLUMNS,
@@ -54,7 +56,9 @@ def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
         "user",
         "derived",
         "estimate",
-        "published",
+        "standard",
+        "paper",
+        "default",
         "catalogue",
         "calibration",
     }
@@ -166,3 +170,104 @@ def test_numbers_with_a_sign_between():
 def test_bad_numbers_are_refused(text):
     with pytest.raises(ValueError, match=r"^--grip = "):
         parse_number("grip", text, "mm", "m")
+
+
+# Quantities of options
+
+
+@pytest.mark.parametrize("name", NEW)
+def test_every_number_has_its_quantity(name):
+    """An option whose help states a unit is in the table, with this unit."""
+    for option in NEW[name].options:
+        if unit := re.search(r"\[(1|[A-Za-z][\w./]*)\b[^]]*\]", option.help_text):
+            if option.name == "temperature":
+                continue  # has a zero point
+            assert QUANTITIES[option.name].unit == unit[1], option.name
+
+
+def test_all_quantities_are_of_options():
+    assert {*QUANTITIES} <= {option.name for command in NEW.values() for option in command.options}
+
+
+@pytest.mark.parametrize(
+    ("option", "text", "value"),
+    [
+        ("Ra", "0.8um", 0.8e-6),
+        ("Ra", "0.8", 0.8e-6),
+        ("Ra", "0.8e-3mm", 0.8e-6),
+        ("Rz", "6.3 um", 6.3e-6),
+        ("hardness", "160HB", 160 * 9.80665e6),
+        ("hardness", "700 HV", 700 * 9.80665e6),
+        ("hardness", "1.6GPa", 1.6e9),
+        ("preload", "40kN", 40e3),
+        ("torque", "84Nm", 84.0),
+        ("plate", "0.2m", 0.2),
+        ("at", "0", 0.0),
+        ("at", "-80", -0.08),
+        ("longest_wave", "800um", 0.8e-3),
+    ],
+)
+def test_numbers_with_units(option, text, value):
+    assert parse_value(option, text) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("0.1..0.3", (0.2, 0.1, 0.3)),
+        ("0.1 .. 0.3", (0.2, 0.1, 0.3)),
+        ("0.2", (0.2, 0.2, 0.2)),
+    ],
+)
+def test_ranges(text, expected):
+    assert parse_quantity("mu", text) == pytest.approx(expected)
+
+
+def test_the_unit_of_a_range_is_of_both_ends():
+    assert parse_quantity("preload", "40..50kN") == pytest.approx((45e3, 40e3, 50e3))
+    assert parse_quantity("preload", "40e3N..50kN") == pytest.approx((45e3, 40e3, 50e3))
+
+
+@pytest.mark.parametrize(
+    ("option", "text", "message"),
+    [
+        ("Ra", "8e-7", "8e-07 um, plausible are 0.005 to 100 um; if it is in m, write 8e-7m (0.8 um)"),
+        ("Ra", "800", "read as 800 um, plausible are 0.005 to 100 um; if it is in nm, write 800nm (0.8 um)"),
+        ("Ra", "800um", "is outside (0.0001, 100] um: Ra of machined surfaces"),
+        ("Ra", "8e-7um", "is outside (0.0001, 100] um: Ra of machined surfaces"),
+        ("Ra", "0,8", "'0,8' has a comma; write 0.8 with a decimal point"),
+        ("preload", "30,000", "write 30.000 with a decimal point, or 30000 if the comma separates thousands"),
+        ("preload", "1,200,000", "write 1200000"),
+        ("preload", "40", "plausible are 100 to 3e+06 N; if it is in kN, write 40kN (4e+04 N)"),
+        ("hardness", "1.6e9", "if it is in Pa, write 1.6e9Pa (1600 MPa)"),
+        ("hardness", "160", "plausible are 300 to 15000 MPa; if it is in HB, write 160HB (1569 MPa)"),
+        ("hardness", "60HRC", "unit '60HRC'"),
+        ("plate", "0.2", "plausible are 4 to 20000 mm; if it is in m, write 0.2m (200 mm)"),
+        ("at", "0.16", "if it is in m, write 0.16m (160 mm)"),
+        ("hole", "13500", "plausible are 2 to 150 mm; if it is in um, write 13500um (13.5 mm)"),
+        ("bearing", "500", "is outside (0, 400] mm: diameter of a bearing surface"),
+        ("longest_wave", "800", "if it is in um, write 800um (0.8 mm)"),
+        ("module", "400", "plausible are 0.1 to 60 mm; if it is in um, write 400um (0.4 mm)"),
+        ("pressure_angle", "0.35", "if it is in rad, write 0.35rad (20.05 deg)"),
+        ("plate", "100..200", "is a range; expected one number"),
+        ("mu", "0.3..0.1", "is not a range; expected LOW..HIGH"),
+        ("mu", "0.1..3", "= '3' is outside (0, 2]: coefficient of friction of metals"),
+        ("embedding", "-1", "is outside [0, inf) N: preload loss of a bolt"),
+        ("thickness", "0.1", "if it is in m, write 0.1m (100 mm)"),
+    ],
+)  # fmt: skip
+def test_a_number_that_is_not_plausible_is_asked_about(option, text, message):
+    """One line: the value as read, what is plausible, and what to write."""
+    with pytest.raises(ValueError, match=f"^--{option.replace('_', '-')} = ") as refusal:
+        parse_quantity(option, text)
+    if message == "unit '60HRC'":
+        assert "or in HB, HBW, HV" in str(refusal.value)
+    else:
+        assert message in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_sizes_are_asked_about():
+    with pytest.raises(ValueError, match=r"--plate = '0.2' is read as 0.2 mm"):
+        parse_values("plate", "0.2x0.15", separator="x", count=2)
+    assert parse_values("plate", "0.2mx0.15m", separator="x", count=2) == pytest.approx([0.2, 0.15])

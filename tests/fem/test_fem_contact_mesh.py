@@ -182,7 +182,7 @@ REFUSED = [
     ('body = "box"', 'body = "tube"', r"side1\.body = 'tube', allowed are plate, box"),
     ('layout = "grid"', 'layout = "ring"', r"bolts\.layout = 'ring', allowed are grid, list"),
     ('assembly = "bolted"', 'assembly = "welded"', "assembly = 'welded', allowed is 'bolted'"),
-    ('assembly = "bolted"', 'joint = "gear_mesh"', "None, allowed is 'bolted'; it is of a gear_mesh"),
+    ('assembly = "bolted"', 'joint = "gear_mesh"', "is the parameter file of a gear_mesh, not an assembly"),
     (entry("height", "0.2"), entry("height", "-0.2"), r"\[side1\] height = -0\.2 m is outside \(0, inf\)"),
     (entry("height", "0.2"), entry("height", "0.01"), r"flange_thickness = 0\.02 m is outside \(0, 0\.01\)"),
     (entry("wall", "0.02"), entry("wall", "0.03"), r"flange_width = 0\.06 m is outside \[0\.07, 0\.12\)"),

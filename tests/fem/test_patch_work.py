@@ -110,23 +110,23 @@ def test_the_tightened_joint_stays_as_stiff(disc):
 
 def test_slopes_of_the_tightened_stiffness_are_those_of_differences(disc):
     means, working, step = disc[4], fit(disc), 1e-6
-    slope = working._stiffness_jacobian(means)
+    slope = working._stiffness_jacobian(means, working._stiffness_errors(means)[1])
     for index in ((0, 0), (5, 1), (PATCHES + 2, 1)):
         there = [means.copy(), means.copy()]
         there[0][index] -= step
         there[1][index] += step
-        low, high = (working._stiffness_residual(each) for each in there)
+        low, high = (working._stiffness_errors(each)[0] for each in there)
         column = slope[:, np.ravel_multi_index(index, means.shape)]
         np.testing.assert_allclose((high - low) / (2 * step), column, atol=1e-6 * np.abs(slope).max())
 
 
 def test_slopes_are_those_of_differences(disc):
     means, working = disc[4], fit(disc)
-    slope, still, step = working._work_jacobian(means), np.zeros_like(means), 1e-6
+    slope, step = working._work_jacobian(means, *working._work_errors(means)[1]), 1e-6
     for index in ((0, 0), (5, 1)):
         there = [means.copy(), means.copy()]
         there[0][index] -= step
         there[1][index] += step
-        low, high = (working._work_residual(each, still)[: len(slope)] for each in there)
+        low, high = (working._work_errors(each)[0] for each in there)
         column = slope[:, np.ravel_multi_index(index, means.shape)]
         np.testing.assert_allclose((high - low) / (2 * step), column, atol=2e-4 * np.abs(column).max())

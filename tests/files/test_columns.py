@@ -145,3 +145,9 @@ def test_other_names_of_columns_are_told_by_their_units(tmp_path):
     assert found.columns["angle"] == pytest.approx([0.5 * np.pi])
     with pytest.raises(ValueError, match="expected columns"):
         read_columns(saved(tmp_path, "F [Hz],Kraft\n90,2\n"), SPEC, 1, others)
+
+
+def test_quoted_cells_are_read_as_others(tmp_path):
+    path = saved(tmp_path, 'load [N],note,angle [rad]\n1,"a, b",2\n3,c,4\n')
+    found = read_columns(path, SPEC, 1)
+    assert [found.columns[name].tolist() for name in ("load", "angle")] == [[1.0, 3.0], [2.0, 4.0]]

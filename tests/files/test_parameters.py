@@ -47,7 +47,7 @@ def test_round_trip(joint, file):
     assert again.inputs == original.inputs
     assert (again.joint, again.name) == (joint, original.name)
     for name in flatten_parameters(original.values):
-        assert again.origins[name] == original.origins.get(name, "user")
+        assert again.origins[name] == original.origins.get(name, "default")
         assert again.sources[name] == original.sources.get(name, "default choice")
     assert format_parameter_file(again) == format_parameter_file(original)
 
@@ -62,7 +62,7 @@ def test_defaults_say_where_every_value_comes_from(joint):
     for name in file.origins:
         assert file.origins[name] in ORIGINS
         assert len(file.sources[name]) >= 5, name
-        if file.origins[name] == "published":
+        if file.origins[name] == "paper":
             assert any(word in file.sources[name] for word in ("Hu 2023", "Zhao 2018", "Yu 2022")), name
 
 
@@ -163,7 +163,7 @@ def test_any_source_survives(file, text):
 # Refusals
 
 NAMES = ["H", "mu", "traction_ratio", "A_0", "mass", "critical_area", "n_bolts", "row_distance"]
-D = 'D = { value = 1.42, unit = "1", kind = "published"'
+D = 'D = { value = 1.42, unit = "1", kind = "paper"'
 REFUSED = {
     # name: (what is replaced, by what, words of the message)
     "schema": ("schema = 1", "schema = 2", ["schema = 2", "allowed is 1"]),
@@ -190,8 +190,8 @@ REFUSED = {
         ["H", "unit 'MPa'", "expected 'Pa'"],
     ),
     "no-unit": (D, D.replace('unit = "1", ', ""), ["surface.D", "unit None", "expected '1'"]),
-    "kind": (D, D.replace("published", "guess"), ["surface.D", "kind = 'guess'", *ORIGINS]),
-    "no-kind": (D, D.replace(', kind = "published"', ""), ["surface.D", "kind = None", *ORIGINS]),
+    "kind": (D, D.replace("paper", "guess"), ["surface.D", "kind = 'guess'", *ORIGINS]),
+    "no-kind": (D, D.replace(', kind = "paper"', ""), ["surface.D", "kind = None", *ORIGINS]),
     "key": (D, D + ', error = "5 %"', ["surface.D", "'error'", "value", "unit", "kind", "source"]),
     "string": ("value = 1.42", 'value = "1.42"', ["surface.D = '1.42'", "not a number"]),
     "bool": ("value = 1.42", "value = true", ["surface.D = True", "not a number"]),
@@ -384,3 +384,29 @@ def test_a_byte_order_mark_is_passed_over(tmp_path):
     path.write_text(format_parameter_file(given), encoding="utf-8-sig")
     assert path.read_bytes().startswith(b"\xef\xbb\xbf")
     assert load_parameter_file(path).values_by_name == given.values_by_name
+
+
+def test_former_kinds_are_read_by_their_present_names(tmp_path):
+    text = format_parameter_file(load_default("bolted_joint"))
+    former = text.replace('kind = "paper"', 'kind = "published"').replace('kind = "default"', 'kind = "user"')
+    assert former != text
+    path = tmp_path / "former.toml"
+    path.write_text(former, encoding="utf-8")
+    assert format_parameter_file(load_parameter_file(path)) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"a = {'[' * 5000}{']' * 5000}", "deeper than any file of this package"),
+        (f"a{'.a' * 5000} = 1", "deeper than any file of this package"),
+        (f"schema = {'9' * 5000}", "an integer of more digits"),
+        (f"schema = {'9' * 4000}", "allowed is 1"),
+    ],
+)
+def test_a_hostile_file_is_named_in_one_line(file, text, said):
+    path = file(text)
+    with pytest.raises(ValueError, match=said) as error:
+        load_parameter_file(path)
+    assert str(error.value).startswith(f"{path}: ")
+    assert len(str(error.value)) < len(str(path)) + 120

@@ -520,8 +520,9 @@ def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
 @pytest.mark.parametrize(
     ("stuck", "deviation", "h", "says"),
     [
-        (("mu", "h"), 0.01, 1e-6, "mu, h ended on a bound of its interval; no other parameter was fitted"),
-        (("mu",), 0.01, 1e-6, None),
+        (("mu", "h"), 0.01, 1e-6, "mu, h ended on a bound of their intervals"),
+        (("mu",), 0.01, 1e-6, "mu ended on a bound of its interval"),
+        ((), 0.01, 1e-6, None),
         ((), 10.0, 1e-6, "the data determine none of mu, h, nor a combination of them"),
         (
             (),

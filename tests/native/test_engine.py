@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from clients import needs
 from jointfmu_tools.run import engine
-from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, TrialJoint, open_joint
+from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, VariableJoint, open_joint
 
 import jointfmu
 from jointfmu.joints import KINDS
@@ -104,7 +104,8 @@ def test_a_plot_leaves_the_library_of_the_joint_as_it_is(elastic_joint):
 
 def test_trial_parameters_give_the_joint_that_has_them():
     file = load_default("bolted_joint")
-    trial, path = TrialJoint(KINDS["bolted_joint"].models[0]), {"preload": 9e3, "s_rel_x": [0.0, 5e-6, 0.0]}
+    trial = VariableJoint(KINDS["bolted_joint"].models[0])
+    path = {"preload": 9e3, "s_rel_x": [0.0, 5e-6, 0.0]}
     not_exposed = {"pattern.decay_length": 1.1 * file.values_by_name["pattern.decay_length"]}
     for values in ({"mu": 0.1}, {"mu": 0.3, "H": 2e9}, not_exposed, {"mu": 0.1}):
         parameters = file.with_values(values, "user", "test").values

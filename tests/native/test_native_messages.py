@@ -173,6 +173,15 @@ def test_inputs_too_large_for_an_output_are_named(host: Host, version: str) -> N
     assert instance.get() == before
 
 
+def test_a_refusal_lists_the_largest_inputs_alone(host: Host, version: str) -> None:
+    """With all its inputs, the reason at the end of the line was cut off."""
+    instance = host("HarmonicDriveSpring", version).start(GOOD["HarmonicDriveSpring"])
+    instance.set_values({"phi1": 4.0, "w1": 5.0, "phi2": 1e308, "w2": 3.0})
+    said = instance.refused(instance.step)
+    listed = "phi1 = 4 rad, w1 = 5 rad/s, phi2 = 1e+308 rad, temperature = 293.15 K and 1 more"
+    assert said == f"{listed}: too large, tau1 is not finite"
+
+
 def test_a_force_that_fades_away_is_never_refused(host: Host, version: str) -> None:
     instance, expected = host("GearContact", version).start(), package("GearContact")
     for f in (5e-324, *10.0 ** np.arange(-320.0, 3.0, 4.0)):

@@ -14,6 +14,7 @@ from jointfmu.parameters import load_default
 from .joint_measurements import save
 
 DRIVE = {"K_FTS0": 18000.0, "drive_scale": 4.4, "zero_torque_pressure": 52e6}
+START = load_default("bolted_joint")
 JOINT = {"surface.D": 1.38, "surface.G": 2.5e-8, "mass": 250.0}
 ARCMIN = np.pi / 10800.0
 
@@ -47,7 +48,7 @@ def loops_without_noise(values, amplitude):
 def preload_series(rng, quantity, noise, series=np.inf, points=20):
     """Preload [N] and stiffness [N/m] or frequency [Hz] with a relative noise."""
     P = np.geomspace(2e3, 30e3, points)
-    joint = load_default("bolted_joint").with_values(JOINT, "user", "synthetic").values
+    joint = START.with_values(JOINT, "user", "synthetic").values
     K = 1.0 / (1.0 / preload.joint_stiffness(joint, P) + 1.0 / series)
     value = K if quantity == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
     return P, value * np.exp(noise * rng.standard_normal(points))
@@ -63,20 +64,20 @@ def torque_angle_fit(rng, path):
 def stiffness_fit(rng, path):
     """Fit the stiffness over the preload, 2 % of noise."""
     save(path, "preload [N], stiffness [N/m]", *preload_series(rng, "stiffness", 0.02))
-    return preload.fit(path), JOINT
+    return preload.fit(path, START), JOINT
 
 
 def frequency_fit(rng, path):
     """Fit the frequency over the preload with a stated modal mass, 0.5 % of noise."""
     save(path, "preload [N], frequency [Hz]", *preload_series(rng, "frequency", 0.005))
-    return preload.fit(path, modal_mass=JOINT["mass"]), JOINT
+    return preload.fit(path, START, modal_mass=JOINT["mass"]), JOINT
 
 
 def series_fit(rng, path):
     """Fit the frequency over the preload and a series stiffness of the structure, 0.2 % of noise."""
     save(path, "preload [N], frequency [Hz]", *preload_series(rng, "frequency", 0.002, series=3e10))
     free = ["surface.D", "surface.G", preload.SERIES_STIFFNESS]
-    return preload.fit(path, fitted_names=free, modal_mass=JOINT["mass"]), JOINT | {
+    return preload.fit(path, START, fitted_names=free, modal_mass=JOINT["mass"]), JOINT | {
         preload.SERIES_STIFFNESS: 3e10
     }
 

@@ -14,6 +14,7 @@ from jointfmu_tools.studies.published.reference import (
     CALIBRATION_TOLERANCE,
     GUESS_ROLES,
     ROLES,
+    UNTESTED_ROLES,
     Guess,
     Point,
     compute_trivial_guesses,
@@ -116,7 +117,8 @@ def test_values_are_those_of_the_papers():
     derived = {(p.paper, p.id): p for p in ALL if not p.printed}
     for key, value in DERIVED.items():
         assert derived[key].value == pytest.approx(value, abs=0.005)  # half a unit of the last digit
-    assert {p.role for key, p in derived.items() if key not in DERIVED} == {"self-check"}
+    others = {p.role for key, p in derived.items() if key not in DERIVED}
+    assert others == {"self-check", "circular", "contradiction"}
 
 
 def test_table_3_is_divided_by_the_experiment(rows):
@@ -177,7 +179,10 @@ def test_what_a_miss_means(role):
     """It counts, unless the point was met by calibration or by construction."""
     row = compare_point(point(role=role), -300.0)
     assert not row.has_passed
-    assert missed_points([row]) == ([] if role in ("calibration", "circular") else [row])
+    assert missed_points([row]) == ([] if role in UNTESTED_ROLES else [row])
+    assert row.verdict == ("no test, moved" if role in UNTESTED_ROLES else "miss")
+    met = compare_point(point(role=role), -200.0)
+    assert met.verdict == ("no test" if role in UNTESTED_ROLES else "pass")
     assert count_points([row]).missed == [r.point.id for r in missed_points([row])]
 
 
@@ -194,7 +199,7 @@ def test_who_is_nearer():
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"role": "validation"}, "role = 'validation', allowed are calibration, circular, constant"),
+        ({"role": "validation"}, "role = 'validation', allowed are calibration, circular, contradiction"),
         ({"role": "claim"}, "value = -200.0, a claim is true or false"),
         ({"value": True}, "value = True, a claim is true or false"),
         ({"role": "constant", "guess": Guess(rule="constant", points=["a"])}, "interpolation, prediction"),

@@ -326,7 +326,7 @@ def test_a_joint_that_the_page_does_not_have_is_refused(shown: Browser, what: st
 
 FAULTS = {
     "an unknown name": (f"{BOX}\n[more]\n" + entry("thing", 1.5), "more.thing = 1.5, which"),
-    "an unknown key": (with_text(BOX, 'kind = "published"', 'spread = 0.1, kind = "published"'), "spread"),
+    "an unknown key": (with_text(BOX, 'kind = "paper"', 'spread = 0.1, kind = "paper"'), "spread"),
     "another unit": (with_entry(BOX, "H", "1960.0", "MPa"), 'H: unit "MPa", expected "Pa"'),
     "a missing number": (re.sub(r"(?m)^H = .*\n", "", BOX), "H is missing"),
     "text for a number": (with_entry(BOX, "H", '"hard"', "Pa"), 'H = "hard"'),
@@ -341,7 +341,7 @@ FAULTS = {
     "a start value outside": (with_text(BOX, "preload = { value = 0", "preload = { value = -1"), "-1 N"),
     "an unknown input": (with_text(BOX, "moment = {", "moments = {"), "inputs.moments = 0"),
     "a fixed number outside": (with_entry(DRIVE, "max_torque", "-3.0", "N.m"), "max_torque = -3"),
-    "a kind that is none": (with_text(BOX, 'kind = "published"', 'kind = "guess"'), 'kind = "guess"'),
+    "a kind that is none": (with_text(BOX, 'kind = "paper"', 'kind = "guess"'), 'kind = "guess"'),
     "a value twice": (with_text(BOX, "\n[surface]", "\nH = { value = 1e9 }\n[surface]"), "expected H once"),
     "another schema": (with_text(BOX, "schema = 1", "schema = 2"), "schema = 2"),
     "another law": (with_text(BOX, 'law = "zhao2018"', 'law = "hertz"'), 'law = "hertz"'),

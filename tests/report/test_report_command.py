@@ -20,6 +20,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file, load_defau
 from jointfmu.quantity import units
 
 ROOT = Path(__file__).resolve().parents[2]
+PLATES = ["--plate", "100x100", "--bolts", "4xM12", "--at", "60x60", "--grip", "20", "--sides", "rigid"]
 LAWS = [(kind.name, law) for kind in KINDS.values() for law in kind.laws]
 
 
@@ -40,7 +41,7 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
     page = unescape(written(tmp_path, file))
     for name in file.values_by_name:
         (row,) = re.findall(rf"<tr><td><code>{re.escape(name)}</code></td>(.*?)</tr>", page)
-        assert f"<td>{file.origins.get(name, 'user')}</td>" in row, name
+        assert f"<td>{file.origins.get(name, 'default')}</td>" in row, name
         assert f">{file.sources.get(name, 'default choice')}</td>" in row, name
     for line in judge_joint_stiffness(file).format_lines():
         assert line in page
@@ -49,6 +50,20 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
     assert re.search(r"The stiffness \w+ (rises|falls|is) .*\d", opening)
     # one file: nothing is fetched
     assert not re.search(r"<link|<script[^>]*\bsrc=|<img[^>]*\bsrc=(?!\"data:)|@import|url\(", page)
+
+
+def test_titles_are_words_and_nothing_unknown_or_zero_is_drawn(tmp_path: Path) -> None:
+    """A catalogue drive has no K_TS, without hysteresis no loops; stiffnesses have the prefix kilo."""
+    page = written(tmp_path, load_default("harmonic_drive", "catalogue"))
+    titles = [panel["title"] for panels in figures(page) for panel in panels]
+    assert titles[:2] == ["Output torque over wind-up at the output", "Tangent stiffness over output torque"]
+    names = {series["name"] for panels in figures(page) for panel in panels for series in panel["series"]}
+    assert "K_TS" not in names
+    assert "<h2>Loops</h2>" not in page
+    plate = unescape(written(tmp_path, load_default("bolted_joint")))
+    assert "kN/µm" in plate
+    assert "e+04" not in plate
+    assert "e+05" not in plate
 
 
 @pytest.mark.slow
@@ -69,6 +84,36 @@ def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
                 value = float(model.evaluate(spring, inputs)[series["name"]])
                 # the page has seven digits
                 assert series["y"][i] == pytest.approx(factor * value, rel=1e-6), (over, i)
+
+
+def test_kinds_of_sources_are_what_they_are(tmp_path, monkeypatch):
+    """A file from a catalogue name has nothing of the user; moduli of a standard are not from a paper."""
+    monkeypatch.chdir(tmp_path)
+    drive = ["new", "harmonic-drive", "--catalogue", "CSG-25-100", "--out", "drive.toml"]
+    plates = [
+        "--plate",
+        "100x100",
+        "--bolts",
+        "4xM12",
+        "--at",
+        "60x60",
+        "--grip",
+        "20",
+        "--material",
+        "steel",
+    ]
+    bolts = ["new", "bolted-joint", *plates, "--finish", "milled", "--sides", "rigid", "--out", "joint.toml"]
+    for command in (drive, bolts, ["report", "drive.toml"], ["report", "joint.toml"]):
+        assert cli.main(command) == 0
+    drive_page, joint_page = (
+        Path(f"{name}.html").read_text(encoding="utf-8").partition("Where each number comes from")[2]
+        for name in ("drive", "joint")
+    )
+    assert "<em>user</em>" not in drive_page
+    assert "<em>default</em>, not stated, the default of the package: 14" in drive_page
+    assert "<em>catalogue</em>" in drive_page
+    assert "<em>standard</em>, a value of a standard: " in joint_page
+    assert "<em>paper</em>" not in joint_page
 
 
 def test_what_the_user_changed_is_there_with_his_words(
@@ -178,3 +223,13 @@ def test_topics_are_headings_of_the_pages_on_validity() -> None:
         text = (ROOT / page).read_text(encoding="utf-8")
         for heading in headings:
             assert f"\n## {heading}\n" in text
+
+
+def test_the_lesser_of_the_limits_of_law_and_bolts_is_said(tmp_path, monkeypatch):
+    """The law ends far above what an M12 bears."""
+    monkeypatch.chdir(tmp_path)
+    faces = ["--material", "steel", "--finish", "milled"]
+    assert cli.main(["new", "bolted-joint", *PLATES, *faces, "--out", "joint.toml"]) == 0
+    assert cli.main(["report", "joint.toml"]) == 0
+    (said,) = re.findall(r"Range of the law\.</b> (.*?)</li>", Path("joint.html").read_text(encoding="utf-8"))
+    assert said.startswith("Use it up to preload = 81.7 kN, the proof load of M12, class 12.9")

@@ -181,7 +181,8 @@ def test_counts_are_those_of_the_comparison(rows):
         f"{found.numbers} numbers are compared, {found.printed} printed in the papers and {found.derived} "
         f"computed from printed ones, and {n['claim']} claims",
         f"{n['calibration']} were used to calibrate, {n['circular']} are met by construction, "
-        f"{n['constant']} are constants and {n['self-check']} self-checks",
+        f"{n['constant']} are constants, {n['self-check']} self-checks "
+        f"and {n['contradiction']} a contradiction",
         f"{n['interpolation']} lie between calibrated points",
         f"nearer than the law in {lost} of the {n['interpolation']}",
         f"{predicted(n['prediction'])}: ",

@@ -1,10 +1,13 @@
 """What is published says one version, and leads to the address that is given."""
 
+import base64
+import hashlib
 import json
 import os
 import re
 import subprocess
 import sys
+import zipfile
 from importlib.metadata import version
 from pathlib import Path
 
@@ -26,18 +29,45 @@ def test_the_version_is_one() -> None:
         assert found[1] == __version__, file
 
 
-def test_the_description_leads_to_the_address_that_is_given() -> None:
-    show = [sys.executable, "setup.py", "--quiet", "--url", "--long-description"]
-    given = os.environ | {"JOINTFMU_URL": "https://example.org/joints/"}
-    said = subprocess.run(show, cwd=ROOT, env=given, capture_output=True, text=True, timeout=100, check=True)
-    links = re.findall(r"\]\((?!#)([^)\s]+)\)", said.stdout)
+def test_the_description_leads_to_the_address_that_is_given(tmp_path: Path) -> None:
+    program = "import build_backend as b, sys; print(b.prepare_metadata_for_build_wheel(sys.argv[1]))"
+    given = os.environ | {"JOINTFMU_URL": "https://example.org/joints/", "PYTHONPATH": str(ROOT / "fmu_src")}
+    subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path)], cwd=ROOT, env=given, timeout=100, check=True
+    )
+    said = next(tmp_path.glob("*.dist-info/METADATA")).read_text(encoding="utf-8")
+    assert "Project-URL: Repository, https://example.org/joints\n" in said
+    links = re.findall(r"\]\((?!#)([^)\s]+)\)", said)
     assert len(links) > 10
     assert all(link.startswith("https://") for link in links), links
-    pictures = re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", said.stdout)
+    pictures = re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", said)
     for link in (*links, *pictures):
         path = re.sub(r"https://example\.org/joints/(blob|raw)/HEAD/", "", link)
         assert ("/raw/" in link) == (link in pictures), link
         assert path.startswith("https:") or (ROOT / path.partition("#")[0]).exists(), link
+
+
+def test_an_editable_install_finds_the_kernel_before_a_clone_of_its_name(tmp_path: Path) -> None:
+    """The kernel's folder is on the search path, where a package comes before a folder without `__init__`."""
+    program = "import build_backend as b, sys; b.build_editable(sys.argv[1])"
+    given = os.environ | {"PYTHONPATH": str(ROOT / "fmu_src")}
+    subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path)], cwd=ROOT, env=given, capture_output=True, timeout=100
+    ).check_returncode()
+    with zipfile.ZipFile(next(tmp_path.glob("*.whl"))) as wheel:
+        (path,) = (name for name in wheel.namelist() if name.endswith(".pth"))
+        text = wheel.read(path)
+        (record,) = (name for name in wheel.namelist() if name.endswith("/RECORD"))
+        rows = wheel.read(record).decode()
+    assert text.decode().splitlines()[-1] == str(ROOT / "core")
+    digest = base64.urlsafe_b64encode(hashlib.sha256(text).digest()).rstrip(b"=").decode()
+    assert f"{path},sha256={digest},{len(text)}\n" in rows
+    (tmp_path / "jointfmu").mkdir()
+    find = (
+        f"import sys; sys.path[:0] = ['', {str(ROOT / 'core')!r}]; import jointfmu; print(jointfmu.__file__)"
+    )
+    found = subprocess.run([sys.executable, "-S", "-c", find], cwd=tmp_path, capture_output=True, text=True)
+    assert found.stdout.strip() == str(ROOT / "core" / "jointfmu" / "__init__.py")
 
 
 def test_workflows_pin_every_action_by_commit() -> None:

@@ -62,7 +62,7 @@ def built_wheel(out: Path) -> Path:
     tree, ignored = out / "tree", ignore_patterns("__pycache__", "*.egg-info", "parts")
     for folder in ("core", "fmu_src", "models", "tools"):
         copytree(ROOT / folder, tree / folder, ignore=ignored)
-    for file in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
+    for file in ("pyproject.toml", "README.md", "LICENSE"):
         (tree / file).write_bytes((ROOT / file).read_bytes())
     every = compile_ahead.list_code_structures
     with pytest.MonkeyPatch.context() as patch:

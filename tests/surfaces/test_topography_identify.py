@@ -270,12 +270,12 @@ def test_joint_gets_its_own_dimension(joint, tmp_path):
     path.write_text(format_parameter_file(file))
     again = load_parameter_file(path, joint)
     for name in values:
-        assert again.origins[name] == "user"
+        assert again.origins[name] == "measured"
         assert again.sources[name].startswith("identified from synthetic surface by ")
     assert again.roughness["Rq1"] == found.h
     untouched = {name for name in again.origins if not name.startswith("roughness.")} - set(values)
     kinds = load_default(joint).origins
-    assert all(again.origins[name] == kinds.get(name, "user") for name in untouched)
+    assert all(again.origins[name] == kinds.get(name, "default") for name in untouched)
 
 
 def test_gear_of_a_texture_takes_both_directions():

@@ -399,3 +399,27 @@ def test_a_file_that_is_no_robot_is_refused(tmp_path, capsys):
     (tmp_path / "no.xml").write_text("<nothing/>")
     line = refused_line(capsys, "robot", tmp_path / "no.xml", "--drive", "a=CSG-14-100", "--out", tmp_path)
     assert "no.xml: cannot be read as a robot" in line
+
+
+def test_a_drive_that_no_weight_loads_is_said_and_drawn_so(tmp_path, capsys, few_poses, monkeypatch):
+    """A constant frequency is drawn as one value, not as its rounding; the payload as what it does."""
+    drawn = []
+    monkeypatch.setattr(pictures.plots, "save_figure", lambda figure, path: drawn.append(figure))
+    words = ["--drive", "joint4=CSG-25-100", "--payload", "300"]
+    facts = made(capsys, ROBOT, tmp_path / "one", *words)
+    (panel,) = drawn[0].axes
+    assert panel.get_title() == f"frequency 1: {facts['frequencies']['lowest']:.4g} Hz in all poses"
+    assert panel.get_ylim()[0] == 0.0
+    assert np.ptp(panel.lines[0].get_ydata()) == 0.0
+    assert all("do not load the drives in this pose" in axes.texts[0].get_text() for axes in drawn[1].axes)
+    assert any(line.startswith("joint4: weight and payload do not load the drive") for line in facts["notes"])
+    made(capsys, ROBOT, tmp_path / "two", *words, "--drive", "joint6=CSG-14-100")  # a map of two axes
+    assert all("in all poses" in axes.get_title() for axes in drawn[2].axes if axes.get_title())
+
+
+def test_an_overload_in_another_pose_is_said(tmp_path, capsys, few_poses):
+    words = ["--drive", "joint3=CSG-25-100", "--payload", "300", "--pose", "joint3=0"]
+    notes = made(capsys, ROBOT, tmp_path, *words)["notes"]
+    assert any(
+        re.match(r"joint3: in another pose of the grid \d+ N.m is beyond the max_torque", n) for n in notes
+    )

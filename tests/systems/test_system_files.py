@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import re
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica.library import render_system
 from jointfmu_tools.exchange.modelica.records import template_environment
@@ -28,6 +30,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.mechanics.stable_steps import largest_stable_steps
 from jointfmu.parameters import format_parameter_file, load_default
 from jointfmu.quantity import replace_values as replaced
+from jointfmu.quantity.refusal import InputRefusal
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parents[2]
@@ -430,3 +433,30 @@ def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
     assert "has no HarmonicDriveSpring.fmu; `jointfmu system robot_joint` writes it" in said
     said = refused_line(capsys, "ring", "six_axis_robot", "--joint", "elbow_drive")
     assert "has no six_axis_robot_elbow_drive.fmu" in said
+
+
+def fmu_with_parameters(path: Path, file) -> Path:
+    """An archive with the parameters of an FMU where an FMU has them; nothing else of it is read."""
+    path.parent.mkdir(parents=True)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("modelDescription.xml", "<fmiModelDescription/>")
+        archive.writestr(f"{REFERENCE_FOLDER}/parameters/mine.toml", format_parameter_file(file))
+    return path
+
+
+@pytest.mark.parametrize("is_own", [True, False], ids=["other", "same"])
+def test_the_systems_replace_no_joint_of_the_user(tmp_path, monkeypatch, is_own):
+    """`build --systems` put the shipped joint in place of the one built with --params."""
+    monkeypatch.setattr(ssp, "check_outputs", lambda paths, kind, force: None)  # tested by itself
+    monkeypatch.setattr(ssp, "map_jobs", lambda *_: pytest.fail("built") if is_own else [])
+    monkeypatch.setattr(ssp, "write_archives", lambda system, out: [])
+    file = load_default("bolted_joint")
+    file = file.with_values({"mu": 0.11}, "user", "mine") if is_own else file
+    path = fmu_with_parameters(tmp_path / "fmi2" / "BoltedJoint.fmu", file)
+    column = [load_system("bolted_column")]
+    if is_own:
+        with pytest.raises(InputRefusal, match="was built from other parameters") as error:
+            ssp.build_systems(tmp_path, column)
+        assert str(error.value).startswith(f"{path}: ")
+        monkeypatch.setattr(ssp, "map_jobs", lambda *_: [])
+    ssp.build_systems(tmp_path, column, force=is_own)

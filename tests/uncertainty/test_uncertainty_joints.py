@@ -10,7 +10,7 @@ import pytest
 from conftest import refused_line
 from joint_cases import JOINTS
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.report import loss_factor
+from jointfmu_tools.joints.bolted_joint.gross_slip import loss_factor
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 from scipy.integrate import quad
@@ -207,7 +207,7 @@ def test_what_is_zero_is_left_out_and_what_moves_nothing_is_said(tmp_path, capsy
     assert cli.main([*given, *few, "--plot", str(plot)]) == 0
     text = capsys.readouterr().out
     assert text.count("C_zz") == text.count("zero at all loads: C_zz\n") == 1
-    assert plot.read_text().count('<g id="axes_') == 6
+    assert plot.read_text().count('<g id="axes_') == 7
     assert (
         cli.main(["uncertainty", "gear_contact", "--set", "mu=0.1..0.3", "traction_ratio=0..0.5", *few]) == 0
     )

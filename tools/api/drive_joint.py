@@ -1,8 +1,11 @@
 """Harmonic drive of the public interface, with torque over wind-up."""
 
+import warnings
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from jointfmu.joints.model import EXTRAPOLATION_WARNING
 from jointfmu.mechanics.curve import Curve
 from jointfmu.quantity import Array
 
@@ -13,8 +16,8 @@ class DriveJoint(Joint):
     """Harmonic drive.
 
     `wind_up`, `torque` and `stiffness` describe the midline, without hysteresis and with the wave generator
-    locked. Above max_torque the midline continues with its last tangent; then `messages` of `evaluate` and
-    `follow` have a warning.
+    locked. Above max_torque the midline continues with its last tangent: they warn, and `messages` of
+    `evaluate` and `follow` have the warning.
 
     >>> import jointfmu
     >>> drive = jointfmu.drive("CSG-25-100")
@@ -24,16 +27,25 @@ class DriveJoint(Joint):
 
     def wind_up(self, torque: ArrayLike) -> Array:
         """Wind-up (n) [rad] of the output under torques (n) [N.m]; odd in the torque."""
+        self._warn_beyond_table("torque", torque, self._midline.load[-1], "N.m")
         return self._midline.odd_inverse(torque)[()]
 
     def torque(self, wind_up: ArrayLike) -> Array:
         """Torque (n) [N.m] at wind-ups (n) [rad]; odd in the wind-up."""
         phi = np.asarray(wind_up, dtype=np.float64)
+        self._warn_beyond_table("wind-up", phi, self._midline.displacement[-1], "rad")
         return np.asarray(np.copysign(self._midline.derivatives(np.abs(phi), 1)[0], phi))[()]
 
     def stiffness(self, torque: ArrayLike) -> Array:
         """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
         return np.asarray(self._midline.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
+
+    def _warn_beyond_table(self, name: str, values: ArrayLike, end: float, unit: str) -> None:
+        """Warn as the FMU does if a value is beyond the end of the midline."""
+        largest = float(np.max(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0))
+        if largest > end:
+            text = f"{name} = {largest:.6g} {unit} is outside [-{end:.6g}, {end:.6g}] {unit}"
+            warnings.warn(f"{self.name}: {text}: {EXTRAPOLATION_WARNING}", stacklevel=3)
 
     @property
     def _midline(self) -> Curve:

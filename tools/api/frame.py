@@ -118,7 +118,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
         return len(self._columns)
 
     def _build_table(self) -> Table:
-        count = next(iter(self._columns.values())).size
+        count = max((column.size for column in self._columns.values()), default=0)
         shown = (
             [*range(count)]
             if count <= 2 * MAX_END_ROWS

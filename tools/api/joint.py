@@ -13,6 +13,7 @@ from jointfmu.files.outputs import HTML_FILE, PARAMETER_FILE, check_output, writ
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, TabulatedJoint
 from jointfmu.parameters import ParameterFile, format_parameter_file
+from jointfmu.progress import set_status_text, show_status
 
 from ..common import plots
 from ..common.judgement import find_rms_height
@@ -210,9 +211,11 @@ class Joint(TableDisplay):
             from ..pages.report.figure import draw_panels
             from ..pages.report.joint import loop_figure, ramp_figure
             from ..pages.report.load_history import LoadHistory
-        course = LoadHistory(self.model(fmu), self.file)
-        panels = list(ramp_figure(course).panels)
-        loops = course.compute_loops() if course.model.load_cycle else None
+        with show_status(f"{self.name}: plot"):
+            set_status_text("curves over the load and loops")
+            course = LoadHistory(self.model(fmu), self.file)
+            panels = list(ramp_figure(course).panels)
+            loops = course.compute_loops() if course.model.load_cycle else None
         if loops and any(loop.energy_loss for loop in loops.loops):
             panels += loop_figure(course, loops).panels
         figure = plots.create_figure((4.4 * len(panels), 3.8))
@@ -257,7 +260,9 @@ class Joint(TableDisplay):
         with require_package("build"):
             from jointfmu_fmu_src import building
 
-            return building.build_fmus(names, flavours, self.file, Path(out), alias=name, force=force)
+            with show_status(f"{self.name}: build"):
+                set_status_text(f"{', '.join(names)} into {out}")
+                return building.build_fmus(names, flavours, self.file, Path(out), alias=name, force=force)
 
     def report(self, path: str | Path, fmu: str | None = None, *, force: bool = False) -> Path:
         """Write a page about the joint (HTML): curves, loops, sources of its numbers.
@@ -270,5 +275,6 @@ class Joint(TableDisplay):
         check_output(path, HTML_FILE, force)
         with require_package("write a report"):
             from ..pages.report.joint import write_joint_report
-        write_joint_report(Path(path), self.file, fmu)
+        with show_status(f"{self.name}: report"):
+            write_joint_report(Path(path), self.file, fmu)
         return Path(path)

@@ -89,7 +89,11 @@ class Law(TableDisplay):
         names = [
             name for name in (*LAW_COLUMNS, *(n for n in state if n not in LAW_COLUMNS)) if name in state
         ]
-        defined = {name: state[name] for name in names if not np.all(np.isnan(state[name]))}
+        defined = {
+            name: state[name]
+            for name in names
+            if not np.size(state[name]) or not np.all(np.isnan(state[name]))
+        }
         return Frame(defined, LAW_COLUMN_UNITS, messages)
 
     @plots.apply_style()

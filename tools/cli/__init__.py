@@ -50,6 +50,11 @@ def _run_command(args: Any, command_name: str) -> int:
     from .command import option_of_setting
 
     try:
+        os.getcwd()
+    except FileNotFoundError:
+        print(f"{command_name}: the current folder was deleted; change to another one", file=sys.stderr)
+        return 2
+    try:
         with show_status(command_name):
             outputs.check_command_outputs(args.outputs, args)
             status = int(args.run(args).print_result(args.json))

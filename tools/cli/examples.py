@@ -30,8 +30,8 @@ EXAMPLES = {
     "fit catalogue": "fit catalogue --K1 4700 --K2 6100 --K3 7100 --T1 2 --T2 6.9 --out drive.toml",
     "fit torque-angle": "fit torque-angle loop.csv --out drive.toml",
     "fit loop": "fit loop shear.csv --preload 9e3 --free mu surface.G --out joint.toml",
-    "fit log": "fit log robot.csv --ratio 101 --torque-constant 0.1 --out drive.toml",
-    "fit preload": "fit preload stiffness.csv --out joint.toml",
+    "fit log": "fit log robot.csv --drive CSG-25-100 --torque-constant 0.1 --out drive.toml",
+    "fit preload": "fit preload stiffness.csv --params my_joint.toml --out joint.toml",
     "uncertainty": "uncertainty gear_contact --set e=0.1..0.3 --samples 1024",
     "sweep": "sweep dist/fmi2/GearContact.fmu --set e=0.1..0.3 --input f --to 1000 --step 100 "
     "--samples 8 --out sweep",

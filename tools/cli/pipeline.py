@@ -27,7 +27,7 @@ from ..studies.checks import (
     compute_published_points,
     run_default_ramp,
 )
-from ..studies.published import validation
+from ..studies.published import law_reference, validation
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay
 from ..systems.ringing import FreeVibration, simulate_example_vibrations
@@ -46,6 +46,7 @@ class JobResult:
     ramps       : {FMU: its load ramp}
     proofs      : results of the experiments of each FMU
     checks      : numerical checks of the ramps, resonances and decays
+    law_comparisons : laws compared with quadrature of their equations
     validated_points : published points, computed by the package
     fmu_validated_points : published points, computed by running FMUs
     free_vibrations, decays : {system: simulated free vibrations}
@@ -60,6 +61,7 @@ class JobResult:
     ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
     proofs: list[Proof] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
+    law_comparisons: list[law_reference.LawComparison] = field(default_factory=list)
     validated_points: list[validation.ValidatedPoint] = field(default_factory=list)
     fmu_validated_points: list[validation.ValidatedPoint] = field(default_factory=list)
     free_vibrations: dict[str, list[FreeVibration]] = field(default_factory=dict)
@@ -79,6 +81,10 @@ class JobResult:
             f"{c.fmu}: {c.compared_quantity}: {c.deviation:.2g}, allowed {c.tolerance:.0e}"
             for c in self.checks
             if not c.is_passed
+        ]
+        lines += [
+            f"{quantity}: differs from the quadrature of the law's equations"
+            for quantity in law_reference.missed_quantities(self.law_comparisons)
         ]
         met = {(r.point.paper, r.point.id) for r in self.validated_points if r.has_passed}
         worse = [
@@ -152,6 +158,7 @@ def _compare_ramps(job_result: JobResult, out_folder: Path) -> None:
         job_result.checks += [compare_flavour(name, folder, result) for folder in other_folders]
     for step in track_progress(("package", "FMUs"), "compare", 2):
         if step == "package":
+            job_result.law_comparisons = law_reference.compare_laws()
             job_result.validated_points = validation.validate()
         else:
             job_result.fmu_validated_points = compute_published_points(job_result.fmi2_folder)
@@ -183,7 +190,8 @@ def main(out_folder: Path) -> int:
         f"at worst {worst:.1e} of what is allowed"
     )
     print(
-        f"compared: {validation.format_summary(outcome.validated_points)}; "
+        f"compared: {law_reference.format_law_summary(outcome.law_comparisons)}; "
+        f"{validation.format_summary(outcome.validated_points)}; "
         f"{len(outcome.fmu_validated_points)} of them again through the FMUs; {len(outcome.checks)} "
         "checks of the ramps"
     )

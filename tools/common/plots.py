@@ -46,7 +46,7 @@ def check_picture(path: str | Path) -> None:
 
 def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
     """Choose a display unit by the largest of the values; returns the unit and the factor to it."""
-    name = display_unit(unit, float(np.max(np.abs(values))))
+    name = display_unit(unit, float(np.max(np.abs(values), initial=0.0)))
     return name, UNITS[unit].display_factors[name]
 
 

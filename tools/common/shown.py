@@ -13,12 +13,19 @@ from jointfmu.quantity import describe_range, flat_fields
 from jointfmu.quantity.units import conversion_factor, display_unit
 
 STIFFNESS_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
-"""{SI unit: display unit on all pages} of stiffnesses. Other display units depend on the value."""
+"""{SI unit: display unit on all pages} of stiffnesses, with the prefix kilo for large ones.
+
+Other display units depend on the value."""
+_MIN_KILO_VALUE = 1e4
+"""Value in a display unit of stiffness with the prefix kilo from here on: 13.3 kN/um, not 1.33e+04 N/um."""
 
 
 def choose_display_unit(unit: str, typical_value: float) -> str:
     """Choose the display unit of a variable by its typical value."""
-    return STIFFNESS_UNITS.get(unit) or display_unit(unit, typical_value)
+    if unit not in STIFFNESS_UNITS:
+        return display_unit(unit, typical_value)
+    shown = STIFFNESS_UNITS[unit]
+    return f"k{shown}" if abs(typical_value) * conversion_factor(unit, shown) >= _MIN_KILO_VALUE else shown
 
 
 def format_unit(unit: str) -> str:
@@ -80,7 +87,7 @@ class FileEntry(NamedTuple):
 
 def _format_source(parameter_file: ParameterFile, parameter_name: str) -> str:
     """Format the source of a number, with the range that the file states for it."""
-    text = parameter_file.sources.get(parameter_name, "default choice")
+    text = parameter_file.describe_source(parameter_name)[1]
     low, high = parameter_file.ranges.get(parameter_name, (0.0, 0.0))
     return f"{low:g} to {high:g}; {text}" if high > low else text
 
@@ -104,7 +111,7 @@ def list_entries(parameter_file: ParameterFile) -> list[FileEntry]:
             value,
             fields[name].get("unit"),
             fields[name]["doc"],
-            parameter_file.origins.get(name, "user"),
+            parameter_file.describe_source(name)[0],
             _format_source(parameter_file, name),
         )
         for name, value in values.items()

@@ -18,8 +18,13 @@ def require_fem_packages(feature: str) -> Iterator[None]:
 
         with threadpool_limits(1, "blas"):
             yield
-    except (ImportError, OSError) as error:
+    except ImportError as error:
         raise ValueError(
-            f"{feature} cannot run here, a package is missing ({error}); install it with: pip install "
-            "'jointfmu[fem]', and on Linux libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
+            f"{feature} needs the finite elements (extra fem), which are not installed, "
+            f"{error.name or error} is missing: pip install 'jointfmu[fem]'"
+        ) from None
+    except OSError as error:
+        raise ValueError(
+            f"{feature} needs libraries of the system that are missing ({error}); on Debian and Ubuntu "
+            "install libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
         ) from None

@@ -37,8 +37,13 @@ def read_assembly(path: str | Path) -> Assembly:
     path = Path(path)
     document = read_document(path, "an assembly")
     if document.get("assembly") != "bolted":
-        joint = f"; it is of a {document['joint']}" if "joint" in document else ""
-        raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'{joint}")
+        if "joint" in document:
+            raise ValueError(
+                f"{path}: is the parameter file of a {document['joint']}, not an assembly; state the "
+                "assembly (bodies and bolts, docs/finite_elements_reference.md) first, and this file with "
+                "--params"
+            )
+        raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'")
     if unknown := sorted(set(document) - {"schema", "assembly", "name", *ASSEMBLY_SECTIONS}):
         raise ValueError(
             f"{path}: unknown entry {unknown[0]!r}, allowed are name, {', '.join(ASSEMBLY_SECTIONS)}"

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import block_diag, null_space, qr
-from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
 from jointfmu.quantity import Array
@@ -127,6 +126,8 @@ class RigidBalance:
         corner_approach = self.rigid_approach[self.hull_points].T
         slack = np.eye(self.generalised_load.size)
         cost = np.concatenate([np.zeros(self.hull_points.size), np.ones(2 * self.generalised_load.size)])
+        from scipy.optimize import linprog  # slow to import, and a linear joint needs no balance
+
         best = linprog(
             cost,
             A_eq=np.hstack([corner_approach, slack, -slack]),

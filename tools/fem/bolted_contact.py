@@ -8,7 +8,6 @@ from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..inputs.fields.joint_parameters import insert_field
 from ..inputs.fields.nodal_result import ContactField
 from .contact import ContactInterface, ContactModel, ContactSolution, PressureLaw
 from .elasticity import ElasticBody
@@ -172,6 +171,10 @@ def insert_contact_field(
 
     solution : equilibrium at this preload [N] per bolt and moment [N.m]; the other field is solved from it
     """
+    from ..inputs.fields.joint_parameters import (
+        insert_field,  # slow to import, and a linear joint has no field
+    )
+
     joint = solution.bolted_contact
     tilting = moment or DEFAULT_MOMENT_RATIO * joint.assembly.max_moment(preload)
     equal = solution.solve_load_case(preload).contact_field if moment else solution.contact_field

@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.optimize import brentq
 from scipy.sparse.linalg import LinearOperator, cg
 
 from jointfmu.progress import track_progress
@@ -130,6 +129,8 @@ class ContactEnergy:
             return (
                 initial_slope + step_length * slope_rate + float(approach_change @ (self.quadrature_area * p))
             )
+
+        from scipy.optimize import brentq  # slow to import, and a linear joint needs no search
 
         start = energy_slope(0.0)
         if start >= 0.0 or energy_slope(1.0) <= -0.1 * start:

@@ -25,6 +25,8 @@ from .mesh import contact_mesh, find_contact_cells, mesh_plan
 COORDINATE_AXES = (0, 1, 2)
 MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
 """Factors of x, y, z for the mirror image in the contact plane."""
+ROUND_OFF_RATIO = 1e-14
+"""Part of a load over the largest load [1] below which the part is round-off."""
 FACE_TOLERANCE = 1e-6
 """Distance of a node from a face over the size of the body [1], below which the node lies on the face."""
 
@@ -170,18 +172,15 @@ class JointFiniteElements:
             bolt_stiffness * sp.csr_matrix(self.elongation_matrix) @ sp.csr_matrix(self.elongation_matrix.T)
         )
         return LinearJoint(
-            self,
-            bodies,
-            contact,
-            shanks,
-            bolt_stiffness,
-            *self._solve_unit_motions(bodies + contact + shanks),
+            self, bodies, contact, shanks, bolt_stiffness, *self._solve_unit_motions(bodies, contact + shanks)
         )
 
     def _solve_unit_motions(
-        self, stiffness: sp.csr_matrix
+        self, body_matrix: sp.csr_matrix, connection_matrix: sp.csr_matrix
     ) -> tuple[Array, Array, IndexArray, "Cholesky | MirrorFactorisation"]:
         """Solve for unit translations and rotations of side 2's attachment about the centroid of the contact.
+
+        body_matrix, connection_matrix : stiffness (n, n) [N/m] of the bodies; of interface and bolts
 
         Returns the displacement (n, 6) of the elastic bodies, the displacement (n, 6) of rigid bodies, the
         free unknowns, and the factorisation of their stiffness matrix.
@@ -197,14 +196,18 @@ class JointFiniteElements:
         free = np.setdiff1d(np.arange(rigid.shape[0]), prescribed)
         displacement = np.zeros_like(rigid)
         displacement[prescribed] = rigid[prescribed]
-        free_stiffness = stiffness[free][:, free]
         if self.is_mirrored:
+            free1, free2 = np.split(free, 2)
+            connection = connection_matrix[free2]
             factor: Cholesky | MirrorFactorisation = MirrorFactorisation(
-                free_stiffness, MIRROR_SIGNS[free[: len(free) // 2] % 3]
+                body_matrix[free2][:, free2] + connection[:, free2],
+                connection[:, free1],
+                MIRROR_SIGNS[free1 % 3],
             )
         else:
-            factor = Cholesky(free_stiffness)
-        displacement[free] = -factor.solve(stiffness[free][:, prescribed] @ rigid[prescribed])
+            factor = Cholesky((body_matrix + connection_matrix)[free][:, free])
+        loads = body_matrix @ displacement + connection_matrix @ displacement
+        displacement[free] = -factor.solve(loads[free])
         return displacement, rigid, free, factor
 
 
@@ -222,24 +225,43 @@ class MirrorFactorisation:
 
     Symmetric and antisymmetric displacements decouple: each has its own matrix (n, n).
 
-    mirror_signs : (n) sign of each unknown of the first body in the mirror image
+    diagonal_block : (n, n) stiffness of the second body, with what connects it to the first
+    coupling_block : (n, n) stiffness that couples the second body (rows) to the first (columns)
+    mirror_signs   : (n) sign of each unknown of the first body in the mirror image
     """
 
-    def __init__(self, matrix: sp.csr_matrix, mirror_signs: Array) -> None:
-        n = len(mirror_signs)
-        diagonal, coupling = matrix[n:, n:], matrix[n:, :n] @ sp.diags(mirror_signs)
+    def __init__(
+        self, diagonal_block: sp.csr_matrix, coupling_block: sp.csr_matrix, mirror_signs: Array
+    ) -> None:
+        coupling = coupling_block @ sp.diags(mirror_signs)
         self._mirror = mirror_signs
-        self._symmetric, self._antisymmetric = Cholesky(diagonal + coupling), Cholesky(diagonal - coupling)
+        self._symmetric, self._antisymmetric = (
+            Cholesky(diagonal_block + coupling),
+            Cholesky(diagonal_block - coupling),
+        )
 
     def solve(self, right_side: Array) -> Array:
         """Solve `matrix @ x = right_side` for x (2 n, k)."""
         first, second = np.split(right_side, 2)
         first = self._mirror[:, None] * first
-        symmetric = self._symmetric.solve(0.5 * (second + first))
-        antisymmetric = self._antisymmetric.solve(0.5 * (second - first))
+        smallest = ROUND_OFF_RATIO * np.max(np.abs(right_side), axis=0)
+        symmetric = _solve_columns(self._symmetric, 0.5 * (second + first), smallest)
+        antisymmetric = _solve_columns(self._antisymmetric, 0.5 * (second - first), smallest)
         return np.concatenate(
             [self._mirror[:, None] * (symmetric - antisymmetric), symmetric + antisymmetric]
         )
+
+
+def _solve_columns(factor: Cholesky, right_sides: Array, smallest: Array) -> Array:
+    """Solve for x (n, k) with right-hand sides (n, k). Columns with no value above `smallest` (k) give 0.
+
+    Most loads of a mirrored joint are symmetric or antisymmetric: half of their columns are round-off.
+    """
+    out = np.zeros_like(right_sides)
+    columns = np.max(np.abs(right_sides), axis=0) > smallest
+    if np.any(columns):
+        out[:, columns] = factor.solve(right_sides[:, columns])
+    return out
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,8 @@ def build_law_parameters(law: str, parameter_file: ParameterFile | None, setting
 
     If the file has another law, its values are used as far as the law has them, else default values.
     """
+    if parameter_file is None and not joints_with_law(law):  # a law that no joint has
+        return build_parameter_set(LAWS[law], settings)
     parameter_file = parameter_file or load_default(default_joint(law), law)
     names = {name for name, _ in flat_fields(LAWS[law])}
     law_of = KINDS[parameter_file.joint].extract_law
@@ -110,7 +112,11 @@ def known_surface_height(
     the settings change the surfaces.
     """
     h = law_rms_height(parameters)
-    if h is None and (parameter_file or not any(name.startswith("surface") for name in settings)):
+    if (
+        h is None
+        and joints_with_law(law)
+        and (parameter_file or not any(name.startswith("surface") for name in settings))
+    ):
         return find_rms_height(parameter_file or load_default(default_joint(law), law))
     return h
 

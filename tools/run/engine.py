@@ -75,30 +75,71 @@ def open_joint(model: Model, file: ParameterFile) -> JointEngine:
         return PythonJoint(model, file)
 
 
-class TrialJoint:
-    """A joint that is evaluated with many parameter sets, for example by a fit.
+class VariableJoint:
+    """A joint that is evaluated with many parameter sets, for example by a fit or a study.
 
-    It is opened anew only if a parameter changes that the FMU does not expose.
+    Parameters that the FMU exposes are set in the open joint. For other values of the remaining parameters
+    the joint is opened again; the last MAX_OPEN_JOINTS stay open.
+
+    model : its inputs and outputs
+    file  : parameters that `with_values` changes; None: those of the first call of `with_parameters`
     """
 
-    def __init__(self, model: Model) -> None:
+    MAX_OPEN_JOINTS = 4
+
+    def __init__(self, model: Model, file: ParameterFile | None = None) -> None:
         self._model = model
-        self._engine: JointEngine | None = None
-        self._fixed_values: tuple[Any, ...] = ()
+        self._engines: dict[tuple[Any, ...], tuple[JointEngine, dict[str, Any]]] = {}
+        self._set_file(file)
+
+    def _set_file(self, file: ParameterFile | None) -> None:
+        """Set the parameters that are changed, and close the open joints."""
+        self._file = file
+        self._engines.clear()
+        if file is not None:
+            self._stated_values = file.values_by_name
+            self._exposed = self._model.with_parameters(file.joint, file.values).parameter_fields().keys()
 
     def with_parameters(self, parameters: Any) -> JointEngine:
         """Return an engine of the joint with a parameter set. Engines returned before become invalid.
 
         Raises ValueError as `open_joint` and `JointEngine.follow`.
         """
-        model = self._model.with_parameters(self._model.joint, parameters)
-        values, exposed = flatten_parameters(parameters), model.parameter_fields()
-        fixed = (type(parameters), [(name, x) for name, x in values.items() if name not in exposed])
-        if self._engine is None or fixed != self._fixed_values:
-            self._engine = open_joint(model, ParameterFile(model.joint, "trial", parameters, {}, {}))
-            self._fixed_values = fixed
-        self._engine.set_parameters({name: values[name] for name in exposed})
-        return self._engine
+        values = flatten_parameters(parameters)
+        if (
+            self._file is None
+            or type(self._file.values) is not type(parameters)
+            or self._stated_values.keys() != values.keys()
+        ):
+            self._set_file(ParameterFile(self._model.joint, "trial", parameters, {}, {}))
+        return self.with_values(values)
+
+    def with_values(self, values: Mapping[str, Any]) -> JointEngine:
+        """The joint with values {structured name: value [SI]} in place of those of its file.
+
+        An engine that was returned before must not be used any more. Raises ValueError as `open_joint`.
+        """
+        stated, exposed = self._stated_values, self._exposed
+        hidden = {k: v for k, v in values.items() if k not in exposed and v != stated[k]}
+        engine, current = self._find_engine(hidden)
+        needed = {k: values.get(k, stated[k]) for k in {*current, *values} if k in exposed}
+        if changed := {k: v for k, v in needed.items() if current.get(k, stated[k]) != v}:
+            current |= changed
+            engine.set_parameters(changed)
+        return engine
+
+    def _find_engine(self, hidden_values: Mapping[str, Any]) -> tuple[JointEngine, dict[str, Any]]:
+        """Joint with other values of hidden parameters, and the values that were set since it is open."""
+        key = tuple(sorted(hidden_values.items()))
+        found = self._engines.pop(key, None)
+        if found is None:
+            assert self._file is not None
+            file = self._file.with_values(hidden_values, "user", "trial") if hidden_values else self._file
+            if len(self._engines) >= self.MAX_OPEN_JOINTS:
+                del self._engines[next(iter(self._engines))]
+            found = open_joint(self._model, file), {}
+        self._engines[key] = found
+        return found
 
 
 @lru_cache(maxsize=1)
@@ -121,12 +162,15 @@ class CompiledJoint:
         from jointfmu_fmu_src.native.library import make_library
 
         self.model = model
-        self._start_values = {v.name: file.start_value(v.name) for v in model.inputs}
         self._messages: list[tuple[int, str]] = []
         self._lock = Lock()  # calls of the library release Python's own lock
         fields = model.parameter_fields()
-        names = ["time", *self._start_values, *(v.name for v in model.outputs), *fields]
-        self._references = {name: i for i, name in enumerate(names)}
+        inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
+        self._names = (*inputs, *outputs)
+        self._references = {name: i for i, name in enumerate(["time", *self._names, *fields])}
+        self._input_references, self._output_references = map(self._list_references, (inputs, outputs))
+        self._input_columns = {name: i for i, name in enumerate(inputs)}
+        self._start_row = np.array([[float(file.start_value(name)) for name in inputs]])
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
         library, messages = make_library(model, file), self._messages
 
@@ -193,26 +237,23 @@ class CompiledJoint:
 
     def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
         """See `JointEngine.follow`."""
-        names = list(self._start_values)
-        columns = [np.atleast_1d(x) for x in (self._start_values | {**inputs}).values()]
-        values = np.empty((*np.broadcast_shapes(*(column.shape for column in columns)), len(columns)))
-        for i, column in enumerate(columns):
-            values[:, i] = column
-        outputs = [v.name for v in self.model.outputs]
-        results = np.empty((len(values), len(outputs)))
-        given, read = self._list_references(names), self._list_references(outputs)
+        sizes = {np.size(column) for column in inputs.values()} - {1}
+        values = np.repeat(self._start_row, next(iter(sizes), 1), axis=0)
+        for name, column in inputs.items():
+            values[:, self._input_columns[name]] = column
+        results = np.empty((len(values), len(self._output_references)))
+        given, read = self._input_references, self._output_references
         with self._lock:
             self._messages.clear()
             done = self._library.jointfmu_follow_path(
                 self._instance, each_from_rest, len(values),
-                len(names), given.ctypes.data, values.ctypes.data,
-                len(outputs), read.ctypes.data, results.ctypes.data,
+                len(given), given.ctypes.data, values.ctypes.data,
+                len(read), read.ctypes.data, results.ctypes.data,
             )  # fmt: skip
             if done < len(values):
                 raise ValueError(self._take_error())
             warnings = tuple(dict.fromkeys(text for status, text in self._messages if status == _WARNING))
-        found = dict(zip((*names, *outputs), (*values.T, *results.T), strict=True))
-        return PathResult(found, warnings)
+        return PathResult(dict(zip(self._names, (*values.T, *results.T), strict=True)), warnings)
 
 
 def _close(library: Any, instance: Any, logger: Any, folder: str) -> None:

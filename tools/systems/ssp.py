@@ -1,5 +1,6 @@
 """SSP archives of systems: SSP 1.0 with FMUs of FMI 2.0, SSP 2.0 with FMUs of FMI 3.0."""
 
+import tomllib
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
@@ -13,13 +14,16 @@ from jointfmu_fmu_src.licence import find_copyright_line
 from jointfmu_fmu_src.native.build import build_native_fmu
 from jointfmu_fmu_src.native.compiled.compiled_models import FMI_VERSIONS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_fmu_src.ssv import REAL_ELEMENT, SSP_NAMESPACE, ParameterValue, add_units, format_parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialize_xml
 
+from jointfmu.files import archives
 from jointfmu.files.outputs import ARCHIVE_FILE, check_outputs
 from jointfmu.files.timestamp import source_date
-from jointfmu.parameters import ParameterFile
+from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.progress import map_jobs
+from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.version import __version__
 
 from .system import Component, System, load_systems
@@ -182,16 +186,54 @@ def build_systems(
         if build_joints or component.has_own_fmu or not component.parameter_file
     }
     fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in FMI_VERSIONS for fmu in built_components]
-    archives = [
+    archive_paths = [
         _archive_path(system, out, *kind) for system in chosen for kind in product(ARCHIVE_FOLDERS, MASTERS)
     ]
-    check_outputs([*fmus_out, *archives], ARCHIVE_FILE, force)
+    check_outputs([*fmus_out, *archive_paths], ARCHIVE_FILE, force)
+    if parameters is None and not force:
+        for fmu, component in built_components.items():
+            if component.base_file and not component.has_own_fmu:
+                for version in FMI_VERSIONS:
+                    _check_same_parameters(out / f"fmi{version}" / f"{fmu}.fmu", component.base_file)
     build_versions = partial(_build_versions, out, variability)
     fmu_paths = map_jobs(
         pool, build_versions, "build FMUs of systems", [*built_components], [*built_components.values()]
     )
     fmus = [path for paths in zip(*fmu_paths, strict=True) for path in paths]
     return fmus + [path for system in chosen for path in write_archives(system, out)]
+
+
+def _check_same_parameters(fmu_path: Path, file: ParameterFile) -> None:
+    """Raise InputRefusal if an FMU exists and was built from other parameters than those of the file."""
+    if not fmu_path.exists():
+        return
+    with archives.open_archive(fmu_path) as archive:
+        folder = f"{REFERENCE_FOLDER}/parameters/"
+        names = [name for name in archive.namelist() if name.startswith(folder) and name.endswith(".toml")]
+        texts = [archives.read_member(archive, name).decode() for name in names]
+    stated = [text for text in texts if "joint" in tomllib.loads(text)]
+    if stated and any(_list_numbers(text) != _list_numbers(format_parameter_file(file)) for text in stated):
+        raise InputRefusal(
+            f"{fmu_path}: was built from other parameters, and the systems need it with {file.name!r}; state "
+            "another folder with --out, pack your parameters with --params, or force to replace it",
+            "force",
+        )
+
+
+def _list_numbers(text: str) -> dict[str, Any]:
+    """{structured name: value} of the text of a parameter file, without start values of inputs."""
+    found: dict[str, Any] = {}
+
+    def add_entries(section: Mapping[str, Any], prefix: str) -> None:
+        for name, entry in section.items():
+            if isinstance(entry, dict) and "value" in entry:
+                found[prefix + name] = entry["value"]
+            elif isinstance(entry, dict):
+                add_entries(entry, f"{prefix}{name}.")
+
+    document = tomllib.loads(text)
+    add_entries({name: entry for name, entry in document.items() if name != "inputs"}, "")
+    return found | {"law": document.get("law")}
 
 
 def _build_versions(out: Path, variability: str, fmu_name: str, component: Component) -> list[Path]:

@@ -444,12 +444,12 @@ class _DisplacementIncrement:
         """Tangential displacements (..., 1) or (..., n) [m] along x and along y."""
         return _vector_components(self.tangential_displacement)
 
-    def scale_increment(self, load_factor: float) -> "_DisplacementIncrement":
-        """Part of the increment from its start up to a load factor [1], from 0 to 1."""
+    def scale_increment(self, step_fraction: float) -> "_DisplacementIncrement":
+        """Part of the increment from its start up to a step fraction [1], from 0 to 1."""
         return _DisplacementIncrement(
             self.start_approach,
-            self.start_approach + load_factor * self.approach_change,
-            load_factor * self.tangential_displacement,
+            self.start_approach + step_fraction * self.approach_change,
+            step_fraction * self.tangential_displacement,
         )
 
 

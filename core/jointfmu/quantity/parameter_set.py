@@ -162,6 +162,9 @@ def _select_section(sections: Iterable[str], prefix: str, parameter_names: Colle
 
     Raises ValueError, which lists the names, if they belong to two alternatives.
     """
+    first, *others = sections
+    if not others:
+        return first
     names_by_section = {
         section: [name for name in parameter_names if name.startswith(f"{prefix}{section}.")]
         for section in sections
@@ -172,7 +175,7 @@ def _select_section(sections: Iterable[str], prefix: str, parameter_names: Colle
         raise ValueError(
             f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in names_by_section)}"
         )
-    return (present or list(names_by_section))[0]
+    return present[0] if present else first
 
 
 def _section_name(group_field: Field[object], group_value: object) -> str:

@@ -30,6 +30,7 @@ _UNIT_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "kgf": (Fraction("9.80665"), _FORCE_EXPONENTS),
     "Pa": (1, {"kg": 1, "m": -1, "s": -2}),
     "J": (1, {"kg": 1, "m": 2, "s": -2}),
+    "W": (1, {"kg": 1, "m": 2, "s": -3}),
     "t": (1000, {"kg": 1}),
     "min": (60, {"s": 1}),
     "deg": (_DEGREE_IN_RAD, {"rad": 1}),
@@ -40,7 +41,7 @@ _UNIT_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
 """{symbol: (size in SI units, exponents of the SI base units)}; the radian counts as a base unit."""
 _PREFIX_EXPONENTS = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
 """{prefix: power of ten}, for the symbols in _PREFIXED_SYMBOLS; both Unicode signs for micro."""
-_PREFIXED_SYMBOLS = ("m", "s", "rad", "Hz", "N", "Pa", "J")
+_PREFIXED_SYMBOLS = ("m", "s", "rad", "Hz", "N", "Pa", "J", "W")
 _FACTOR_PATTERN = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
 _POWER_OF_TEN_PATTERN = re.compile(
     r"[x\u00d7]?\s*(?:1e|10\s?\^\s?|10(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]))([+-]?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)\s*[.*·⋅]?\s*(?=\D)"
@@ -191,6 +192,7 @@ UNITS: Mapping[str, Unit] = {
         "Pa/m": ("PressureGradient", "MPa/um"),
         "Pa/m2": ("PressureCurvature", "MPa/um2"),
         "J": ("Energy",),
+        "W": ("Power",),
         "K": ("ThermodynamicTemperature",),
         "1/K": ("LinearTemperatureCoefficient",),
         "kg": ("Mass",),

@@ -129,7 +129,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
     sum_patches(sums, &model->friction, after, model->contact.area);
     sum_cycles(sums, &model->friction, &model->contact, &model->bodies, q);
     if (ELASTIC)
-        assembly_sums(sums, &model->equilibrium, q);
+        elastic_member_sums(sums, &model->equilibrium, q);
     else
         sum_gaps(sums, &model->bolts, model->contact.area, q);
     set_output_arguments(sums, &model->contact, inputs);
@@ -208,7 +208,7 @@ static bool side_derivative(Joint *joint, const Seed *seed, double side, double 
     if (friction->has_history)
         add_patch_rates(friction, rates, dx);
     if (ELASTIC)
-        add_assembly_rates(&model->equilibrium, seed->q, seed->q_rate, dx);
+        add_elastic_member_rates(&model->equilibrium, seed->q, seed->q_rate, dx);
     else
         add_gap_rates(&model->bolts, seed->q_rate, dx);
     memcpy(dx + X_S_REL, seed->seed + INPUT_S_REL_X, 3 * sizeof *dx);

@@ -14,7 +14,7 @@
 
 enum { TRANSFER_PATCH, TRANSFER_POINT, TRANSFER_SHARE }; /* columns of `data.pressure_transfer` */
 
-/* The contact after assembly, for one preload per bolt [N] and moment [N.m]. */
+/* The contact at tightening, for one preload per bolt [N] and moment [N.m]. */
 typedef struct {
     bool is_current;
     double preload, moment;

@@ -40,7 +40,7 @@ typedef struct {
 
 typedef enum { CONVERGED, NOT_CONVERGED, REFUSED } NewtonResult;
 
-/* Tangents */
+/* Tangent stiffness and residual Jacobian: see equilibrium.py */
 
 static inline void add_scaled(double factor, const double *restrict row, double *restrict sum)
 {
@@ -49,7 +49,7 @@ static inline void add_scaled(double factor, const double *restrict row, double 
 }
 
 /* Stiffness of points and bolts against modal coordinates and normal motions, up to a size. */
-static void assemble_normal_stiffness(Equilibrium *e, int size)
+static void sum_normal_stiffness(Equilibrium *e, int size)
 {
     const Bodies *bodies = e->assembly.bodies;
     const Contact *contact = e->assembly.contact;
@@ -73,7 +73,7 @@ static void assemble_normal_stiffness(Equilibrium *e, int size)
 
 /* Stiffness of the patches against modal coordinates and tangential motions, from the traction derivatives; all of it,
  * or its lower half. */
-static void assemble_shear_stiffness(Equilibrium *e, int size, bool all)
+static void sum_shear_stiffness(Equilibrium *e, int size, bool all)
 {
     const Bodies *bodies = e->assembly.bodies;
     const double area = e->assembly.contact->area;
@@ -93,13 +93,13 @@ static void assemble_shear_stiffness(Equilibrium *e, int size, bool all)
     }
 }
 
-/* Factorize the modal tangent dr/da from the traction derivatives, up to a size with normal and tangential motions; as
- * it is, or as if it were symmetric. */
-static void factorize_tangent(Equilibrium *e, int size, bool all, Factorization *factors)
+/* Factorize the residual Jacobian dr/da from the traction derivatives, up to a size with normal and tangential motions;
+ * as it is, or as if it were symmetric. */
+static void factorize_jacobian(Equilibrium *e, int size, bool all, Factorization *factors)
 {
     double(*a)[MODES] = factors->a;
-    assemble_normal_stiffness(e, size);
-    assemble_shear_stiffness(e, size, all);
+    sum_normal_stiffness(e, size);
+    sum_shear_stiffness(e, size, all);
     for (int r = 0; r < MODES; r++) {
         for (int k = 0; k <= r; k++) {
             const double normal = e->normal_stiffness[r][k], shear = e->shear_stiffness[r][k];
@@ -111,8 +111,8 @@ static void factorize_tangent(Equilibrium *e, int size, bool all, Factorization 
     dense_factor(e->assembly.bodies->use_avx, factors);
 }
 
-/* Modal tangent at the last trial; for ranges of sliders that change by differences. */
-static void modal_tangent(Equilibrium *e, const double *history)
+/* Residual Jacobian at the last trial; for ranges of sliders that change by differences. */
+static void residual_jacobian(Equilibrium *e, const double *history)
 {
     const Contact *contact = e->assembly.contact;
     const double first = contact->curve->start.x;
@@ -121,12 +121,12 @@ static void modal_tangent(Equilibrium *e, const double *history)
         deepest = fmax(deepest, contact->preload.patch_approach[j] - first);
     traction_derivatives(e->assembly.friction, DIFFERENCE_STEP * deepest, history, e->derivatives);
     set_modal_opening(e);
-    factorize_tangent(e, MODES, true, &e->factors);
+    factorize_jacobian(e, MODES, true, &e->factors);
 }
 
 /* The same by derivatives of the slider rules, on the side of `friction->direction`; of a further motion if the history
  * after the load step is given. */
-static void modal_tangent_on_side(Equilibrium *e, const double *history, const double *after)
+static void residual_jacobian_on_side(Equilibrium *e, const double *history, const double *after)
 {
     static const double units[4][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}, {-1.0}};
     for (int j = 0; j < n_patches(); j++)
@@ -135,17 +135,17 @@ static void modal_tangent_on_side(Equilibrium *e, const double *history, const d
             memcpy(e->derivatives[j][c], rate.traction, sizeof e->derivatives[j][c]);
         }
     set_modal_opening(e);
-    factorize_tangent(e, MODES, true, &e->factors);
+    factorize_jacobian(e, MODES, true, &e->factors);
 }
 
-/* Static condensation: derivatives of the modal coordinates by q, and the stiffness that is left, from the tangents of
- * points, bolts and patches (6 numbers each). */
+/* Static condensation: derivatives of the modal coordinates by q, and the condensed stiffness (in Python it is in
+ * compliances.py), from the stiffness of points and bolts and the friction tangents of the patches (6 numbers each). */
 static void condense_stiffness(Equilibrium *e, const double *tangent, ModalPredictor *predictor)
 {
     static const int columns[N_DISPLACEMENTS] = {0, 1, 0, 1, 2, 2}; /* of q in rows of the Jacobians */
     for (int j = 0; j < n_patches(); j++)
         derivatives_of_tangent(tangent + 6 * j, e->derivatives[j]);
-    factorize_tangent(e, N_COLUMNS, false, &predictor->factors);
+    factorize_jacobian(e, N_COLUMNS, false, &predictor->factors);
     for (int d = 0; d < N_DISPLACEMENTS; d++) {
         const int at = MODES + columns[d];
         const double *h = d == S_X || d == S_Y || d == THETA_Z ? e->shear_stiffness[at] : e->normal_stiffness[at];
@@ -160,12 +160,12 @@ static void condense_stiffness(Equilibrium *e, const double *tangent, ModalPredi
 
 /* Trials */
 
-/* q at a load factor [1]. */
-static void displacement_at(const LoadStep *step, double load_factor, double q[N_DISPLACEMENTS])
+/* q at a step fraction [1]. */
+static void displacement_at(const LoadStep *step, double step_fraction, double q[N_DISPLACEMENTS])
 {
     memcpy(q, step->end, sizeof step->end);
-    for (int d = 0; d < N_DISPLACEMENTS && load_factor != 1.0; d++)
-        q[d] = step->start[d] + load_factor * (step->end[d] - step->start[d]);
+    for (int d = 0; d < N_DISPLACEMENTS && step_fraction != 1.0; d++)
+        q[d] = step->start[d] + step_fraction * (step->end[d] - step->start[d]);
 }
 
 /* Deformation, bolt forces, pressures and patch approaches at q and modal coordinates; the works too if complete. */
@@ -257,7 +257,7 @@ static void predictor_key(const double *inputs, const double *history, double ke
     memcpy(key + 5, history + HISTORY_NORMAL, (PREDICTOR_KEY - 5) * sizeof *key);
 }
 
-/* Change of the modal coordinates over a load step [m] by the tangent at its start. */
+/* Change of the modal coordinates over a load step [m] by the tangent stiffness at its start. */
 static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rate, Text *reason)
 {
     const double *history = step->history;
@@ -285,7 +285,7 @@ static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rat
     return true;
 }
 
-/* Apply Broyden's good update by the corrections since the tangent to the newest one. */
+/* Apply Broyden's good update by the corrections since the Jacobian to the newest one. */
 static void apply_broyden(Equilibrium *e, int newest)
 {
     double(*corrections)[MODES] = e->corrections, *squares = e->squares;
@@ -301,10 +301,10 @@ static void apply_broyden(Equilibrium *e, int newest)
 }
 
 /* Trial after a correction of the modal coordinates: shortened while the energy slope at its end is too large, or
- * dropped if the tangent is that of an earlier trial. false: refused. */
+ * dropped if the Jacobian is that of an earlier trial. false: refused. */
 static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction,
-                        bool tangent_is_current, bool complete, double *modal_coordinates, double *r, double *tolerance,
-                        bool *is_full, Text *reason)
+                        bool jacobian_is_current, bool complete, double *modal_coordinates, double *r,
+                        double *tolerance, bool *is_full, Text *reason)
 {
     double start[MODES], length = 1.0;
     const double slope_0 = dense_dot(r, correction);
@@ -320,21 +320,21 @@ static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const d
         if (length == 0.0 || !(slope_1 > MAX_ENERGY_SLOPE_RATIO * fabs(slope_0)))
             return true;
         const double zero = slope_0 < 0.0 ? slope_0 / (slope_0 - slope_1) : 0.0; /* of the energy slope, if any */
-        length *= tangent_is_current ? fmax(zero, MIN_LENGTH_RATIO) : 0.0;
+        length *= jacobian_is_current ? fmax(zero, MIN_LENGTH_RATIO) : 0.0;
         *is_full = false;
     }
     return true;
 }
 
-/* Equilibrium at a load factor, from modal coordinates on; if it is not found, the residual that is left [N]. */
-static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_factor, double *modal_coordinates,
+/* Equilibrium at a step fraction, from modal coordinates on; if it is not found, the residual that is left [N]. */
+static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fraction, double *modal_coordinates,
                                  double *left, Text *reason)
 {
-    const double tolerance_factor = load_factor == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
-    const Factorization *factors = &e->start.factors; /* of the tangent: first that at the start of the load step */
+    const double tolerance_factor = step_fraction == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
+    const Factorization *factors = &e->start.factors; /* of the Jacobian: first that at the start of the load step */
     double q[N_DISPLACEMENTS], r[MODES], tolerance, last_norm = INFINITY;
-    bool tangent_is_current = false, is_full;
-    displacement_at(step, load_factor, q);
+    bool jacobian_is_current = false, is_full;
+    displacement_at(step, step_fraction, q);
     if (!evaluate_trial(e, step, q, modal_coordinates, false, reason))
         return REFUSED;
     tolerance = residual(e, q, modal_coordinates, r);
@@ -342,31 +342,31 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_fac
         const double norm = residual_norm(r);
         if (norm <= tolerance_factor * tolerance)
             return CONVERGED;
-        if (!(norm < TANGENT_REUSE_RATIO * last_norm)) {
-            modal_tangent(e, step->history);
+        if (!(norm < JACOBIAN_REUSE_RATIO * last_norm)) {
+            residual_jacobian(e, step->history);
             factors = &e->factors;
             corrections = 0;
-            tangent_is_current = true;
+            jacobian_is_current = true;
         }
-        const bool is_last = load_factor == 1.0 && n > 0 && norm < TANGENT_REUSE_RATIO * last_norm &&
+        const bool is_last = step_fraction == 1.0 && n > 0 && norm < JACOBIAN_REUSE_RATIO * last_norm &&
                              norm * norm < last_norm * tolerance; /* by its order of convergence */
         double *correction = e->corrections[corrections];
         for (int k = 0; k < MODES; k++)
             correction[k] = -r[k];
         dense_solve(e->assembly.bodies->use_avx, factors, correction);
         apply_broyden(e, corrections++);
-        if (!search_line(e, step, q, correction, tangent_is_current, is_last, modal_coordinates, r, &tolerance,
+        if (!search_line(e, step, q, correction, jacobian_is_current, is_last, modal_coordinates, r, &tolerance,
                          &is_full, reason))
             return REFUSED;
-        last_norm = is_full ? norm : 0.0; /* 0: the next iteration computes the tangent */
-        tangent_is_current = false;
+        last_norm = is_full ? norm : 0.0; /* 0: the next iteration computes the Jacobian */
+        jacobian_is_current = false;
     }
     *left = residual_norm(r);
     return *left <= tolerance_factor * tolerance ? CONVERGED : NOT_CONVERGED;
 }
 
 /* Say that there is no equilibrium, with the inputs that are not zero. */
-static void explain_failure(const double *inputs, double load_factor, double left, Text *reason)
+static void explain_failure(const double *inputs, double step_fraction, double left, Text *reason)
 {
     text_clear(reason);
     for (int v = 0; v < 2 + N_DISPLACEMENTS; v++) {
@@ -379,7 +379,7 @@ static void explain_failure(const double *inputs, double load_factor, double lef
         text_append_number(reason, inputs[at], 6);
     }
     text_append(reason, ": no equilibrium of the joint was found beyond a fraction of ");
-    text_append_number(reason, load_factor, 3);
+    text_append_number(reason, step_fraction, 3);
     text_append(reason, " of the way, the residual is ");
     text_append_number(reason, left, 2);
     text_append(reason, " N");
@@ -388,22 +388,22 @@ static void explain_failure(const double *inputs, double load_factor, double lef
 /* Modal coordinates in equilibrium at the end of a load step, which is divided where Newton's method fails. */
 static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordinates, Text *reason)
 {
-    double load_factor = 0.0, increment = 1.0, left = 0.0, reached[MODES], rate[MODES];
+    double step_fraction = 0.0, increment = 1.0, left = 0.0, reached[MODES], rate[MODES];
     memcpy(reached, step->history + HISTORY_MODAL_COORDINATES, sizeof reached);
     modal_displacement(e->assembly.bodies, reached, e->assembly.bodies->start_displacement);
     if (!predict_by_tangent(e, step, rate, reason))
         return false;
     for (;;) {
-        const double target = fmin(load_factor + increment, 1.0);
+        const double target = fmin(step_fraction + increment, 1.0);
         for (int k = 0; k < MODES; k++)
-            modal_coordinates[k] = reached[k] + (target - load_factor) * rate[k];
+            modal_coordinates[k] = reached[k] + (target - step_fraction) * rate[k];
         const NewtonResult result = solve_newton(e, step, target, modal_coordinates, &left, reason);
         if (result == REFUSED)
             return false;
         if (result == NOT_CONVERGED) {
             increment *= 0.5;
             if (increment < MIN_LOAD_STEP) {
-                explain_failure(step->inputs, load_factor, left, reason);
+                explain_failure(step->inputs, step_fraction, left, reason);
                 return false;
             }
             continue;
@@ -411,9 +411,9 @@ static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordi
         if (target == 1.0)
             return step->is_complete || evaluate_trial(e, step, step->end, modal_coordinates, true, reason);
         for (int k = 0; k < MODES; k++)
-            rate[k] = (modal_coordinates[k] - reached[k]) / (target - load_factor);
+            rate[k] = (modal_coordinates[k] - reached[k]) / (target - step_fraction);
         memcpy(reached, modal_coordinates, sizeof reached);
-        load_factor = target;
+        step_fraction = target;
         increment *= 2.0;
     }
 }
@@ -464,7 +464,7 @@ void solve_modal_rates(Equilibrium *e, const double *q_rate, const double *histo
         const double rate = rigid_elongation(b, q_rate);
         add_scaled(-bolts->stiffness * (rate + bolt_gap_rate(bolts, b, rate)), bodies->elongation_jacobian[b], r);
     }
-    modal_tangent_on_side(e, history, after);
+    residual_jacobian_on_side(e, history, after);
     dense_solve(bodies->use_avx, &e->factors, r);
     deform(bodies, r, &bodies->rate);
 }

@@ -19,11 +19,12 @@ enum { PREDICTOR_KEY = 5 + 3 + MODES + 6 * MAX_PATCHES };
 enum { WEIGHTED_ROWS = (int)MAX_BOLT_ELONGATION > 64 ? (int)MAX_BOLT_ELONGATION : 64 };
 _Static_assert((int)MAX_PATCHES <= (int)WEIGHTED_ROWS, "one set of rows");
 
-/* Derivatives of the modal coordinates by q at the start of a load step, by its tangent; and what they depend on. */
+/* Derivatives of the modal coordinates by q at the start of a load step, by the tangent stiffness there; and what they
+ * depend on. */
 typedef struct {
     bool is_known;
     double key[PREDICTOR_KEY], modal_rates[N_DISPLACEMENTS][MODES];
-    Factorization factors; /* of the modal tangent */
+    Factorization factors; /* of the modal part of the tangent stiffness, the first Jacobian of Newton's method */
 } ModalPredictor;
 
 typedef struct {
@@ -42,8 +43,8 @@ typedef struct {
     double weighted[WEIGHTED_ROWS][N_COLUMNS]; /* rows of the Jacobians times their weights */
     double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
     TractionDerivatives derivatives[MAX_PATCHES];
-    Factorization factors; /* of the modal tangent in Newton's method */
-    /* Corrections since this tangent [m], and their squares [m2]. */
+    Factorization factors; /* of the residual Jacobian in Newton's method */
+    /* Corrections since this Jacobian [m], and their squares [m2]. */
     double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS];
 } Equilibrium;
 

@@ -47,7 +47,10 @@ static void slider_heights(Foundation *f, double reference)
 
 END_OPTIMIZE_FOR_SIZE
 
-/* Sums over the springs of a range, and its sliders. */
+/* Sums over the springs of a range, and its sliders in full contact. The friction limit is linear in the approach from
+ * the height of the last spring on, and is stored by its intercept at zero approach. Repeats `partial_contact` at that
+ * height, and the growth from there in `Foundation.slider_properties`: a change of the friction limit goes into all
+ * three, and into `full_range_rates`. */
 static void set_range(Foundation *f, int i)
 {
     const double width = f->height[i + 1] - f->height[i];
@@ -59,7 +62,7 @@ static void set_range(Foundation *f, int i)
         const double first = f->normal_force[i] + (late ? f->force_deviation[i] : -f->force_deviation[i]);
         f->K[k] = 0.5 * f->ratio * f->normal_stiffness[i];
         f->per_K[k] = f->K[k] > 0.0 ? 1.0 / f->K[k] : 0.0;
-        f->limit[k] = 0.5 * f->mu * (first - f->normal_stiffness[i] * f->height[i + 1]);
+        f->limit_at_zero_approach[k] = 0.5 * f->mu * (first - f->normal_stiffness[i] * f->height[i + 1]);
     }
 }
 
@@ -169,9 +172,10 @@ static inline SliderProperties slider_properties(const Foundation *f, int i, con
     if (p->approach < f->height[i])
         return pair;
     if (i < p->full_ranges) {
-        const double *limit = f->limit + 2 * i, K = f->K[2 * i], to = f->mu / f->ratio * p->approach;
-        return (SliderProperties){.K = K,
-                                  .limit = {limit_at_growth(limit[0], K, to), limit_at_growth(limit[1], K, to)}};
+        const double *intercept = f->limit_at_zero_approach + 2 * i, K = f->K[2 * i];
+        const double growth = f->mu / f->ratio * p->approach;
+        return (SliderProperties){
+            .K = K, .limit = {limit_at_growth(intercept[0], K, growth), limit_at_growth(intercept[1], K, growth)}};
     }
     partial_contact_arguments(f, i, p, x);
     partial_contact(x, NULL, &pair.K);
@@ -399,7 +403,7 @@ static Sliders2D full_range_sliders(const Foundation *f, const PatchIncrement *p
     Sliders2D s = sliders_from(f, path, 0);
     s.K = s.secant_stiffness = f->K;
     s.compliance = f->per_K;
-    s.limit_start = s.limit_end = f->limit;
+    s.limit_start = s.limit_end = f->limit_at_zero_approach;
     s.growth_start = f->mu / f->ratio * path->start->approach;
     s.growth_end = f->mu / f->ratio * path->end->approach;
     return s;
@@ -998,8 +1002,8 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
     if (path->is_first)
         full_range_rates(f, n / 2, path->end->approach, turn[1], &own);
     for (int k = 0; k < n; k++) {
-        const double K = f->K[k], per_K = f->per_K[k], before = limit_at_growth(f->limit[k], K, from),
-                     after = limit_at_growth(f->limit[k], K, to);
+        const double K = f->K[k], per_K = f->per_K[k], before = limit_at_growth(f->limit_at_zero_approach[k], K, from),
+                     after = limit_at_growth(f->limit_at_zero_approach[k], K, to);
         double x[2 * N_PLANE - P_RETENTION] = {path->force[0][k],
                                                path->force[1][k],
                                                1.0,

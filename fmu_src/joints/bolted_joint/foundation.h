@@ -29,7 +29,7 @@ typedef struct {
     double force_deviation[N_RANGES];  /* of each slider from their mean normal force, from then on [Pa] */
     /* Sliders of ranges in full contact: tangential stiffness K, 1/K, and the limit at zero approach, from which it
      * increases by K mu/ratio. */
-    double K[FOUNDATION_SLIDERS], per_K[FOUNDATION_SLIDERS], limit[FOUNDATION_SLIDERS];
+    double K[FOUNDATION_SLIDERS], per_K[FOUNDATION_SLIDERS], limit_at_zero_approach[FOUNDATION_SLIDERS];
     double stick_stiffness[N_RANGES]; /* sum of K of all sliders up to a range */
 } Foundation;
 

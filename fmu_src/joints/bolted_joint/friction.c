@@ -258,7 +258,7 @@ static void weaker_direction(const TangentSums *sums, const double *traction_sum
                                                                                      : sums->signed_lack[d]));
 }
 
-void consistent_tangent(Friction *friction, double stiffness[3])
+void continued_motion_stiffness(Friction *friction, double stiffness[3])
 {
     double stick[MAX_PATCHES];
     NOT_VECTORIZED
@@ -383,7 +383,7 @@ void update_rates(Friction *friction, const double *history, const double *after
         friction->rate[j] = update_rate(friction, j, history, after, rates[j].ends[1], rates[j].displacement);
 }
 
-void consistent_tangent_rate(const Friction *friction, const IncrementRate *rates, double stiffness[3])
+void continued_motion_stiffness_rate(const Friction *friction, const IncrementRate *rates, double stiffness[3])
 {
     double stick_rate[MAX_PATCHES];
     for (int j = 0; j < n_patches(); j++)

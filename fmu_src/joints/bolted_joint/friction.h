@@ -30,7 +30,8 @@ typedef struct {
     PatchState start[MAX_PATCHES], end[MAX_PATCHES];
     double increment[MAX_PATCHES][3];
     SliderUpdate update[MAX_PATCHES];
-    double traction_sum[3]; /* of `consistent_tangent`: its signs are the directions in which more patches slip */
+    /* Of `continued_motion_stiffness`: its signs are the directions in which more patches slip. */
+    double traction_sum[3];
     /* Rates along the last seed, on the side 1 or -1 along it; rates of the increments that point to this side. */
     double side;
     IncrementRate direction[MAX_PATCHES];
@@ -61,7 +62,7 @@ static inline void stick_tangent(double stiffness, double tangent[6])
     memcpy(tangent, all, sizeof all);
 }
 /* Stiffness of all patches against a further S_X, S_Y, THETA_Z, each in the direction in which more sliders slip. */
-void consistent_tangent(Friction *friction, double stiffness[3]);
+void continued_motion_stiffness(Friction *friction, double stiffness[3]);
 /* Stiffness of a point against S_X, S_Y, THETA_Z, times its share, from its tangent xx, xy, yy. */
 static inline void point_stiffness(const double *point, const double *tangent, double *stiffness)
 {
@@ -84,7 +85,7 @@ SliderUpdate update_rate(Friction *friction, int j, const double *history, const
                          const double displacement_rate[3]);
 /* The same of all patches, in `friction->rate`. */
 void update_rates(Friction *friction, const double *history, const double *after, const IncrementRate *rates);
-/* Rate of `consistent_tangent`. */
-void consistent_tangent_rate(const Friction *friction, const IncrementRate *rates, double stiffness[3]);
+/* Rate of `continued_motion_stiffness`. */
+void continued_motion_stiffness_rate(const Friction *friction, const IncrementRate *rates, double stiffness[3]);
 
 #endif

@@ -22,7 +22,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         lambda s, u: [s.sum_over_spots("plastic_work", u), s.sum_over_spots("elastic_work", u)],
     )
     add_closing_function(function_graph)
-    head = [
+    constants = [
         joint.memory,
         joint.mu,
         joint.shear_stiffness_ratio(),
@@ -31,21 +31,22 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         joint.damping,
     ]
     doc = "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping, number of bolts"
-    function_graph.add_function("joint_constants", doc, [], [*head, joint.n_bolts])
+    function_graph.add_function("joint_constants", doc, [], [*constants, joint.n_bolts])
     _add_preload_functions(function_graph)
     _add_shear_functions(function_graph)
     sums = dict(zip(outputs.SUM_NAMES, make_symbols("sum", len(outputs.SUM_NAMES)), strict=True))
-    shift, turn, rates = make_symbols("s", 3), make_symbols("t", 3), make_symbols("v", 6)
+    displacement, rotation, rates = make_symbols("s", 3), make_symbols("t", 3), make_symbols("v", 6)
     p_max = ca.SX.sym("p_max")
-    out = outputs.joint_outputs(joint, sums, shift, turn, rates, p_max)
+    out = outputs.joint_outputs(joint, sums, displacement, rotation, rates, p_max)
     doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
     y = [out[o.name] for o in model.outputs if o.name in out]  # bolt forces follow from the modes
-    function_graph.add_with_derivative("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
+    x = [*sums.values(), *displacement, *rotation, *rates, p_max]
+    function_graph.add_with_derivative("outputs", doc, x, y)
 
 
 def _add_preload_functions(function_graph: FunctionGraph) -> None:
     """Add the functions of the pressures under preload and moment."""
-    equal, tilt, mean, shift = make_symbols("node", 4)
+    equal, tilt, mean, by_moment = make_symbols("node", 4)
     preload, moment = make_symbols("v", 2)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
     function_graph.add_with_derivative(
@@ -56,9 +57,9 @@ def _add_preload_functions(function_graph: FunctionGraph) -> None:
         "working_preload", doc, [preload], [law.working_preload(function_graph.joint, preload)]
     )
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
-    pressure = law.superposed_pressure(equal, tilt, mean, shift)
+    pressure = law.superposed_pressure(equal, tilt, mean, by_moment)
     function_graph.add_with_derivative(
-        "shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], constant_count=2
+        "shaped_pressure", doc, [equal, tilt, mean, by_moment], [pressure], constant_count=2
     )
 
 
@@ -160,7 +161,7 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
             "MIN_LOAD_STEP",
             "MAX_ENERGY_SLOPE_RATIO",
             "MIN_LENGTH_RATIO",
-            "TANGENT_REUSE_RATIO",
+            "JACOBIAN_REUSE_RATIO",
             "DIFFERENCE_STEP",
         )
     }

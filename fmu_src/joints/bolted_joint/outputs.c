@@ -6,7 +6,9 @@
 #include "optimize_for_size.h"
 
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as the sums of PreloadState");
-_Static_assert(SUM_TANGENT_Y == SUM_TANGENT_X + 1 && SUM_TANGENT_Z == SUM_TANGENT_X + 2, "in this order");
+_Static_assert(SUM_SHEAR_STIFFNESS_Y == SUM_SHEAR_STIFFNESS_X + 1 &&
+                   SUM_TORSIONAL_STIFFNESS == SUM_SHEAR_STIFFNESS_X + 2,
+               "in this order");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
 
 /* Points */
@@ -95,7 +97,7 @@ static inline void add_elastic_shear(double *x, const double *point, const doubl
     add_traction(x, point, shear + E_TRACTION);
     point_stiffness(point, shear + E_TANGENT, stiffness);
     for (int d = 0; d < 3; d++)
-        x[SUM_TANGENT_X + d] += stiffness[d];
+        x[SUM_SHEAR_STIFFNESS_X + d] += stiffness[d];
 }
 
 static inline void set_shear_arguments(double limit, const double *derivatives, const double *point, const double *q,
@@ -147,7 +149,7 @@ void sum_patches(OutputSums *sums, Friction *friction, const double *after, doub
     for (int j = 0; j < n_patches() && friction->has_history; j++)
         add_patch(sums->x, data.patches[j], friction->update[j].traction);
     if (friction->has_history && !ELASTIC)
-        consistent_tangent(friction, sums->x + SUM_TANGENT_X);
+        continued_motion_stiffness(friction, sums->x + SUM_SHEAR_STIFFNESS_X);
     sums->x[SUM_LOSS] = after[HISTORY_LOSS] / area;
 }
 
@@ -282,8 +284,8 @@ OPTIMIZE_FOR_SIZE
 static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLACEMENTS], double bolt_stiffness,
                           double *x)
 {
-    static const int sums[N_DISPLACEMENTS] = {SUM_TANGENT_X, SUM_TANGENT_Y, SUM_NORMAL_STIFFNESS,
-                                              SUM_NORMAL_ABOUT_X, SUM_NORMAL_ABOUT_Y, SUM_TANGENT_Z};
+    static const int sums[N_DISPLACEMENTS] = {SUM_SHEAR_STIFFNESS_X, SUM_SHEAR_STIFFNESS_Y, SUM_NORMAL_STIFFNESS,
+                                              SUM_NORMAL_ABOUT_X, SUM_NORMAL_ABOUT_Y, SUM_TORSIONAL_STIFFNESS};
     double bolts[N_DISPLACEMENTS] = {0.0};
     for (int b = 0; b < (int)data.n_bolt_elongation; b++) {
         bolts[S_Z] += bolt_stiffness;
@@ -294,7 +296,7 @@ static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLAC
         x[sums[d]] = (stiffness[d] - bolts[d]) / e->assembly.contact->area;
 }
 
-void assembly_sums(OutputSums *sums, const Equilibrium *e, const double *q)
+void elastic_member_sums(OutputSums *sums, const Equilibrium *e, const double *q)
 {
     if (!ELASTIC)
         return;
@@ -370,7 +372,7 @@ void add_patch_rates(const Friction *friction, const IncrementRate *rates, doubl
         add_patch(dx, data.patches[j], friction->rate[j].traction);
         dx[SUM_LOSS] += data.patches[j][SHARE] * friction->rate[j].loss;
     }
-    consistent_tangent_rate(friction, rates, dx + SUM_TANGENT_X);
+    continued_motion_stiffness_rate(friction, rates, dx + SUM_SHEAR_STIFFNESS_X);
 }
 
 /* Add the rates of the cycle of a patch. */
@@ -453,7 +455,7 @@ static void condensed_rates(const Equilibrium *e, double rates[N_DISPLACEMENTS])
     }
 }
 
-void add_assembly_rates(const Equilibrium *e, const double *q, const double *q_rate, double *dx)
+void add_elastic_member_rates(const Equilibrium *e, const double *q, const double *q_rate, double *dx)
 {
     if (!ELASTIC)
         return;

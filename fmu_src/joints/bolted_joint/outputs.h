@@ -37,7 +37,7 @@ void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *conta
 /* Gaps of the bolts between rigid bodies, and the stiffness that bolts at lift-off lack. */
 void sum_gaps(OutputSums *sums, Bolts *bolts, double area, const double *q);
 /* Condensed stiffness without that of the bolts between rigid bodies, elongation of the bolts, elastic energy. */
-void assembly_sums(OutputSums *sums, const Equilibrium *equilibrium, const double *q);
+void elastic_member_sums(OutputSums *sums, const Equilibrium *equilibrium, const double *q);
 /* The other arguments of `outputs`. */
 void set_output_arguments(OutputSums *sums, const Contact *contact, const double *inputs);
 
@@ -50,7 +50,7 @@ void add_patch_rates(const Friction *friction, const IncrementRate *rates, doubl
 void add_cycle_rates(const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q,
                      const IncrementRate *rates, double *dx);
 void add_gap_rates(const Bolts *bolts, const double *q_rate, double *dx);
-void add_assembly_rates(const Equilibrium *equilibrium, const double *q, const double *q_rate, double *dx);
+void add_elastic_member_rates(const Equilibrium *equilibrium, const double *q, const double *q_rate, double *dx);
 /* Rates of the forces of the bolts between elastic bodies. */
 void bolt_force_rates(const Equilibrium *equilibrium, const double *q_rate, double *rates);
 

@@ -169,7 +169,8 @@ static void slider_limits(const Friction *friction, const double *history, doubl
                           double *slider_limit)
 {
     for (int i = 0; i < FRICTION_SLIDERS; i++)
-        slider_limit[i] = limit[history[HISTORY_BRAKE + i] + friction->K[i] * increment < 0.0] * LIMIT_SHARES[i];
+        slider_limit[i] =
+            limit[history[HISTORY_FRICTION_TORQUE + i] + friction->K[i] * increment < 0.0] * LIMIT_SHARES[i];
 }
 
 SliderResultant friction_advance(const Friction *friction, const double *history, FrictionArguments arguments,
@@ -179,9 +180,10 @@ SliderResultant friction_advance(const Friction *friction, const double *history
     const double increment = rotation_increment(history, arguments);
     slider_limits(friction, history, increment, history + HISTORY_LIMIT, limit_start);
     slider_limits(friction, history, increment, arguments.limit, limit_end);
-    const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end, history + HISTORY_BRAKE};
+    const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end,
+                               history + HISTORY_FRICTION_TORQUE};
     SliderResultant sum;
-    sliders_advance_1d(FRICTION_SLIDERS, &sliders, increment, history_end + HISTORY_BRAKE, &sum);
+    sliders_advance_1d(FRICTION_SLIDERS, &sliders, increment, history_end + HISTORY_FRICTION_TORQUE, &sum);
     history_end[HISTORY_ANGLE] = arguments.angle;
     history_end[HISTORY_LIMIT] = arguments.limit[0];
     history_end[HISTORY_LIMIT + 1] = arguments.limit[1];
@@ -200,7 +202,8 @@ SliderResultant friction_rate(const Friction *friction, const double *history, F
     slider_limits(friction, history, increment, history + HISTORY_LIMIT, limit_start);
     slider_limits(friction, history, increment, arguments.limit, limit_end);
     slider_limits(friction, history, increment, rate.limit, limit_rate);
-    const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end, history + HISTORY_BRAKE};
+    const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end,
+                               history + HISTORY_FRICTION_TORQUE};
     SliderResultant sum;
     sliders_advance_1d_rate(FRICTION_SLIDERS, &sliders, increment,
                             has_begun ? rate.angle : PRIOR_ROTATION_TIME * rate.speed, limit_rate, &sum);

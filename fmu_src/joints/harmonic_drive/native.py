@@ -34,50 +34,65 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         (torque,) = make_symbols("x", 1)
         doc = "torque -> K_WTS, its derivative by the torque"
         function_graph.add_function("stiffness_with_play", doc, [torque], stiffness_with_play(drive, torque))
-        head = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
-        function_graph.add_function("pair_constants", "-> T_s, largest torque, K_FTS0", [], head)
-    head = [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
-    function_graph.add_function("hysteresis_constants", "-> loss, stiffness, rated torque", [], head)
+        constants = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
+        function_graph.add_function("pair_constants", "-> T_s, largest torque, K_FTS0", [], constants)
+    constants = [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
+    function_graph.add_function("hysteresis_constants", "-> loss, stiffness, rated torque", [], constants)
     springs, limits = hysteresis.slider_shares(hysteresis.stiffness_exponent(drive))
     function_graph.add_function(
         "slider_shares", "-> shares of the sliders in K_h, in M_f", [], [*springs, *limits]
     )
     inputs = [ca.SX.sym(i.name) for i in model.inputs]
     locked = _is_torque_input(model)
-    waves = [0.0] * 3 if locked else kinematic_error(drive, inputs[0])
+    error_terms = [0.0] * 3 if locked else kinematic_error(drive, inputs[0])
     function_graph.add_function(
-        "kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, waves
+        "kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, error_terms
     )
-    errors = [0.0 * a if locked else a for a in error_amplitudes(drive)]
-    function_graph.add_function("error_amplitudes", "-> amplitudes of the kinematic error", [], errors)
-    x, load, stiffness, slid, loss, error, slope, dry = make_symbols("found", 8)
-    turn: Symbols
+    amplitudes = [0.0 * a if locked else a for a in error_amplitudes(drive)]
+    function_graph.add_function("error_amplitudes", "-> amplitudes of the kinematic error", [], amplitudes)
+    state = spring.SpringState(*make_symbols("state", 6))
+    loss, dry_friction_torque = make_symbols("x", 2)
+    friction_arguments: Symbols
     if locked:
-        argument, brake, turn = inputs[0], 0.0, [0.0, 0.0, 0.0, 0.0]
-        out = {"phi_rel": x, **spring.stiffness_outputs(drive, load, stiffness)}
+        curve_argument, stick_stiffness, friction_arguments = inputs[0], 0.0, [0.0] * 4
+        out = {
+            "phi_rel": state.phi_rel,
+            **spring.stiffness_outputs(drive, state.midline_torque, state.midline_stiffness),
+        }
     else:
-        state = spring.SpringState(x, load, stiffness, slid, error, slope)
         *motion, temperature = inputs
-        argument, brake = spring.wind_up(drive, motion, error), friction.sticking_stiffness(drive)
+        curve_argument = spring.wind_up(drive, motion, state.phi_error)
+        stick_stiffness = friction.sticking_stiffness(drive)
         tau = spring.transmitted_torque(drive, motion, state)
-        turn = [*motion[:2], *friction.friction_limits(drive, motion[1], tau, temperature)]
-        out = spring.motion_outputs(drive, motion, temperature, state, dry)
+        torque_limits = friction.friction_limits(drive, motion[1], tau, temperature, motion[0])
+        friction_arguments = [*motion[:2], *torque_limits]
+        out = spring.motion_outputs(drive, motion, temperature, state, dry_friction_torque)
     doc = "inputs, kinematic error -> argument of the curve"
-    function_graph.add_with_derivative("curve_argument", doc, [*inputs, error], [argument])
+    function_graph.add_with_derivative("curve_argument", doc, [*inputs, state.phi_error], [curve_argument])
     function_graph.add_function(
-        "sticking_stiffness", "-> stiffness of the friction sliders while all stick", [], [brake]
+        "sticking_stiffness", "-> stiffness of the friction sliders while all stick", [], [stick_stiffness]
     )
     doc = "inputs, torques of midline and hysteresis, d(error)/d(phi1) -> phi1, w1, friction limits"
-    function_graph.add_with_derivative("friction_arguments", doc, [*inputs, load, slid, slope], turn)
+    x = [*inputs, state.midline_torque, state.hysteresis_torque, state.phi_error_slope]
+    function_graph.add_with_derivative("friction_arguments", doc, x, friction_arguments)
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]
     doc = (
         "inputs, wind-up, torque and stiffness of the midline, hysteresis torque, loss, kinematic "
         "error and its derivative by phi1, dry friction -> outputs"
     )
-    function_graph.add_with_derivative(
-        "outputs", doc, [*inputs, x, load, stiffness, slid, loss, error, slope, dry], y
-    )
+    x = [
+        *(
+            *inputs,
+            state.phi_rel,
+            state.midline_torque,
+            state.midline_stiffness,
+            state.hysteresis_torque,
+            loss,
+        ),
+        *(state.phi_error, state.phi_error_slope, dry_friction_torque),
+    ]
+    function_graph.add_with_derivative("outputs", doc, x, y)
 
 
 def _is_torque_input(model: Model) -> bool:

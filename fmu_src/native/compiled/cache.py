@@ -4,12 +4,17 @@ Its files become part of FMUs, so only the user and root may have write access.
 """
 
 import os
-import shutil
 import stat
+import subprocess
 import sys
+import tempfile
 from contextlib import suppress
 from pathlib import Path
 
+_REMOVED_PREFIX = "removed-"
+"""Start of the names of folders that are being deleted."""
+_MAX_DELETION_WAIT = 1.0
+"""Time [s] that `clear_cache` waits for the deletion of the files."""
 CACHE_ENVIRONMENT_VARIABLE = "JOINTFMU_CACHE"
 """Environment variable with the path of the cache folder."""
 COMPILER_CACHE_ENVIRONMENT_VARIABLE = "ZIG_GLOBAL_CACHE_DIR"
@@ -30,6 +35,11 @@ def cache_folder() -> Path:
 def compiled_model_folder() -> Path:
     """Folder of the compiled models."""
     return cache_folder() / "parts"
+
+
+def kernel_result_folder() -> Path:
+    """Folder of the results that the kernel computed."""
+    return cache_folder() / "results"
 
 
 def compiler_cache_folder() -> Path:
@@ -82,19 +92,35 @@ def count_cached_files() -> tuple[int, int]:
 
 
 def clear_cache() -> None:
-    """Delete all files of the cache; later builds compile again.
+    """Remove all files from the cache; later builds compile again.
 
-    Raises ValueError if it cannot be removed.
+    The folders are renamed. Another process deletes them: 100 000 files of the compiler take a minute.
+
+    Raises ValueError if a folder cannot be renamed.
     """
     for folder in _cache_subfolders():
-        try:
-            shutil.rmtree(folder)
-        except FileNotFoundError:
+        if not folder.exists():
             continue
+        try:
+            folder.rename(tempfile.mkdtemp(prefix=_REMOVED_PREFIX, dir=folder.parent) + f"/{folder.name}")
         except OSError as error:
             raise ValueError(f"{folder}: cannot be removed ({error.strerror})") from None
+    removed = [str(path) for path in cache_folder().glob(f"{_REMOVED_PREFIX}*")]
+    if not removed:
+        return
+    program = "import shutil, sys; [shutil.rmtree(path, ignore_errors=True) for path in sys.argv[1:]]"
+    deleting = subprocess.Popen(
+        [sys.executable, "-c", program, *removed],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    with suppress(subprocess.TimeoutExpired):
+        deleting.wait(_MAX_DELETION_WAIT)
+    deleting.returncode = 0  # it goes on by itself
 
 
-def _cache_subfolders() -> tuple[Path, Path]:
-    """Folders that jointfmu fills: compiled models, and the compiler's default cache."""
-    return compiled_model_folder(), cache_folder() / "zig"
+def _cache_subfolders() -> tuple[Path, ...]:
+    """Folders that jointfmu fills: compiled models, results of the kernel, the compiler's default cache."""
+    return compiled_model_folder(), kernel_result_folder(), cache_folder() / "zig"

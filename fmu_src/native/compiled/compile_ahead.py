@@ -1,5 +1,12 @@
-"""Compile the models that a wheel contains: one for each law and choice on which the C code depends."""
+"""Compile the models that a wheel contains, so that users need no compiler.
 
+    python -m jointfmu_fmu_src.native.compiled.compile_ahead [NAME ...] [--out DIR]
+
+There is one model for each law and choice on which the C code depends. Then run `pip wheel .`.
+"""
+
+import argparse
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
@@ -13,7 +20,7 @@ from jointfmu.quantity import flat_fields
 from ...partners import PARTNERS
 from ...partners import load_partner_parameters as partner_parameters
 from ..data import split_parameters
-from .compiled_models import compiled_model_name, get_compiled_model, pack_model
+from .compiled_models import SHIPPED_MODEL_FOLDER, compiled_model_name, get_compiled_model, pack_model
 
 
 def compile_ahead(fmu_names: Sequence[str], output_folder: Path) -> list[Path]:
@@ -66,3 +73,25 @@ def _list_choices(model: Model, parameter_file: ParameterFile) -> Iterator[Mappi
     }
     for values in product(*allowed.values()):
         yield dict(zip(allowed, values, strict=True))
+
+
+def main() -> None:
+    """Compile the models that the command line names, and print number and size of the files."""
+    parser = argparse.ArgumentParser(description="Compile the models that a wheel contains.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="FMUs (default: all)")
+    parser.add_argument(
+        "--out", type=Path, default=SHIPPED_MODEL_FOLDER, metavar="DIR", help="default: in the package"
+    )
+    arguments = parser.parse_args()
+    try:
+        written_files = compile_ahead(arguments.names, arguments.out)
+    except ImportError as error:
+        sys.exit(f"compile_ahead: {error}; install what building needs with: pip install -e '.[build]'")
+    except (RuntimeError, ValueError) as error:
+        sys.exit(f"compile_ahead: {error}")
+    size = sum(file.stat().st_size for file in written_files)
+    print(f"{len(written_files)} files, {size / 1e6:.1f} MB in {arguments.out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -29,7 +29,7 @@ from jointfmu.progress import set_status_text
 from ...folders import find_source_folder
 from ...joint_parts.data import ParameterSplit
 from ..data import PLACEHOLDER_NAME, make_placeholder
-from .cache import check_cache_access, compiled_model_folder, make_cache_folder
+from .cache import check_cache_access, compiled_model_folder, kernel_result_folder, make_cache_folder
 from .compiler import ZIG_TARGETS, compile_libraries, select_source_files
 
 SHIPPED_MODEL_FOLDER = Path(__file__).parent.with_name("parts")
@@ -94,6 +94,24 @@ def get_cached_result(dependency_text: str, model: Model, compute_result: Callab
             return lzma.decompress(content)
     result = compute_result()
     with suppress(OSError):
+        _write_cache_file(file, lzma.compress(result))
+    return result
+
+
+def get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
+    """Bytes that the kernel computes, read from the cache if the sources of the kernel are unchanged.
+
+    key : identifies the computation and its arguments
+
+    An unsafe or unwritable cache is not used. See `jointfmu.files.results`.
+    """
+    name = sha256(f"{key} {_digest_folders((Path(str(files('jointfmu'))),))}".encode()).hexdigest()[:32]
+    file = kernel_result_folder() / f"{name}{_RESULT_FILE_SUFFIX}"
+    with suppress(ValueError, lzma.LZMAError):
+        if content := _read_cache_file(file):
+            return lzma.decompress(content)
+    result = compute_result()
+    with suppress(OSError, ValueError):
         _write_cache_file(file, lzma.compress(result))
     return result
 

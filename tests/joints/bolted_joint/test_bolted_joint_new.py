@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,11 +14,18 @@ from jointfmu_tools import cli
 from jointfmu_tools.common.shown import list_entries
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.inputs.drawing import vdi2230
-from jointfmu_tools.inputs.drawing.tables import read_property_classes, read_threads
-from jointfmu_tools.joints.bolted_joint.new import layout, plate_finite_elements
-from jointfmu_tools.joints.bolted_joint.report import friction_results
-from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.inputs.drawing.tables import (
+    find_thread,
+    read_property_classes,
+    read_threads,
+    read_tightening_methods,
+)
+from jointfmu_tools.joints.bolted_joint.gross_slip import friction_results, preload_results
+from jointfmu_tools.joints.bolted_joint.new import TIGHTENING_METHODS, layout, plate_finite_elements
+from jointfmu_tools.joints.bolted_joint.report import preload_figures
+from jointfmu_tools.studies.uncertainty.problem import resolve_interval, state_problem
 
+import jointfmu
 from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_parameter_file
@@ -124,7 +132,14 @@ def test_a_bolt_by_hand():
 
 @pytest.mark.parametrize(
     ("Rz", "tapped", "printed"),
-    [(6.3, False, 9.5), (16.0, False, 11.0), (16.0, True, 8.0), (100.0, False, 14.0), (400.0, False, 14.0)],
+    [
+        (6.3, False, 9.5),
+        (10.0, False, 9.5),
+        (16.0, False, 11.0),
+        (16.0, True, 8.0),
+        (100.0, False, 14.0),
+        (400.0, False, 14.0),
+    ],
 )
 def test_embedding_of_table_5(Rz, tapped, printed):
     """VDI 2230, part 1, Table 5, load along the bolt: thread, head and nut and one interface, in um."""
@@ -140,6 +155,172 @@ def test_embedding_takes_of_the_preload(capsys):
     whole = facts_of(capsys, *PLATE, *FACES, *LOAD, "--embedding", "0")
     assert whole["slip_force"] == pytest.approx(0.15 * 4.0 * 30e3)
     assert found["p_mean"] / whole["p_mean"] == pytest.approx(1.0 - loss / 30e3)
+
+
+# Preload from the tightening torque
+
+
+def preload_of(torque, thread, mu_G, mu_K):
+    diameter = vdi2230.head_friction_diameter(thread.hexagon, thread.hole)
+    arms = vdi2230.torque_per_preload(thread.pitch, vdi2230.pitch_diameter(thread), diameter, mu_G, mu_K)
+    return torque / arms
+
+
+@pytest.mark.parametrize(
+    ("name", "pitch", "mu", "preload", "torque"),
+    [
+        ("M8", None, 0.12, 18.6, 24.6),
+        ("M10", None, 0.12, 29.6, 48.0),
+        ("M12", None, 0.10, 44.1, 73.0),
+        ("M12", None, 0.12, 43.0, 84.0),
+        ("M12", None, 0.14, 41.9, 93.0),
+        ("M16", None, 0.12, 80.9, 206.0),
+        ("M10", 1.25e-3, 0.12, 31.6, 51.0),
+        ("M12", 1.25e-3, 0.10, 49.1, 79.0),
+        ("M12", 1.25e-3, 0.12, 48.0, 90.0),
+        ("M16", 1.5e-3, 0.14, 85.5, 244.0),
+    ],
+)
+def test_torques_of_tables_a1_and_a3(name, pitch, mu, preload, torque):
+    """VDI 2230, part 1, Tables A1 and A3, class 8.8: preload in kN and torque in N.m at mu_G = mu_K."""
+    thread = find_thread(name, pitch)
+    assert vdi2230.assembly_preload(thread, 640e6, mu) / 1e3 == pytest.approx(preload, rel=5e-3)
+    assert preload_of(torque, thread, mu, mu) / 1e3 == pytest.approx(preload, rel=0.015)
+
+
+def test_scatter_of_table_a8():
+    """VDI 2230, Table A8 prints alpha_A and the scatter side by side."""
+    for factor, scatter in ((1.2, 0.09), (1.4, 0.17), (1.6, 0.23), (2.0, 0.33), (2.5, 0.43), (4.0, 0.60)):
+        assert vdi2230.preload_scatter(factor) == pytest.approx(scatter, abs=0.005)
+    assert {*read_tightening_methods()} == {*TIGHTENING_METHODS}
+
+
+TORQUE = ["--torque", "84"]
+KNOWN = ["--thread-friction", "0.12", "--head-friction", "0.12"]
+
+
+def test_a_torque_gives_a_preload_with_its_range(capsys, tmp_path):
+    """84 N.m on M12 at 0.12: Table A1 has 43.0 kN; a torque wrench scatters by a third of it."""
+    path = tmp_path / "plate.toml"
+    facts = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, "--sides", "rigid")
+    assert facts["preload"] == pytest.approx(43.0e3, rel=0.01)
+    made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, path=path)
+    file = load_parameter_file(path)
+    low, high = file.ranges["inputs.preload"]
+    assert (low, high) == pytest.approx((facts["preload"] * 2.0 / 3.0, facts["preload"] * 4.0 / 3.0))
+    assert (facts["preload_low"], facts["preload_high"]) == pytest.approx((low, high))
+    assert file.origins["inputs.preload"] == "derived"
+    assert "D_Km = 15.06 mm, mu_G = 0.12, mu_K = 0.12; torque wrench" in file.sources["inputs.preload"]
+    assert "alpha_A = 1.6 to 2 (VDI 2230, Table A8)" in file.sources["inputs.preload"]
+    left = facts["embedding"]
+    for end, preload in (("low", low), ("high", high)):
+        assert facts[f"slip_force_at_{end}_preload"] == pytest.approx(0.15 * 4.0 * (preload - left))
+    for name in ("K_zz", "K_xx", "opening_load"):
+        assert facts[f"{name}_at_low_preload"] < facts[f"{name}_at_high_preload"]
+    # the stiffness is that of the FMU, the interface opens at the preload of all bolts and what they add
+    spring = BoltedJointSpring.for_joint(file.values)
+    K = spring.evaluate(low, 0.0, STILL, STILL)["K_zz"]
+    assert facts["K_zz_at_low_preload"] == pytest.approx(float(K), rel=1e-6)
+    assert facts["opening_load_at_low_preload"] == pytest.approx(4.0 * (low - left), rel=0.05)
+
+
+def test_python_takes_a_torque_too(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, "--tightening", "angle", path=path)
+    sizes = {
+        "plate": (200, 100),
+        "bolts": "4xM12",
+        "at": (160, 60),
+        "grip": 40,
+        "material": "steel",
+        "Ra": 0.8,
+    }
+    friction = {"thread_friction": 0.12, "head_friction": 0.12}
+    joint = jointfmu.bolted_joint(**sizes, torque=84, tightening="angle", **friction)
+    file = load_parameter_file(path)
+    assert joint.file.inputs == file.inputs
+    assert joint.file.ranges == file.ranges
+    with pytest.raises(ValueError, match=r"^torque beside preload: state one of them"):
+        jointfmu.bolted_joint(**sizes, torque=84, preload="43kN")
+
+
+def test_friction_of_a_torque_widens_the_range(capsys):
+    """By its interval if the method depends on friction, as a torque wrench does."""
+    known = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN)
+    usual = facts_of(capsys, *PLATE, *FACES, *TORQUE)
+    assert usual["preload"] == known["preload"]
+    assert usual["preload_low"] == known["preload_low"]
+    slippery = preload_of(84.0, read_threads()["M12"], 0.08, 0.08)
+    assert usual["preload_high"] == pytest.approx(slippery)
+    assert slippery > known["preload_high"]
+    angle = facts_of(capsys, *PLATE, *FACES, *TORQUE, "--tightening", "angle")
+    assert angle["preload_high"] / angle["preload_low"] == pytest.approx(1.4)
+    stated = facts_of(capsys, *PLATE, *FACES, *TORQUE, "--head-friction", "0.1..0.14", *KNOWN[:2])
+    assert stated["preload_high"] == known["preload_high"]
+    sticky = facts_of(capsys, *PLATE, *FACES, *TORQUE, "--head-friction", "0.18", *KNOWN[:2])
+    assert sticky["preload"] < known["preload"]
+
+
+def test_a_stated_preload_scatters_if_its_tightening_is_stated(capsys):
+    found = facts_of(capsys, *PLATE, *FACES, *LOAD, "--tightening", "impact")
+    assert (found["preload_low"], found["preload_high"]) == pytest.approx((12e3, 48e3))
+    assert "preload_low" not in facts_of(capsys, *PLATE, *FACES, *LOAD)
+
+
+def test_the_yield_strength_limits_the_torque(capsys):
+    words = [*PLATE, *FACES, *KNOWN, "--property-class", "8.8", "--torque"]
+    found = made(capsys, *words, "84")
+    assert found["warnings"] == []
+    assert found["facts"]["yield_utilisation"]["value"] == pytest.approx(0.9, rel=0.01)
+    (line,) = made(capsys, *words, "90")["warnings"]
+    assert (
+        "uses 97% of the yield strength of M12-8.8 in tightening (VDI 2230, von Mises), allowed are" in line
+    )
+    line = refused_line(capsys, "new", "bolted-joint", *words, "110")
+    assert "1.18 times the yield strength of M12-8.8; expected up to 83.6 N.m (VDI 2230: 90%)" in line
+    line = refused_line(capsys, "new", "bolted-joint", *PLATE, *FACES, "--torque", "840")
+    assert "times the yield strength of M12-12.9, the strongest class" in line
+
+
+def test_fine_threads(capsys):
+    count, thread = layout.parse_bolts("4xM12x1.25")
+    assert (count, thread.name, thread.pitch) == (4, "M12x1.25", pytest.approx(1.25e-3))
+    assert thread.hexagon == read_threads()["M12"].hexagon
+    assert layout.parse_bolts("M12x1.75")[1] is read_threads()["M12"]
+    with pytest.raises(
+        ValueError, match=r"thread M12x1 is unknown, allowed pitches of M12 are 1.75, 1.5, 1.25 mm"
+    ):
+        layout.parse_bolts("4xM12x1")
+    fine = facts_of(capsys, "--plate", "200x100", "--bolts", "4xM12x1.25", *PLATE[4:], *FACES)
+    assert fine["preload"] == pytest.approx(48.0e3, rel=5e-3)
+    assert fine["bolt_stiffness"] > facts_of(capsys, *PLATE, *FACES)["bolt_stiffness"]
+
+
+def test_a_preload_range_reaches_report_and_study(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    facts = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN)
+    made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, path=path)
+    file = load_parameter_file(path)
+    rows = {row.preload: row for row in preload_results(file)}
+    assert len(rows) == 3
+    history = SimpleNamespace(file=file)
+    (figure,) = preload_figures(history)
+    assert len(figure.table) == 4
+    assert "torque wrench" in figure.text
+    study = state_problem(file, {}, None, 3)
+    load = study.uncertain_parameters[-1]
+    left = facts["embedding"]  # the load of a study is what embedding leaves
+    assert (load.name, load.support) == (
+        "preload", pytest.approx((facts["preload_low"] - left, facts["preload_high"] - left)),
+    )  # fmt: skip
+    assert "opening_load" in study.units
+    low, high = file.ranges["inputs.preload"]  # of an FMU, whose input is what is tightened
+    assert resolve_interval("preload", "interval", file) == f"{low!r}..{high!r}"
+    # a stated ramp takes the place of the range
+    assert [each.name for each in state_problem(file, {}, 30e3, 3).uncertain_parameters] == ["mu"]
+    bare = replace(file, ranges={"inputs.preload": (1e3, 50e3)})
+    with pytest.raises(ValueError, match="the joint loses all of it"):
+        state_problem(bare, {}, None, 3)
 
 
 # Layouts
@@ -292,6 +473,39 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
     assert found["slope"] == pytest.approx(2.0 * np.std(np.diff(z) / 1e-6), rel=0.3)  # isotropic, both sides
 
 
+def test_rz_gives_ra_with_its_scatter(capsys, tmp_path):
+    """Rz 10 of a drawing is Ra 1.6: the same height, with the range of Rz/Ra from 4 to 10."""
+    path = tmp_path / "plate.toml"
+    known = facts_of(capsys, *PLATE, *STEEL, "--Ra", "1.6", *LOAD)
+    found = made(capsys, *PLATE, *STEEL, "--Rz", "10", *LOAD, path=path)["facts"]
+    file = load_parameter_file(path)
+    assert file.values.h == pytest.approx(known["h"])
+    assert file.ranges["h"] == pytest.approx((known["h"] * 0.625, known["h"] * 6.25 / 4.0))
+    assert dict(file.roughness) == pytest.approx({"Ra1": 1.6e-6, "Ra2": 1.6e-6})
+    assert "Ra = Rz/6.25, from Rz/10 to Rz/4" in file.sources["roughness.Ra1"]
+    # stiffness with the range, embedding by the Rz that is stated: 9.5 um of both
+    ratio = found["interface_K_zz_high"]["value"] / found["interface_K_zz_low"]["value"]
+    assert ratio == pytest.approx(2.5)
+    assert found["embedding"]["value"] == pytest.approx(known["embedding"])
+    depth = known["embedding"] * (1.0 / known["bolt_stiffness"] + 1.0 / known["member_stiffness"])
+    assert depth == pytest.approx(9.5e-6)
+    assert {each.name for each in state_problem(file, {}, 30e3, 3).uncertain_parameters} == {"mu", "h"}
+
+
+def test_stated_ranges_are_in_the_file(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    words = [*PLATE, *STEEL, "--Ra", "0.6..1.0um", "--mu", "0.1..0.3", "--hardness", "150..170HB"]
+    made(capsys, *words, "--preload", "28..32kN", path=path)
+    file = load_parameter_file(path)
+    assert file.start_value("preload") == pytest.approx(30e3)
+    assert file.ranges["inputs.preload"] == pytest.approx((28e3, 32e3))
+    assert (file.values.mu, *file.ranges["mu"]) == pytest.approx((0.2, 0.1, 0.3))
+    assert file.ranges["H"] == pytest.approx((150 * 9.80665e6, 170 * 9.80665e6))
+    scale = RQ_OVER_RA * math.sqrt(2.0) * 1e-6
+    assert (file.values.h, *file.ranges["h"]) == pytest.approx((0.8 * scale, 0.6 * scale, 1.0 * scale))
+    assert file.origins["mu"] == "user"
+
+
 # Refusals and warnings
 
 
@@ -319,12 +533,23 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
         (["--grip", "0"], "--grip = '0' is outside (0, inf)"),
         (["--grip", "1", "2", "3"], "--grip has 3 values, expected both plates together, or each"),
         (["--tapped", "--grip", "10", "30"], "--grip has 2 values, expected that of side 1"),
-        (["--hole", "11"], "--hole = 11 mm is outside (12, inf) mm"),
-        (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, inf) mm"),
+        (["--hole", "11"], "--hole = 11 mm is outside (12, 36] mm of M12"),
+        (
+            ["--hole", "13500"],
+            "--hole = '13500' is read as 13500 mm, plausible are 2 to 150 mm; if it is in um",
+        ),
+        (["--bearing", "120"], "--bearing = 120 mm is outside (13.5, 96] mm of M12"),
+        (["--plate", "0.2x0.15", "--at", "0.16x0.11"], "if it is in m, write 0.2m (200 mm)"),
+        (["--at", "160,5x60"], "has x and comma; write LxW with decimal points"),
+        (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, 96] mm of M12"),
         (["--preload", "-1"], "--preload = '-1' is outside (0, inf)"),
+        (["--torque", "84", "--preload", "43e3"], "--torque beside --preload: state one of them"),
+        (["--head-friction", "0.1"], "--head-friction has no effect without --torque"),
+        (["--torque", "84kN"], "--torque = '84kN': unit 'N.m' does not measure what 'kN' does"),
+        (["--bolts", "4xM12x1"], "allowed pitches of M12 are 1.75, 1.5, 1.25 mm"),
         (["--preload", "nan"], "--preload = 'nan' is not a number"),
         (["--preload", "2kN"], "embedding takes 2643 N of a preload of 2000 N: expected less than all"),
-        (["--embedding", "-1"], "embedding = -1 N is outside [0, inf)"),
+        (["--embedding", "-1"], "--embedding = '-1' is outside [0, inf) N: preload loss of a bolt"),
         (["--material", "unobtainium"], "material 'unobtainium' is unknown, allowed are steel,"),
         (["--material", "steel", "steel", "steel"], "--material has 3 values"),
         (["--Rq", "1"], "--Ra and --Rq are given together; state the roughness once"),
@@ -342,7 +567,7 @@ def test_what_does_not_fit_is_refused(capsys, tmp_path, words, text):
 
 def test_a_roughness_must_be_stated(capsys):
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL)
-    assert "the roughness is missing; expected --finish, --Ra, --Rq or --surface" in line
+    assert "the roughness is missing; expected --finish, --Ra, --Rq, --Rz or --surface" in line
     both = ["--surface", "scan.csv", "--finish", "ground"]
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL, *both)
     assert "--surface and --finish are both given; state one of them" in line
@@ -365,7 +590,7 @@ def test_a_preload_no_bolt_bears_is_warned_of(capsys):
 
 
 def test_a_pressure_beyond_the_hardness_is_warned_of(capsys):
-    (line,) = made(capsys, *PLATE, *FACES, "--hardness", "10", *LOAD)["warnings"]
+    (line,) = made(capsys, *PLATE, *FACES, "--hardness", "10MPa", *LOAD)["warnings"]
     assert "above the hardness of the softer body, 1e+07 Pa" in line
 
 

@@ -395,23 +395,37 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
     assert (len(drawn.contact_outline), drawn.hole_diameter) == (1, pytest.approx(0.009))
 
 
-def test_without_finite_elements_it_is_said(capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "gmsh", None)
-    facts, found = made(capsys, *M16, *LOAD)
+@pytest.mark.parametrize("package", ["gmsh", "threadpoolctl"])
+def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypatch, tmp_path, package):
+    """The file would be of another joint than asked: nothing is written, unless that is asked for."""
+    monkeypatch.setitem(sys.modules, package, None)
+    path = tmp_path / "joint.toml"
+    line = refused_line(capsys, "new", "bolted-joint", *M16, *LOAD, "--out", path)
+    assert "the complete joint needs the finite elements (extra fem), which are not installed" in line
+    assert "pip install 'jointfmu[fem]'; or state --sides rigid for the interface alone" in line
+    assert "No module named" not in line
+    assert not path.exists()
+    facts, found = made(capsys, *M16, *LOAD, "--sides", "rigid", "--out", str(path))
     assert "joint_K_zz" not in facts
-    (line,) = found["warnings"]
+    assert found["warnings"] == []
+    assert load_parameter_file(path).values.sides == "rigid"
     interface = 1.0 / facts["interface_K_zz"]
-    share = interface / (interface + 1.0 / facts["member_stiffness"])  # of one bolt
-    assert line.startswith(
-        f"members and bolts are not computed, the FMU is the interface alone ({share:.1%} of the compliance "
+    assert facts["interface_share"] == pytest.approx(
+        interface / (interface + 1.0 / facts["member_stiffness"])
     )
-    assert "pip install 'jointfmu[fem]'" in line
+    assert "the FMU is the interface alone" in found["facts"]["interface_share"]["text"]
+
+
+def test_rigid_sides_need_no_modes(capsys, monkeypatch):
+    """The finite elements took half a minute, and were dropped."""
+    monkeypatch.setattr(plate_finite_elements, "compute_joint_of_assembly", None)
+    made(capsys, *M16, *LOAD, "--sides", "rigid")
 
 
 def test_heads_that_do_not_fit_are_said(capsys):
-    _, found = made(capsys, *M16, *LOAD, "--bearing", "90")
-    (line,) = found["warnings"]
+    line = refused_line(capsys, "new", "bolted-joint", *M16, *LOAD, "--bearing", "90")
     assert "bolt 1 at (0, 0) mm with a head of 90 mm reaches beyond the plate of side1" in line
+    assert line.endswith("; or state --sides rigid for the interface alone\n")
 
 
 def test_an_unknown_attachment_is_refused(capsys):

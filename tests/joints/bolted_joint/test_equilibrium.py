@@ -23,17 +23,17 @@ def state(a, residual):
 
 
 def load_step(residual, tangent=K):
-    """Load step with a residual [N] at a load factor and modal coordinates, from rest."""
+    """Load step with a residual [N] at a step fraction and modal coordinates, from rest."""
     return SimpleNamespace(
-        displacement_at=lambda load_factor: load_factor,
-        evaluate_trial=lambda load_factor, a: state(a, residual(load_factor, a)),
-        modal_tangent=lambda trial: tangent,
+        displacement_at=lambda step_fraction: step_fraction,
+        evaluate_trial=lambda step_fraction, a: state(a, residual(step_fraction, a)),
+        residual_jacobian=lambda trial: tangent,
         input_summary="s_rel_x = 1",
     )
 
 
-def linear(load_factor, a):
-    return K @ a - load_factor * LOAD
+def linear(step_fraction, a):
+    return K @ a - step_fraction * LOAD
 
 
 def test_newton_converges_in_the_last_iteration(monkeypatch):
@@ -69,7 +69,7 @@ def test_a_singular_tangent_at_the_start_is_no_equilibrium():
     step.preload_state = step.preload_bolt_force = step.friction_tangent = None
     step.assembly = SimpleNamespace(
         evaluate_normal=lambda *arguments: SimpleNamespace(stiffness=None),
-        bolts=SimpleNamespace(tangent_stiffness=lambda *arguments: None),
+        bolts=SimpleNamespace(active_stiffness=lambda *arguments: None),
         elongation=lambda *arguments: None,
         tangent_stiffness=lambda *arguments: np.zeros((8, 8)),
     )

@@ -35,7 +35,12 @@ UNITS = {
     "friction_viscous": "N.m.s/rad",
     "load_loss": "1",
     "load_loss_back": "1",
+    "friction_1": "N.m",
+    "friction_1_phase": "rad",
+    "friction_2": "N.m",
+    "friction_2_phase": "rad",
 }
+RIPPLE = {"friction_1": 0.005, "friction_1_phase": 0.9, "friction_2": 0.003, "friction_2_phase": -0.6}
 ERROR = {
     "error_1": 2e-5,
     "error_1_phase": 0.7,
@@ -87,7 +92,7 @@ SPRING = Case(
         good={"phi2": 6e-4},
     ),
     tuning=Tuning(
-        base=BASE | ERROR | FRICTION | INERTIA,
+        base=BASE | ERROR | FRICTION | RIPPLE | INERTIA,
         moved=MOVED,
         without_effect=ELASTIC,
         tuned={"surface.D": 2.55, "ratio": 80.0, "d": 1.0, "flexspline.E": 1.9e11},

@@ -56,6 +56,7 @@ def test_every_row_of_torque_is_told_as_printed():
         ("csf 25_80", "CSF-25-80"),
         ("SHG-32-160-2SO", "SHG-32-160"),
         ("RSF-8B-50", "RSF-8B-50"),
+        ("csg32100", "CSG-32-100"),
     ],
 )
 def test_names(name, found):
@@ -69,12 +70,38 @@ def test_names(name, found):
         ("CSG-25-99", "CSG-25-100, CSG-25-120, CSG-25-80"),
         ("CSG-25", "CSG-25-30, CSG-25-50, CSG-25-80"),
         ("CSF26-100", "CSF-25-100, CSF-25-120, CSF-25-80"),
+        ("csg32101", "CSG-32-100"),
     ],
 )
 def test_the_nearest_names_are_told(name, near):
     """Of the same series, then of the nearest size, then of the nearest ratio."""
     with pytest.raises(ValueError, match=f"nearest are {near}"):
         catalogue.find_drive(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "ratio", "found"),
+    [
+        ("CSG-32-100", 50, "CSG-32-50"),
+        ("csf-8-30", -50, "CSF-8-50"),
+        ("CHA-14A-30", 50, "CHA-14A-50"),
+    ],
+)
+def test_another_ratio_takes_the_row_of_that_ratio(name, ratio, found):
+    """K1 of CSG-32 is 54 000 N.m/rad at ratio 50, 67 000 at ratio 100."""
+    drive, row = jointfmu.drive(name, ratio=ratio), catalogue.find_drive(found)
+    assert drive.name == row.name == found
+    assert abs(drive.values["ratio"]) == abs(ratio)
+    for column in LINES:
+        assert drive.values[column] == row.numbers[column].value
+    assert (
+        jointfmu.drive(name, ratio=ratio, K1=row.numbers["K1"].value * 0.9).values["K1"] < drive.values["K1"]
+    )
+
+
+def test_a_ratio_that_is_not_in_the_catalogue_is_refused(capsys):
+    line = refused_line(capsys, "new", "harmonic-drive", "--catalogue", "CSG-32-100", "--ratio", "51")
+    assert "--ratio = 51 is not in the catalogue for CSG-32, allowed are 30, 50, 80, 100, 120, 160" in line
 
 
 def test_a_torque_that_is_not_printed_is_a_marked_estimate():

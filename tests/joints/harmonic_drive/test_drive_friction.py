@@ -70,6 +70,32 @@ def test_steady_friction_is_that_of_speed_and_load(speed, tau, ratio):
     assert turning(law, speed, tau) == pytest.approx(1.3 * (np.sign(speed) * dry + 1e-4 * speed), rel=1e-9)
 
 
+RIPPLE = {"friction_1": 0.012, "friction_1_phase": 0.4, "friction_2": 0.008, "friction_2_phase": -1.0}
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_friction_over_the_turn_of_the_wave_generator(sense):
+    """Slow motion over two turns: the limit at each angle; the mean is that without ripple."""
+    law = spring(**DRY, **RIPPLE, presliding=1e-4)
+    angles = sense * np.linspace(0.0, 4.0 * np.pi, 20_001)
+    memory, found = law.initial_history(), []
+    for phi1 in angles:
+        out, memory = law.advance_motion((phi1, sense * 1e-3, phi1 / 100.0, sense * 1e-5), memory)
+        found.append(float(out["tau_friction"]))
+    ripple = 0.012 * np.sin(angles + 0.4) + 0.008 * np.sin(2.0 * angles - 1.0)
+    np.testing.assert_allclose(found[10:], sense * (0.05 + ripple)[10:], rtol=1e-4)
+    assert np.mean(found[10_001:]) == pytest.approx(sense * 0.05, rel=1e-4)
+
+
+def test_friction_below_zero_is_refused():
+    with pytest.raises(
+        ValueError, match=r"friction_1 = 0.025 N.m is outside \[0, 0.02\]: friction_1 \+ friction_2"
+    ):
+        spring(friction_coulomb=0.03, friction_1=0.025, friction_2=0.01)
+    with pytest.raises(ValueError, match=r"friction_1 = 0 N\.m: the other parameters leave no value"):
+        spring(friction_coulomb=0.03, friction_2=0.04)
+
+
 def test_without_friction_nothing_acts_and_nothing_is_remembered():
     law = spring()
     out, memory = law.advance_motion((3.0, 100.0, 0.0305, 1.0), law.initial_history())
@@ -120,7 +146,9 @@ def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
 
 
 def test_no_path_gives_energy_back_from_heat():
-    law = spring(**DRY, load_loss_back=0.4, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4)
+    law = spring(
+        **DRY, **RIPPLE, load_loss_back=0.4, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4
+    )
     rng = np.random.default_rng(5)
     memory, previous = started(law, 0.0, 0.0, 0.0, 0.0), 0.0
     for _ in range(500):
@@ -238,7 +266,7 @@ def test_the_default_coefficient_is_that_of_a_light_machine_oil():
 def stored(law, memory, out):
     """Energy (n) [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
     parts = STATES.split(memory)
-    pairs = ((parts["force"], law.hysteresis.stiffness), (parts["brake"], law.friction.stiffness))
+    pairs = ((parts["force"], law.hysteresis.stiffness), (parts["friction_torque"], law.friction.stiffness))
     sliders = sum(np.sum(force**2 / (2.0 * K), axis=-1) for force, K in pairs)
     return law.curve.energy(np.abs(out["phi_rel"])) + sliders
 

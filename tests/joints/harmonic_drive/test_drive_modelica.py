@@ -126,6 +126,7 @@ def way(ratio: float, t: float) -> tuple[float, ...]:
 def test_friction_along_a_path_is_the_packages(rumoca: Any):
     """With all else; alone it is nearer, see the heat port below."""
     more = {"ratio": -80.0, "hysteresis_loss": 2e-4, "error_2": 2e-4, "error_4": 5e-5, "error_4_phase": 1.0}
+    more |= {"friction_1": 0.002, "friction_1_phase": 0.5, "friction_2": 0.0015, "friction_2_phase": -1.0}
     left = 1e-4  # of the layer, for the 44 sliders of the hysteresis
     values = {**DRY, "stribeck_speed": 0.5, "friction_viscous": 1e-3, "temperature_factor": 1.3, **more}
     law = spring(**values)

@@ -3,6 +3,8 @@
 import json
 import math
 from importlib.resources import files
+from pathlib import Path
+from time import process_time
 
 import numpy as np
 import pytest
@@ -10,13 +12,15 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.common import columns
 from jointfmu_tools.inputs.fitting import outcome
-from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
+from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log, log_friction
+from jointfmu_tools.joints.harmonic_drive.fit.log_friction import motor_friction
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from matplotlib.figure import Figure
 from oracles import robot_log
 from oracles.robot_log import CASES, TRUE, fit_log
 
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import format_parameter_file, load_parameter_file
 
 TABLE = files("jointfmu_models") / "reference" / "ur5e_base_joint_friction.csv"
@@ -166,6 +170,7 @@ def written(path, **given):
     return path
 
 
+DRIVE = ["--drive", "CSG-25-100"]
 TIME = np.linspace(0.0, 8.0, 4001)
 BACK = np.where(TIME > 4.0, TIME - 3.0, TIME)
 HOLE = np.where(TIME > 4.0, TIME + 3.0, TIME)
@@ -202,11 +207,13 @@ def test_a_log_that_cannot_be_is_refused(drive, tmp_path, capsys, given, text):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ([], "the log does not tell the ratio; expected --params FILE of the drive, or --ratio"),
-        (["--ratio", "100", "--columns", "speed=x"], "expected NAME=HEADING with one of time, q, dq"),
-        (["--ratio", "100", "--columns", "dq=x"], "has no column 'x' for dq; it has time, q, dq, tau"),
-        (["--ratio", "100", "--free", "K9"], "'K9' is not a parameter to fit"),
-        (["--ratio", "100", "--free", "K1"], "K1 needs the columns q and q_motor beside the time"),
+        (["--ratio", "100"], "the log does not state the drive; expected --params FILE, --drive NAME"),
+        (["--rated-torque", "87"], "rated torque = 87 N.m does not state the ratio; state both (--ratio)"),
+        ([*DRIVE, "--rated-torque", "87"], "--drive and --rated-torque both state the drive"),
+        ([*DRIVE, "--columns", "speed=x"], "expected NAME=HEADING with one of time, q, dq"),
+        ([*DRIVE, "--columns", "dq=x"], "has no column 'x' for dq; it has time, q, dq, tau"),
+        ([*DRIVE, "--free", "K9"], "'K9' is not a parameter to fit"),
+        ([*DRIVE, "--free", "K1"], "K1 needs the columns q and q_motor beside the time"),
     ],
 )
 def test_words_that_cannot_be_are_refused(tmp_path, capsys, words, text):
@@ -269,3 +276,274 @@ def test_noise_is_not_written(drive, tmp_path, capsys):
     assert not out.exists()
     assert cli.main([*asked, "--force"]) == 0
     assert out.exists()
+
+
+# torque at the joint
+
+JOINT_LOG = Path(__file__).parents[2] / "fitting" / "data" / "joint_torque_size_32.csv"
+SENSOR = {
+    "friction_coulomb": 0.116,
+    "friction_viscous": 0.00134,
+    "load_loss": 0.11,
+    "load_loss_back": 0.0605,
+}
+CONSTANT, ROTOR = 0.21, 1.7e-4
+
+
+def size_32_file():
+    given = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"catalogue": "CSG-32-100"}
+    return NEW_JOINT_COMMAND.make_joint(given).file
+
+
+def joint_columns():
+    """Time, angle, speed, current and torque at the joint of the made log."""
+    return dict(zip(("time", "q", "dq", "i", "link_torque"), np.loadtxt(
+        JOINT_LOG, delimiter=",", skiprows=1).T, strict=True))  # fmt: skip
+
+
+def save_log(path, log_columns, *names):
+    units = {"time": "s", "q": "rad", "dq": "rad/s", "i": "A", "link_torque": "N.m", "gravity": "N.m"}
+    units["q_motor"] = "rad"
+    path.write_text(
+        columns.format_table([(n, units[n.lower()]) for n in names], [log_columns[n] for n in names], 9)
+    )
+    return path
+
+
+def sensor_log(seed=0):
+    """The motion of the made log; its current by the law of the FMU, with the noise of the made log."""
+    log_columns, rng = joint_columns(), np.random.default_rng(seed)
+    drive = size_32_file().with_values(SENSOR | {"friction_stribeck": 0.0}, "user", "made").values
+    load = 2.5 * np.gradient(log_columns["dq"], 0.01) + 110.0 * np.cos(log_columns["q"])
+    friction_torque = motor_friction(drive, log_columns["dq"], np.full(load.size, np.nan), load)
+    torque = friction_torque + load / 100.0 + ROTOR * 100.0 * np.gradient(log_columns["dq"], 0.01)
+    log_columns["i"] = torque / CONSTANT + 0.02 * rng.standard_normal(load.size)
+    log_columns["link_torque"] = load + 0.3 * rng.standard_normal(load.size)
+    return log_columns
+
+
+def test_a_sensor_at_the_joint_gives_the_losses(tmp_path):
+    path = save_log(tmp_path / "log.csv", sensor_log(), "time", "q", "dq", "i", "link_torque")
+    found = log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    assert found.rejection_reason() is None
+    for name, true in SENSOR.items():
+        assert found.parameters.values_by_name[name] == pytest.approx(true, rel=0.1)
+        low, high = found.confidence_intervals[name]
+        assert low < true < high
+    assert found.facts["motor_inertia"][0] == pytest.approx(ROTOR, rel=0.05)
+    assert found.facts["arm_inertia"][0] == pytest.approx(2.5, rel=0.01)
+    assert found.facts["gravity_cos"][0] == pytest.approx(110.0, rel=0.01)
+    assert not any("--motor-inertia" in note for note in found.notes)
+
+
+def test_a_sensor_that_contradicts_the_motor_is_said(tmp_path, capsys):
+    """The current of this log grows with a load that drives the motor, as by a constant too large."""
+    path, out = tmp_path / "drive.toml", tmp_path / "out.toml"
+    path.write_text(format_parameter_file(size_32_file()), encoding="utf-8")
+    words = ["fit", "log", JOINT_LOG, "--params", path, "--torque-constant", "0.21", "--out", out]
+    assert cli.main([str(word) for word in words]) == 1
+    said = capsys.readouterr().err
+    assert "the friction falls with the load: check --torque-constant" in said
+    assert "load_loss_back ended on a bound of its interval; " in said
+    assert not out.exists()
+
+
+def test_the_torque_at_the_joint_alone(tmp_path, capsys):
+    path = save_log(tmp_path / "log.csv", joint_columns(), "time", "q", "dq", "link_torque")
+    line = refused_line(capsys, "fit", "log", path, "--drive", "CSG-32-100")
+    assert "has the torque at the joint, link_torque" in line
+    assert "--torque-at joint" in line
+    words = ["fit", "log", str(path), "--drive", "CSG-32-100", "--torque-at", "joint", "--json"]
+    assert cli.main(words) == 0
+    said = json.loads(capsys.readouterr().out)
+    for name in (*SENSOR, "K1", "hysteresis_loss"):
+        assert any("does not determine" in line and name in line for line in said["warnings"])
+    assert said["facts"]["arm_inertia"]["value"] == pytest.approx(2.5, rel=0.01)
+    assert said["facts"]["gravity_cos"]["value"] == pytest.approx(110.0, rel=0.01)
+    assert "friction_viscous needs the torque or the current of the motor" in refused_line(
+        capsys, *words[:-1], "--free", "friction_viscous"
+    )
+
+
+def test_a_sensor_and_the_angle_of_the_motor_give_the_stiffness(tmp_path):
+    """Without a torque of the motor: the loads of the log lie between T1 and T2."""
+    log_columns, file = sensor_log(), size_32_file()
+    load = 2.5 * np.gradient(log_columns["dq"], 0.01) + 110.0 * np.cos(log_columns["q"])
+    wind_up = HarmonicDriveSpring.tabulate(file.values).curve.odd_inverse(load)
+    log_columns["q_motor"] = -100.0 * (log_columns["q"] + wind_up)
+    path = save_log(tmp_path / "log.csv", log_columns, "time", "q", "q_motor", "link_torque")
+    found = log.fit([path], file.with_values({"K2": 9e4}, "user", "start"), ["K2"], torque_at="joint")
+    assert found.solution.values["K2"] == pytest.approx(file.values.K2, rel=0.02)
+
+
+def test_a_controller_that_states_motor_torques_at_the_joint(tmp_path):
+    """The torque of the motor times the ratio has the friction, a sensor behind the drive has none."""
+    log_columns = sensor_log()
+    at_joint = log_columns | {"link_torque": 100.0 * CONSTANT * log_columns["i"]}
+    path = save_log(tmp_path / "log.csv", at_joint, "time", "q", "dq", "link_torque")
+    found = log.fit([path], size_32_file(), torque_at="joint")
+    assert found.parameters.values_by_name["friction_viscous"] == pytest.approx(0.00134, rel=0.02)
+    assert found.facts["inertia"][0] == pytest.approx(2.5 + ROTOR * 1e4, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["LOG", "LOG"], "has the samples of"),
+        (["LOG", "--torque-constant", "0.021"], "motor torque times ratio is 0.103 times link_torque"),
+        (["LOG", "--torque-constant", "-0.21"], "reverse the sign of link_torque, or of the motor's torque"),
+    ],
+)
+def test_a_log_that_misleads_is_refused(tmp_path, capsys, words, text):
+    path = save_log(tmp_path / "log.csv", sensor_log(), "time", "q", "dq", "i", "link_torque")
+    constant = [] if "--torque-constant" in words else ["--torque-constant", "0.21"]
+    files = [path if word == "LOG" else word for word in words]
+    line = refused_line(capsys, "fit", "log", *files, *constant, "--drive", "CSG-32-100")
+    assert text in line
+
+
+@pytest.mark.parametrize(
+    ("names", "options", "text"),
+    [
+        (("time", "q", "dq", "i"), ["--torque-constant", "0.021"], "check --torque-constant = 0.021 N.m/A"),
+        (
+            ("time", "q", "dq", "i", "link_torque"),
+            ["--torque-constant", "0.21", "--columns", "gravity=link_torque"],
+            "the column gravity depends on acceleration or sense of the motion",
+        ),
+    ],
+)
+def test_a_doubtful_fit_is_written_by_force_only(tmp_path, capsys, names, options, text):
+    path, out = save_log(tmp_path / "log.csv", sensor_log(), *names), tmp_path / "out.toml"
+    words = ["fit", "log", str(path), "--drive", "CSG-32-100", *options, "--out", str(out)]
+    assert cli.main(words) == 1
+    assert text in capsys.readouterr().err
+    assert not out.exists()
+    assert cli.main([*words, "--force"]) == 0
+    assert out.exists()
+
+
+@pytest.mark.parametrize(("ratio", "K1"), [(100.0, 67e3), (101.0, 67e3), (50.0, 54e3)])
+def test_a_stated_ratio_selects_the_row_of_the_catalogue(tmp_path, ratio, K1):
+    path = save_log(tmp_path / "log.csv", joint_columns(), "time", "q", "dq", "link_torque")
+    found = log.fit([path], torque_at="joint", drive="CSG-32-100", ratio=ratio)
+    assert (found.parameters.values.ratio, found.parameters.values.K1) == (ratio, K1)
+    with pytest.raises(ValueError, match="ratio = 70 is not in the catalogue for CSG-32"):
+        log.fit([path], torque_at="joint", drive="CSG-32-100", ratio=70.0)
+
+
+def test_german_headings(tmp_path, capsys):
+    log_columns = sensor_log()
+    path = save_log(tmp_path / "log.csv", log_columns, "time", "q", "dq", "i")
+    text = path.read_text()
+    assert text.startswith("time [s],q [rad],dq [rad/s],i [A]")
+    named = "Zeit [s],Winkel [rad],Geschwindigkeit [rad/s],Strom [A]"
+    path.write_text(text.replace("time [s],q [rad],dq [rad/s],i [A]", named))
+    words = ["fit", "log", path, "--drive", "CSG-32-100", "--torque-constant", "0.21"]
+    assert cli.main([str(word) for word in words]) == 0
+    assert "friction_viscous" in capsys.readouterr().out
+    path.write_text(text.replace("i [A]", "Strom"))
+    assert "the file has time, q, dq, strom; a heading needs a unit" in refused_line(capsys, *words)
+
+
+def test_a_long_log_starts_from_a_part_of_its_samples(monkeypatch, tmp_path):
+    """The first fit uses every fourth sample here; the second one starts there and gives the same."""
+    path = save_log(tmp_path / "log.csv", sensor_log(), "time", "q", "dq", "i", "link_torque")
+    whole = log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    monkeypatch.setattr(log_friction, "FIRST_FIT_SAMPLES", 80)
+    found = log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    for name in SENSOR:
+        assert found.solution.values[name] == pytest.approx(whole.solution.values[name], rel=1e-3)
+        deviation = whole.solution.relative_deviations[name]
+        assert found.solution.relative_deviations[name] == pytest.approx(deviation, rel=1e-2)
+
+
+@pytest.mark.slow
+def test_a_log_of_300_000_rows_takes_seconds(tmp_path):
+    """It took 11 s: most of them went into reading, and into repeated fits to all samples."""
+    time, rng = np.arange(300_000) * 1e-3, np.random.default_rng(0)
+    dq = 2.0 * np.pi * (0.22 * np.cos(2.0 * np.pi * 0.31 * time) + 0.33 * np.cos(2.0 * np.pi * 0.83 * time))
+    current = np.sign(dq) + 0.6 * dq + 0.02 * rng.standard_normal(time.size)
+    path = save_log(tmp_path / "log.csv", {"time": time, "dq": dq, "i": current}, "time", "dq", "i")
+    begin = process_time()
+    log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    assert process_time() - begin < 8.0
+
+
+# friction over the turn of the motor
+
+RIPPLE = json.loads((JOINT_LOG.parent / "friction_over_motor_angle_50_1.json").read_text())
+"""Friction [N.m] at the output over one turn of the motor, both senses, of a 50:1 strain-wave gear."""
+
+
+def ripple_columns(senses):
+    """Table of the measured friction at the motor, at three speeds with a viscous part of 1e-4 N.m.s/rad."""
+    angles = 2.0 * np.pi * np.arange(RIPPLE["nbins"]) / RIPPLE["nbins"]
+    rows = []
+    for sense, name in senses.items():
+        for speed in (0.5, 1.0, 2.0):
+            torque = np.array(RIPPLE[name]) / 50.0 + 1e-4 * 50.0 * speed
+            rows.append(
+                np.stack([sense * torque, np.full(angles.size, sense * speed), angles + 2.0 * np.pi], axis=1)
+            )
+    return np.concatenate(rows).T
+
+
+@pytest.mark.parametrize(
+    ("senses", "mean", "amplitudes"),
+    [
+        ({1.0: "map_pos"}, 8.0, {1: 1.6, 2: 1.0}),
+        ({1.0: "map_pos", -1.0: "map_neg"}, 7.6, {1: 1.3, 2: 0.97}),
+    ],
+)
+def test_a_measured_ripple_is_found(tmp_path, senses, mean, amplitudes):
+    """Mean, and amplitudes once and twice a turn [N.m], at the output; the senses differ by a tenth."""
+    path = tmp_path / "ripple.csv"
+    heads = [("tau", "N.m"), ("dq", "rad/s"), ("q_motor", "rad")]
+    path.write_text(columns.format_table(heads, [*ripple_columns(senses)]))
+    found = log.fit([path], robot_log.start().with_values({"ratio": -50.0}, "user", "measured"))
+    values = found.parameters.values_by_name
+    waves = np.mean([np.fft.rfft(RIPPLE[name]) for name in senses.values()], axis=0) / RIPPLE["nbins"]
+    assert 50.0 * values["friction_coulomb"] == pytest.approx(mean, rel=0.05)
+    for n, rough in amplitudes.items():
+        assert 50.0 * values[f"friction_{n}"] == pytest.approx(2.0 * abs(waves[n]), rel=1e-3)
+        assert 50.0 * values[f"friction_{n}"] == pytest.approx(rough, rel=0.03)
+        phase = np.angle(waves[n]) + 0.5 * np.pi
+        assert math.remainder(values[f"friction_{n}_phase"] - phase, 2.0 * np.pi) == pytest.approx(
+            0.0, abs=1e-3
+        )
+        assert found.facts[f"friction_{n}"][1] == "N.m"
+    assert found.rejection_reason() is None
+
+
+def rippled_log(ratio, **ripple):
+    """A swing whose friction has a ripple, by the law of the FMU."""
+    log_columns, rng = joint_columns(), np.random.default_rng(0)
+    log_columns = {name: log_columns[name] for name in ("time", "q", "dq")}
+    drive = size_32_file().with_values(SENSOR | ripple | {"ratio": abs(ratio)}, "user", "made").values
+    q, dq = 0.3 * log_columns["q"], 0.3 * log_columns["dq"]
+    load = 2.5 * np.gradient(dq, 0.01) + 110.0 * np.cos(q)
+    positive, negative = friction_limits(drive, abs(ratio) * dq, -load, phi1=ratio * q)
+    torque = np.where(dq > 0.0, positive, -negative) + viscous_torque(drive, abs(ratio) * dq)
+    current = (torque + load / abs(ratio) + ROTOR * abs(ratio) * np.gradient(dq, 0.01)) / CONSTANT
+    return {"time": log_columns["time"], "q": q, "dq": dq, "i": current + 0.02 * rng.standard_normal(q.size)}
+
+
+@pytest.mark.parametrize("ratio", [-100.0, 100.0])
+def test_a_ripple_in_a_log_is_found_by_the_angle_of_the_joint(tmp_path, ratio):
+    ripple = {"friction_1": 0.03, "friction_1_phase": 0.7, "friction_2": 0.02, "friction_2_phase": -1.2}
+    path = save_log(tmp_path / "log.csv", rippled_log(ratio, **ripple), "time", "q", "dq", "i")
+    file = size_32_file().with_values({"ratio": ratio}, "user", "made")
+    found = log.fit([path], file, torque_constant=CONSTANT)
+    values = found.parameters.values_by_name
+    for n in (1, 2):
+        assert values[f"friction_{n}"] == pytest.approx(ripple[f"friction_{n}"], rel=0.1)
+        assert values[f"friction_{n}_phase"] == pytest.approx(ripple[f"friction_{n}_phase"], abs=0.1)
+    assert values["friction_coulomb"] == pytest.approx(0.116, rel=0.1)
+
+
+def test_no_ripple_is_found_where_there_is_none(tmp_path):
+    path = save_log(tmp_path / "log.csv", rippled_log(-100.0), "time", "q", "dq", "i")
+    found = log.fit([path], size_32_file(), torque_constant=CONSTANT)
+    assert "friction_1" not in found.facts
+    assert found.parameters.values_by_name["friction_1"] == 0.0

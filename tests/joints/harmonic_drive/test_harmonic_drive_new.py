@@ -349,3 +349,27 @@ START = ("--starting-torque", "0.03")
 )
 def test_friction_that_cannot_be_is_refused(capsys, words, text):
     assert text in refused_line(capsys, "new", "harmonic-drive", "--catalogue", "CSG-17-50", *words)
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (
+            ["--starting-torque", "50"],
+            "--starting-torque = '50' is read as 50 N.m at the motor: it leaves an ",
+        ),
+        (
+            ["--motor-drag", "20"],
+            "--motor-drag = '20' is read as 20 N.m at the motor: it leaves an efficiency of ",
+        ),
+        (
+            ["--starting-torque", "500"],
+            "--starting-torque = '500' is read as 500 N.m, plausible are 0.0001 to 100",
+        ),
+    ],
+)
+def test_friction_that_eats_the_torque_is_asked_about(capsys, words, text):
+    line = refused_line(capsys, "new", "harmonic-drive", "--catalogue", "CSG-17-100", *words)
+    assert text in line
+    if "leaves" in text:
+        assert "check the unit, as in 50mN.m" in line

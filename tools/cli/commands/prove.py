@@ -1,6 +1,6 @@
 """`jointfmu prove`: run the experiments stored in an FMU.
 
-`jointfmu validate`: compare with published numbers.
+`jointfmu validate`: compare the laws with quadrature, and results with published numbers.
 """
 
 import argparse
@@ -16,7 +16,7 @@ from ...joints.bolted_joint.frequencies import compare_natural_frequencies
 from ...run.proof import listing, report
 from ...run.proof.importers import IMPORTERS
 from ...run.proof.run import ExpectedContents, prove
-from ...studies.published import validation
+from ...studies.published import law_reference, validation
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
 
@@ -80,9 +80,8 @@ def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedContents:
 
 def add_validate(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu validate` with its options."""
-    sub = declare_command(
-        command_parsers, "validate", _run_validate, "compare computed results with all published numbers"
-    )
+    text = "compare the laws with quadrature of their equations, and results with published numbers"
+    sub = declare_command(command_parsers, "validate", _run_validate, text)
     text = "also compare the measured natural frequencies, by finite elements (half a minute)"
     sub.add_argument("--frequencies", action="store_true", help=text)
 
@@ -92,10 +91,22 @@ def _run_validate(args: argparse.Namespace) -> CommandResult:
     if args.frequencies:
         with require_fem_packages("the finite-element analysis"):
             rows += compare_natural_frequencies()
-    misses = validation.missed_points(rows)
+    laws = law_reference.compare_laws()
     counts = asdict(validation.count_points(rows))
+    misses = [*validation.missed_points(rows), *law_reference.missed_quantities(laws)]
     return CommandResult(
-        document={"rows": [row.to_json() for row in rows], "counts": counts, "missed": len(misses)},
-        lines=[validation.format_table(rows), validation.format_summary(rows)],
+        document={
+            "laws": [law.to_json() for law in laws],
+            "rows": [row.to_json() for row in rows],
+            "counts": counts,
+            "missed": len(misses),
+        },
+        lines=[
+            law_reference.format_law_table(laws),
+            law_reference.format_law_summary(laws),
+            "",
+            validation.format_table(rows),
+            validation.format_summary(rows),
+        ],
         exit_status=int(bool(misses)),
     )

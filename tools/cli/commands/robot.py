@@ -121,6 +121,13 @@ def run(args: argparse.Namespace) -> CommandResult:
     under = list(zip(axes, weight.tolist(), strict=True))
     notes = [line for axis in axes for line in axis.notes]
     notes += [line for axis, torque in under for line in axis.overload_warnings(torque)]
+    largest = drawn.largest_torques(model, axes, pose, grid, args.payload, tip).tolist()
+    notes += _describe_other_poses(under, largest)
+    if not any(map(drawn.is_loaded, axes, largest)):
+        notes.append(
+            f"{', '.join(axis.joint for axis in axes)}: weight and payload do not load the drive in any pose "
+            "of the grid; the payload acts by its inertia only (frequencies)"
+        )
     last = axes[-1].joint
     if args.payload and not jacobian[:, -1].any() and model.jnt_bodyid[model.joint(last).id] == tip:
         notes.append(
@@ -171,6 +178,21 @@ def _write_robot(path: Path, robot_spec: Any, args: argparse.Namespace) -> None:
     robot_spec.compile()
     text = elastic.format_with_relative_folders(robot_spec.to_xml(), robot_spec, args.out)
     write_text(path, f"<!-- {PROGRAM_MARK} -->\n{text}")
+
+
+def _describe_other_poses(
+    weight_torques: Sequence[tuple[Any, float]], largest_torques: Sequence[float]
+) -> list[str]:
+    """Warnings of axes that are overloaded in a pose of the grid, and less so in the pose of the results.
+
+    weight_torques  : axes with their torques [N.m] in the pose of the results
+    largest_torques : their largest torques [N.m] over the grid
+    """
+    lines = []
+    for (axis, torque), largest in zip(weight_torques, largest_torques, strict=True):
+        if not list(axis.overload_warnings(torque)):
+            lines += axis.overload_warnings(largest, "in another pose of the grid ")
+    return lines
 
 
 def _write_robot_with_plugins(args: argparse.Namespace, spec: Any, axes: Any, drive_files: Any) -> list[Path]:

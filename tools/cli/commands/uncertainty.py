@@ -93,6 +93,8 @@ def _is_fmu(subject: str | None) -> bool:
     """Whether the positional argument is the path of an FMU; ValueError if it is neither FMU nor joint."""
     if subject is None or subject in KINDS:
         return False
+    if subject.lower().endswith(".toml"):
+        raise ValueError(f"{subject}: is no FMU; state a parameter file with --params {subject}")
     if subject.lower().endswith(".fmu") or Path(subject).exists():
         return True
     allowed = f"{', '.join(KINDS)}, or the path of an FMU"

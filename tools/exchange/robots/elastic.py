@@ -58,10 +58,13 @@ class ElasticAxis:
         before, after = self.drive.compute_wind_up([torque, torque - reversal])
         return reversal / float(before - after)
 
-    def overload_warnings(self, torque: float) -> Iterator[str]:
-        """Yield a warning if a torque [N.m] exceeds the rated or the largest torque of the drive."""
+    def overload_warnings(self, torque: float, pose_text: str = "") -> Iterator[str]:
+        """Yield a warning if a torque [N.m] exceeds the rated or the largest torque of the drive.
+
+        pose_text : text on the pose of the torque, before the warning
+        """
         drive, size = self.drive, abs(torque)
-        prefix = f"{self.joint}: {size:.4g} N.m is beyond the"
+        prefix = f"{self.joint}: {pose_text}{size:.4g} N.m is beyond the"
         if size > drive.max_torque:
             yield f"{prefix} max_torque, {drive.max_torque:g} N.m, of {drive.name}, where its law ends"
         elif size > drive.rated_torque:

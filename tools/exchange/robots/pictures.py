@@ -10,7 +10,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from .elastic import ElasticAxis
-from .poses import compute_frequencies, compute_weight_deflection
+from .poses import compute_frequencies, compute_torques, compute_weight_deflection
 
 if TYPE_CHECKING:
     from mujoco import MjModel
@@ -21,6 +21,10 @@ PAYLOAD_COUNT = 11
 """Number of payloads [1]."""
 FIGURE_SIZE = (9.0, 3.8)
 """Width and height of a figure [inch]."""
+CONSTANT_FREQUENCY_RATIO = 1e-6
+"""Relative change [1] of a frequency over the poses below which it is drawn as constant: it is rounding."""
+MIN_TORQUE_RATIO = 1e-9
+"""Weight torque over the rated torque [1] below which an axis counts as not loaded: it is rounding."""
 
 
 def select_grid_axes(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
@@ -85,6 +89,25 @@ def find_worst_pose(
     )
 
 
+def largest_torques(
+    model: "MjModel",
+    axes: Sequence[ElasticAxis],
+    pose: Array,
+    grid_angles: list[Array],
+    payload: float,
+    tip_body: int,
+) -> Array:
+    """Largest magnitude (n) [N.m] of the weight torque of each axis, over the poses of the grid."""
+    poses = grid_poses(model, axes, pose, grid_angles)
+    torques = [compute_torques(model, axes, grid_pose, payload, tip_body)[0] for grid_pose in poses]
+    return np.asarray(np.max(np.abs(torques), axis=0))
+
+
+def is_loaded(axis: ElasticAxis, torque: float) -> bool:
+    """Whether a weight torque [N.m] of an axis is more than rounding."""
+    return abs(torque) > MIN_TORQUE_RATIO * axis.drive.rated_torque
+
+
 def draw_frequencies(
     path: Path, axes: Sequence[ElasticAxis], grid_angles: list[Array], frequencies: Array
 ) -> None:
@@ -94,12 +117,17 @@ def draw_frequencies(
         for i in range(min(2, frequencies.shape[-1])):
             panel = figure.add_subplot(1, min(2, frequencies.shape[-1]), i + 1)
             panel.set(title=f"frequency {i + 1} [Hz]", xlabel=f"{names[0]} [deg]")
+            values = frequencies[..., i]
+            mean = float(np.mean(values))
+            if np.ptp(values) <= CONSTANT_FREQUENCY_RATIO * mean:
+                panel.set_title(f"frequency {i + 1}: {mean:.4g} Hz in all poses")
+                values = np.full_like(values, mean)
             if len(grid_angles) == 1:
-                panel.plot(np.rad2deg(grid_angles[0]), frequencies[:, i], color=plots.BLUE)
+                panel.plot(np.rad2deg(grid_angles[0]), values, color=plots.BLUE)
+                panel.set(ylabel="frequency [Hz]", ylim=(0.0, 1.1 * float(np.max(values))))
                 continue
-            filled = panel.contourf(
-                *map(np.rad2deg, grid_angles), frequencies[..., i].T, levels=12, cmap="viridis"
-            )
+            levels = 12 if np.ptp(values) else [0.99 * mean, 1.01 * mean]
+            filled = panel.contourf(*map(np.rad2deg, grid_angles), values.T, levels=levels, cmap="viridis")
             figure.colorbar(filled, ax=panel)
             panel.set_ylabel(f"{names[1]} [deg]")
 
@@ -110,8 +138,15 @@ def draw_payload(
     """Plot wind-ups and tip error against payload; returns their values (n) [rad] and [m] at full payload."""
     loads = np.linspace(0.0, payload, PAYLOAD_COUNT)
     rows = [compute_weight_deflection(model, axes, pose, float(load), tip_body) for load in loads]
+    weights = compute_torques(model, axes, pose, payload, tip_body)[0].tolist()
     with plots.open_figure(path, FIGURE_SIZE) as figure:
         wind_up_axes, error_axes = figure.subplots(1, 2)
+        if not any(map(is_loaded, axes, weights)):
+            for axes_of_panel, quantity in ((wind_up_axes, "wind-up"), (error_axes, "tip error")):
+                axes_of_panel.set_axis_off()
+                text = f"no {quantity}: weight and payload\ndo not load the drives in this pose"
+                axes_of_panel.text(0.5, 0.5, text, ha="center", va="center", fontsize=12)
+            return rows[-1]
         for axis, line in zip(axes, np.array([x for x, _ in rows]).T, strict=True):
             wind_up_axes.plot(loads, 1e3 * line, label=axis.joint)
         wind_up_axes.set(xlabel="payload [kg]", ylabel="wind-up [mrad]")

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
 from jointfmu.mechanics.footprint.distribution import FrictionPatches
@@ -227,50 +228,51 @@ class PatchFit:
         weight = np.broadcast_to(weight, patch_displacement.shape)
         initial = patch_displacement
         damping = INITIAL_DAMPING
-        work_residual = self._work_residual(patch_displacement, weight * (patch_displacement - initial))
-        stiffness_residual = self._stiffness_residual(patch_displacement)
+        errors, work = self._work_errors(patch_displacement)
+        stiffness_errors, unit_friction = self._stiffness_errors(patch_displacement)
         for _ in range(MAX_FIT_STEPS):
-            work_jacobian = self._work_jacobian(patch_displacement)  # without the rows of the regularisation
-            stiffness_jacobian = self._stiffness_jacobian(patch_displacement)
+            work_jacobian = self._work_jacobian(patch_displacement, *work)
+            stiffness_jacobian = self._stiffness_jacobian(patch_displacement, unit_friction)
+            changes = (weight * (patch_displacement - initial)).ravel()
             hessian = work_jacobian.T @ work_jacobian + np.diag(weight.ravel() ** 2)
-            errors, changes = np.split(work_residual, [len(work_jacobian)])
             gradient = (
-                work_jacobian.T @ errors
-                + weight.ravel() * changes
-                + stiffness_jacobian.T @ stiffness_residual
+                work_jacobian.T @ errors + weight.ravel() * changes + stiffness_jacobian.T @ stiffness_errors
             )
-            objective = work_residual @ work_residual + stiffness_residual @ stiffness_residual
+            objective = errors @ errors + changes @ changes + stiffness_errors @ stiffness_errors
+            stiff_hessian = hessian + stiffness_jacobian.T @ stiffness_jacobian
             while damping < MAX_DAMPING:
-                damped = hessian + stiffness_jacobian.T @ stiffness_jacobian
-                damped += damping * np.diag(np.diag(hessian))
-                trial = patch_displacement + np.linalg.solve(damped, -gradient).reshape(
-                    patch_displacement.shape
-                )
-                residuals = (
-                    self._work_residual(trial, weight * (trial - initial)),
-                    self._stiffness_residual(trial),
-                )
-                if sum(residual @ residual for residual in residuals) < objective:
+                damped = stiff_hessian + damping * np.diag(np.diag(hessian))
+                factor = cho_factor(damped, overwrite_a=True, check_finite=False)
+                step = cho_solve(factor, -gradient, check_finite=False)
+                trial = patch_displacement + step.reshape(patch_displacement.shape)
+                errors, work = self._work_errors(trial)
+                stiffness_errors, unit_friction = self._stiffness_errors(trial)
+                changes = (weight * (trial - initial)).ravel()
+                if errors @ errors + changes @ changes + stiffness_errors @ stiffness_errors < objective:
                     break
                 damping *= DAMPING_INCREASE
             else:
                 return patch_displacement
             patch_displacement = trial
-            work_residual, stiffness_residual = residuals
             damping = DAMPING_DECREASE * damping
         return patch_displacement
 
-    def _stiffness_residual(self, patch_displacement: Array) -> Array:
-        """Weighted relative errors [1] of the stick stiffness (3, 3) of the patches: upper triangle, flat."""
+    def _stiffness_errors(self, patch_displacement: Array) -> tuple[Array, MonotonicFriction]:
+        """Weighted relative errors (w (w + 1) / 2) [1] of the stick stiffness of the patches.
+
+        Returns the errors, and the friction of the sliders in the linear joint.
+        """
         _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
         error = (
             stick_stiffness_matrix(friction, self.sliders.point_area) - self.linear_contact.contact_stiffness
         ) / self.linear_contact.stiffness_scale
-        return np.asarray(STIFFNESS_WEIGHT * error[np.triu_indices(len(error))])
+        return np.asarray(STIFFNESS_WEIGHT * error[np.triu_indices(len(error))]), friction
 
-    def _stiffness_jacobian(self, patch_displacement: Array) -> Array:
-        """Derivative of `_stiffness_residual` with respect to the patch displacements, one row per error."""
-        _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
+    def _stiffness_jacobian(self, patch_displacement: Array, friction: MonotonicFriction) -> Array:
+        """Derivative of the stiffness errors with respect to the patch displacements.
+
+        friction : of the sliders in the linear joint
+        """
         force = (
             self.sliders.point_area
             * friction.stick_stiffness
@@ -285,10 +287,10 @@ class PatchFit:
             STIFFNESS_WEIGHT * slope[np.triu_indices(len(slope))].reshape(-1, patch_displacement.size)
         )
 
-    def _work_residual(self, patch_displacement: Array, weighted_change: Array) -> Array:
-        """Residuals [1] of the fit: relative errors of friction forces, stick forces and cycle losses.
+    def _work_errors(self, patch_displacement: Array) -> tuple[Array, tuple[Array, MonotonicFriction]]:
+        """Relative errors [1] of forces, stick forces and losses.
 
-        The last ones are the weighted changes of the patch displacements (regularisation).
+        Returns the errors, and the displacement and friction of the sliders.
         """
         displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
         actual = assemble_friction_work(friction, self.sliders.point_area, displacement)
@@ -301,11 +303,15 @@ class PatchFit:
         errors = [
             ((a - b) / size).ravel() for (a, b), size in zip(pairs, target.residual_scales, strict=True)
         ]
-        return np.concatenate([*errors, weighted_change.ravel()])
+        return np.concatenate(errors), (displacement, friction)
 
-    def _work_jacobian(self, patch_displacement: Array) -> Array:
-        """Derivative of the relative errors of forces and loss with respect to the patch displacements."""
-        displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
+    def _work_jacobian(
+        self, patch_displacement: Array, displacement: Array, friction: MonotonicFriction
+    ) -> Array:
+        """Derivative of the relative errors of forces and loss with respect to the patch displacements.
+
+        displacement, friction : displacement (2 c m, 3 + k) and friction of the sliders
+        """
         area, amplitude = self.sliders.point_area, self.shear_states.modal_coordinates
         (n_states, modes), count = amplitude.shape, len(patch_displacement) // 2
         u, v, size = friction.displacement_x, friction.displacement_y, friction.displacement_magnitude

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
@@ -207,7 +208,7 @@ class CellwiseJoint:
         softening = (tangent - secant) / size**2
         preload = np.full(displacements.size - 3 * n, float(working_preload(joint, self.preload)))
         bolts, elongation = spring.bolts, displacements[3 * n :]
-        bolt = bolts.tangent_stiffness(preload, elongation)
+        bolt = bolts.active_stiffness(preload, elongation)
         pull = bolts.stiffness * (elongation + bolts.head_gap(preload, elongation))
         force = np.concatenate(
             [-area * (p - self._preload_pressure), area * secant * u, area * secant * v, pull]
@@ -218,10 +219,8 @@ class CellwiseJoint:
     def stiffness(self) -> Array:
         """Stiffness (6, 6) [N/m, N, N.m] of the preloaded joint."""
         tangent = self.cell_forces(np.zeros(len(self.rigid_displacement)))[1]
-        matrix = np.eye(len(self.rigid_displacement)) + tangent.multiply(self.compliance)
-        return np.asarray(
-            self.rigid_displacement.T @ np.linalg.solve(matrix, tangent.multiply(self.rigid_displacement))
-        )
+        displacement = tangent.solve(self.compliance, self.rigid_displacement)
+        return np.asarray(self.rigid_displacement.T @ tangent.multiply(displacement))
 
     def solve_forces(self, motion: Array) -> Array:
         """Solve for the forces (3 n + b) [N] at a motion (6) [m, rad] of side 2's attachment.
@@ -233,8 +232,7 @@ class CellwiseJoint:
         force, tangent = self.cell_forces(g)
         residual = g + self.compliance @ force - prescribed
         for _ in range(MAX_NEWTON_STEPS):
-            matrix = np.eye(g.size) + tangent.multiply(self.compliance)
-            step = -np.linalg.solve(matrix.T, residual)
+            step = -tangent.solve(self.compliance, residual)
             for halvings in range(5):
                 g_trial = g + 0.5**halvings * step
                 force, tangent = self.cell_forces(g_trial)
@@ -280,6 +278,31 @@ class CellTangent:
         product[n : 2 * n] += self.cross[:, None] * matrix[2 * n : 3 * n]
         product[2 * n : 3 * n] += self.cross[:, None] * matrix[n : 2 * n]
         return product
+
+    def solve(self, compliance: Array, right_side: Array) -> Array:
+        """Solve (I + C T) x = r for x (3 n + b, ...), with this tangent T and a compliance C.
+
+        Both matrices are symmetric and positive semidefinite. With T = L L^T the symmetric system
+        (I + L^T C L) y = L^T r gives x = r - C L y. Neither T nor C needs an inverse.
+        """
+        n = self.cross.size
+        root = np.sqrt(np.maximum(self.diagonal, 0.0))
+        along_x = root[n : 2 * n]
+        below = np.divide(self.cross, along_x, out=np.zeros(n), where=along_x > 0.0)
+        root[2 * n : 3 * n] = np.sqrt(np.maximum(self.diagonal[2 * n : 3 * n] - below**2, 0.0))
+
+        def multiply_root(matrix: Array) -> Array:
+            """L^T times a matrix (3 n + b, ...)."""
+            product = (root * matrix.T).T
+            product[n : 2 * n] += (below * matrix[2 * n : 3 * n].T).T
+            return product
+
+        spread = multiply_root(compliance)
+        system = multiply_root(spread.T)
+        system[np.diag_indices(len(system))] += 1.0
+        factor = cho_factor(system, overwrite_a=True, check_finite=False)
+        y = cho_solve(factor, multiply_root(right_side), overwrite_b=True, check_finite=False)
+        return np.asarray(right_side - spread.T @ y)
 
 
 def approach_at_stiffness(reduced_joint: BoltedJointSpring, normal_stiffness: Array) -> Array:

@@ -1,4 +1,4 @@
-"""The two faces of a contact on a drawing: material, and roughness from finish, Ra, Rq or a scan.
+"""The two faces of a contact on a drawing: material, and roughness from finish, Ra, Rq, Rz or a scan.
 
 Also the Hertzian line contact of curved faces.
 """
@@ -17,6 +17,7 @@ from ..catalogue import SourcedNumber
 from ..surfaces import form, reading
 from ..surfaces.scan_text import parse_spacing
 from .part import DrawingOptions, ParameterSheet
+from .quantities import StatedNumber, parse_quantity
 from .reading import expand_to_sides, parse_number
 from .tables import TableRow, find_row
 
@@ -30,13 +31,19 @@ FACE_OPTIONS = (
     ),
     Option(
         "finish",
-        "finish of both sides, or of each side (jointfmu new finishes); with --Ra or --Rq it gives the slope "
-        "only",
+        "finish of both sides, or of each side (jointfmu new finishes); with --Ra, --Rq or --Rz it gives the "
+        "slope only",
         "NAME",
         is_list=True,
     ),
     Option("Ra", "Ra of both sides, or of each side [um]", "RA", is_list=True),
     Option("Rq", "Rq or Sq of both sides, or of each side [um]", "RQ", is_list=True),
+    Option(
+        "Rz",
+        "Rz of both sides, or of each side [um]: Ra = Rz/6.25, between Rz/10 and Rz/4",
+        "RZ",
+        is_list=True,
+    ),
     Option("surface", "scan of both sides, or of each side", "SCAN", is_list=True),
     Option("unit", "length unit of scans that state none: m, mm, um, nm", "UNIT"),
     Option(
@@ -47,14 +54,12 @@ FACE_OPTIONS = (
     ),
     Option("missing", "number that marks a missing point of scans, in the unit of their heights"),
     Option("longest_wave", "longest wavelength of the roughness [mm] (default: the cut-off of its Ra)"),
-    Option("hardness", "hardness of the softer side [MPa] (default: of the material)"),
-    Option("mu", "coefficient of friction [1] (default: 0.15)"),
+    Option("hardness", "hardness of the softer side [MPa], or as in 160HB, 180HV (default: of the material)"),
+    Option("mu", "coefficient of friction [1], or its range as in 0.1..0.3 (default: 0.15, 0.1 to 0.3)"),
 )
 """Options of every joint with rough faces."""
 DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
 """Coefficient of friction if the drawing states none, and its range [1]."""
-MAX_MU = 2.0
-"""Largest allowed coefficient of friction [1]: clean pairs of the same metal in air have 0.8 to 1.5."""
 DEFAULT_MU_SOURCE = "usual value of dry machined metal, not measured; VDI 2230, Table A6: 0.1 to 0.3"
 DEFAULT_RMS_SLOPE = 0.1
 """Rms slope [1] of a surface if only its height is known."""
@@ -62,8 +67,10 @@ DEFAULT_HURST_EXPONENT = 0.8
 """Hurst exponent [1] of a surface if only its height is known."""
 DEFAULT_FREQUENCY_RATIO = 1.5
 """Frequency ratio of the Weierstrass-Mandelbrot function [1]."""
-RZ_OVER_RA = 6.3
-"""Ratio Rz/Ra of typical machined faces [1], 4 to 10: Rz 10 um for Ra 1.6 um, Rz 40 um for Ra 6.3 um."""
+RZ_OVER_RA, RZ_OVER_RA_LIMITS = 6.25, (4.0, 10.0)
+"""Ratio Rz/Ra of machined faces [1] and its range: Rz 10 um for Ra 1.6 um, as on drawings; turned faces have
+4 to 5, ground and lapped ones 7 to 10."""
+RZ_SOURCE = "usual of machined faces, turned 4 to 5, ground and lapped 7 to 10; nominal pairs of drawings"
 CUT_OFF_WAVELENGTHS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (10e-6, 2.5e-3), (np.inf, 8e-3))
 """(largest Ra [m], cut-off wavelength [m]) (ISO 4288, Table 1; ISO 21920-3)."""
 
@@ -73,20 +80,24 @@ class Face(NamedTuple):
 
     Rq                        : rms height [m]
     Rq_min, Rq_max            : lower and upper limit of the rms height [m]
+    Rz                        : maximum height [m], as stated, or RZ_OVER_RA times Ra
     rms_slope, hurst_exponent : rms slope [1], Hurst exponent [1]
     longest_wave              : longest wavelength [m] that contributes to the rms height
     height_source             : source of the height
     stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
+    is_from_finish            : whether a finish alone gives the height
     """
 
     Rq: float
     Rq_min: float
     Rq_max: float
+    Rz: float
     rms_slope: SourcedNumber
     hurst_exponent: SourcedNumber
     longest_wave: SourcedNumber
     height_source: str
     stated_heights: dict[str, float]
+    is_from_finish: bool = False
 
 
 def read_materials(options: DrawingOptions) -> tuple[TableRow, TableRow]:
@@ -97,10 +108,10 @@ def read_materials(options: DrawingOptions) -> tuple[TableRow, TableRow]:
 
 
 class HeightRange(NamedTuple):
-    """Range of the rms height h of both faces together, and Rz of the rougher face.
+    """Range of the rms height h of both faces together, and the larger Rz of both faces.
 
     h_min, h_max : lower and upper limit [m]
-    Rz           : maximum height [m], estimated as RZ_OVER_RA times Ra
+    Rz           : maximum height [m]
     """
 
     h_min: float
@@ -125,17 +136,12 @@ def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> Heigh
         known = soft.numbers["H"]
         parameter_sheet.add("H", known.value, known.kind, f"{soft.title}: {known.source}")
     else:
-        parameter_sheet.add_drawing_value("H", parse_number("hardness", options["hardness"], "MPa", "Pa"))
+        parameter_sheet.add_drawing_number("H", parse_quantity("hardness", options["hardness"]))
     if options["mu"] is None:
         parameter_sheet.add("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
         parameter_sheet.set_range("mu", *DEFAULT_MU_LIMITS)
     else:
-        mu = parse_number("mu", options["mu"], "1", "1")
-        if mu > MAX_MU:
-            raise ValueError(
-                f"--mu = {options['mu']!r} is outside (0, {MAX_MU:g}]: coefficient of friction of metals"
-            )
-        parameter_sheet.add_drawing_value("mu", mu)
+        parameter_sheet.add_drawing_number("mu", parse_quantity("mu", options["mu"]))
     parameter_sheet.add("traction_ratio", 0.1, "estimate", "vibration far below slip")
     return _add_roughness(parameter_sheet, read_faces(options), options["longest_wave"])
 
@@ -149,10 +155,12 @@ def _add_roughness(
         for name in ("Rq", "Rq_min", "Rq_max")
     )
     texts = "; ".join(f"side {i + 1}: {face.height_source}" for i, face in enumerate(faces))
-    spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the range of the finish" if high > low else ""
+    spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the ranges of the heights" if high > low else ""
     parameter_sheet.add(
         "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
     )
+    if high > low and not any(face.is_from_finish for face in faces):
+        parameter_sheet.set_range("h", low, high)
     parameter_sheet.add(
         "gamma", roughness.PERSSON_GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)"
     )
@@ -160,9 +168,7 @@ def _add_roughness(
     if longest_wave is None:
         parameter_sheet.add_sourced_number("longest_wave", longest)
     else:
-        parameter_sheet.add_drawing_value(
-            "longest_wave", parse_number("longest_wave", longest_wave, "mm", "m")
-        )
+        parameter_sheet.add_drawing_number("longest_wave", parse_quantity("longest_wave", longest_wave))
     rough = max(faces, key=lambda face: face.Rq)
     parameter_sheet.add_sourced_number("hurst", rough.hurst_exponent)
     slopes = [face.rms_slope for face in faces]
@@ -176,7 +182,7 @@ def _add_roughness(
         parameter_sheet.roughness |= {
             f"{name}{i + 1}": (v, kind, face.height_source) for name, v in face.stated_heights.items()
         }
-    return HeightRange(low, high, RZ_OVER_RA * rough.Rq / roughness.RQ_OVER_RA)
+    return HeightRange(low, high, max(face.Rz for face in faces))
 
 
 def _add_fractal_parameters(parameter_sheet: ParameterSheet) -> None:
@@ -206,7 +212,7 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
 
     Raises ValueError if the roughness is not stated or is given twice, or for a bad number or scan.
     """
-    heights = [name for name in ("Ra", "Rq", "surface") if options[name]]
+    heights = [name for name in ("Ra", "Rq", "Rz", "surface") if options[name]]
     finishes = expand_to_sides("finish", options["finish"])
     if len(heights) > 1:
         raise ValueError(
@@ -216,7 +222,7 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
         raise ValueError("--surface and --finish are both given; state one of them: a scan has its own slope")
     if not heights:
         if finishes is None:
-            raise ValueError("the roughness is missing; expected --finish, --Ra, --Rq or --surface")
+            raise ValueError("the roughness is missing; expected --finish, --Ra, --Rq, --Rz or --surface")
         return _face_from_finish(finishes[0]), _face_from_finish(finishes[1])
     name = heights[0]
     texts = expand_to_sides(name, options[name])
@@ -247,33 +253,31 @@ def _face_from_finish(finish_name: str) -> Face:
     )
     Rq, Rq_low, Rq_high = (float(roughness.rms_height(value)) for value in (Ra, low, high))
     slope, hurst = known.numbers["slope"], known.numbers["hurst"]
-    return Face(Rq, Rq_low, Rq_high, slope, hurst, _cut_off_wavelength(Ra), text, {"Ra": Ra})
+    wave = _cut_off_wavelength(Ra)
+    return Face(
+        Rq, Rq_low, Rq_high, RZ_OVER_RA * Ra, slope, hurst, wave, text, {"Ra": Ra}, is_from_finish=True
+    )
 
 
 def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | None) -> Face:
-    value = parse_number(roughness_name, height_text, "um", "m")
-    if value > roughness.MAX_HEIGHT:
-        limit = roughness.MAX_HEIGHT * 1e6
-        raise ValueError(
-            f"--{roughness_name} = {height_text!r} is outside (0, {limit:g}] um: larger than the roughness "
-            "of machined surfaces"
-        )
-    Rq = value if roughness_name == "Rq" else float(roughness.rms_height(value))
+    stated = parse_quantity(roughness_name, height_text)
+    text = f"{roughness_name} {stated.value * 1e6:.4g} um of the drawing"
+    if stated.is_range:
+        text += f", {stated.low * 1e6:.4g} to {stated.high * 1e6:.4g} um"
+    key, height = roughness_name, stated
+    if roughness_name == "Rz":
+        low, high = RZ_OVER_RA_LIMITS
+        key = "Ra"
+        height = StatedNumber(stated.value / RZ_OVER_RA, stated.low / high, stated.high / low)
+        text += f", Ra = Rz/{RZ_OVER_RA:g}, from Rz/{high:g} to Rz/{low:g} ({RZ_SOURCE})"
+    Rq, Rq_low, Rq_high = height if key == "Rq" else (float(roughness.rms_height(Ra)) for Ra in height)
     slope = SourcedNumber(DEFAULT_RMS_SLOPE, "estimate", "usual value of machined surfaces")
     hurst = SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9")
     if finish:
         slope, hurst = finish.numbers["slope"], finish.numbers["hurst"]
-    wave = _cut_off_wavelength(Rq / roughness.RQ_OVER_RA)
-    return Face(
-        Rq,
-        Rq,
-        Rq,
-        slope,
-        hurst,
-        wave,
-        f"{roughness_name} {value * 1e6:.4g} um of the drawing",
-        {roughness_name: value},
-    )
+    Ra = Rq / roughness.RQ_OVER_RA
+    Rz = stated.value if roughness_name == "Rz" else RZ_OVER_RA * Ra
+    return Face(Rq, Rq_low, Rq_high, Rz, slope, hurst, _cut_off_wavelength(Ra), text, {key: height.value})
 
 
 def _face_from_scan(path: str, options: DrawingOptions) -> Face:
@@ -293,9 +297,10 @@ def _face_from_scan(path: str, options: DrawingOptions) -> Face:
         scan.h,
         scan.h,
         scan.h,
-        SourcedNumber(scan.slope, "user", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
+        RZ_OVER_RA * scan.h / roughness.RQ_OVER_RA,
+        SourcedNumber(scan.slope, "measured", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
         SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9"),
-        SourcedNumber(longest, "user", f"length of the {source}"),
+        SourcedNumber(longest, "measured", f"length of the {source}"),
         f"{source}, waves up to {longest:.3g} m",
         {"Rq": scan.h},
     )

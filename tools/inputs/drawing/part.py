@@ -14,6 +14,7 @@ from jointfmu.quantity import build_parameter_set, flat_fields
 
 from ...common.options import Option
 from ..catalogue import SourcedNumber
+from .quantities import StatedNumber
 
 DrawingOptions = Mapping[str, Any]
 """{option: its text, a list of texts, or a bool for a flag; None if the user does not set the option}."""
@@ -80,6 +81,13 @@ class ParameterSheet:
         """Add a parameter that the user states on the drawing."""
         self.add(parameter_name, value, "user", "stated on the drawing")
 
+    def add_drawing_number(self, parameter_name: str, number: StatedNumber) -> None:
+        """Add a number that the user states on the drawing, with its range if the user states one."""
+        text = f"stated on the drawing: {number.low:g} to {number.high:g}, taken as the middle"
+        self.add(parameter_name, number.value, "user", text if number.is_range else "stated on the drawing")
+        if number.is_range:
+            self.set_range(parameter_name, number.low, number.high)
+
     def add_sourced_number(self, parameter_name: str, number: SourcedNumber) -> None:
         """Add a parameter with the value and source of a tabulated number."""
         self.add(parameter_name, number.value, number.kind, number.source)
@@ -104,11 +112,14 @@ class ParameterSheet:
             {key: kind for key, (_, kind, _) in entries.items()},
             {key: source for key, (_, _, source) in entries.items()},
             self.inputs,
-            ranges={name: ends for name, ends in self.ranges.items() if name in parameters},
+            ranges={name: ends for name, ends in self.ranges.items() if name in entries},
         )
         rough = file
         for height, (value, kind, source) in self.roughness.items():
             rough = rough.with_roughness({height: value}, kind, source)
         return replace(
-            rough, origins={**rough.origins, **file.origins}, sources={**rough.sources, **file.sources}
+            rough,
+            origins={**rough.origins, **file.origins},
+            sources={**rough.sources, **file.sources},
+            ranges=file.ranges,
         )

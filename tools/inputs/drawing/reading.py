@@ -9,7 +9,22 @@ from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, LUBRICANT_TEMPERATUR
 from ...common.options import option_flag
 
 _TEMPERATURE_PATTERN = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
-_NUMBER_PATTERN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
+NUMBER_PATTERN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
+"""Pattern of a number and its unit."""
+_COMMA_PATTERN = re.compile(r"[+-]?\d*,\d+(?:,\d+)*(.*)")
+_THOUSANDS_PATTERN = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(.*)")
+
+
+def check_separators(option: str, number_text: str) -> None:
+    """Raise ValueError for a number with a comma, decimal or of thousands; the message says what to write."""
+    text = number_text.strip()
+    if not _COMMA_PATTERN.fullmatch(text):
+        return
+    point, joined = text.replace(",", "."), text.replace(",", "")
+    advice = f"{point} with a decimal point" if text.count(",") == 1 else joined
+    if _THOUSANDS_PATTERN.fullmatch(text) and text.count(",") == 1:
+        advice += f", or {joined} if the comma separates thousands"
+    raise ValueError(f"{option_flag(option)} = {number_text!r} has a comma; write {advice}")
 
 
 def parse_number(
@@ -24,7 +39,8 @@ def parse_number(
 
     Raises ValueError for text that is not a number, a wrong unit, an infinite number, or one out of range.
     """
-    match = _NUMBER_PATTERN.fullmatch(number_text.strip())
+    check_separators(option, number_text)
+    match = NUMBER_PATTERN.fullmatch(number_text.strip())
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
         example = "expected a number without a unit"

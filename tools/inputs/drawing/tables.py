@@ -1,7 +1,8 @@
 """Shipped tables of materials, finishes and bolts: models/tables/*.toml."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -73,7 +74,7 @@ def _normalise_name(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """Sizes of a metric bolt with coarse thread, lengths [m].
+    """Sizes of a metric bolt, lengths [m].
 
     nominal_diameter : nominal diameter
     pitch            : pitch of the thread
@@ -103,6 +104,58 @@ def read_threads() -> dict[str, Thread]:
             **{c: v * f for c, v, f in zip(names, values, columns, strict=True)},
         )
         for name, values in document["rows"].items()
+    }
+
+
+@cache
+def fine_pitches() -> dict[str, tuple[float, ...]]:
+    """Fine pitches of the bolts: {name of the coarse thread: pitches [m]}."""
+    stated = dict(_read_document("bolts")[1]["fine"])
+    size = conversion_factor(stated.pop("unit"), "m")
+    stated.pop("source")
+    return {name: tuple(pitch * size for pitch in pitches) for name, pitches in stated.items()}
+
+
+def find_thread(name: str, pitch: float | None = None) -> Thread:
+    """Find a thread by its name, as in M12, with the coarse pitch or a fine pitch [m].
+
+    Raises ValueError for an unknown thread or pitch.
+    """
+    if name not in read_threads():
+        raise ValueError(f"thread {name} is unknown, allowed are {', '.join(read_threads())}")
+    coarse = read_threads()[name]
+    if pitch is None:
+        return coarse
+    allowed = (coarse.pitch, *fine_pitches().get(name, ()))
+    for known in allowed:
+        if math.isclose(known, pitch, rel_tol=1e-6):
+            is_coarse = known == coarse.pitch
+            return coarse if is_coarse else replace(coarse, name=f"{name}x{known * 1e3:g}", pitch=known)
+    pitches = ", ".join(f"{known * 1e3:g}" for known in allowed)
+    raise ValueError(f"thread {name}x{pitch * 1e3:g} is unknown, allowed pitches of {name} are {pitches} mm")
+
+
+@dataclass(frozen=True, slots=True)
+class TighteningMethod:
+    """Method of tightening a bolt.
+
+    title               : in words
+    factor              : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
+    depends_on_friction : whether the friction decides on the preload
+    """
+
+    title: str
+    factor: tuple[float, float]
+    depends_on_friction: bool
+
+
+@cache
+def read_tightening_methods() -> dict[str, TighteningMethod]:
+    """Read the methods of tightening: {name: method}."""
+    return {
+        name: TighteningMethod(body["title"], tuple(body["factor"]), body["friction"])
+        for name, body in _read_document("bolts")[1]["tightening"].items()
+        if isinstance(body, dict)
     }
 
 

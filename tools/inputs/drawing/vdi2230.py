@@ -1,4 +1,4 @@
-"""Compliance of bolt and clamped parts, deformation cone, assembly preload, embedding: VDI 2230, part 1.
+"""Compliance of bolt and clamped parts, deformation cone, preload, torque, embedding: VDI 2230, part 1.
 
 Valid for concentrically clamped joints with one bolt. Lengths in m, moduli and stresses in Pa, compliances
 in m/N.
@@ -17,8 +17,14 @@ E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
 YIELD_UTILISATION = 0.9
 """Share of the yield strength that is used during tightening [1]."""
-THREAD_FRICTION = 0.12
-"""Default coefficient of friction in the thread [1]: Table A5, class B."""
+DEFAULT_FRICTION, FRICTION_INTERVAL = 0.12, (0.08, 0.16)
+"""Coefficient of friction [1] in the thread and under the head if none is known, and its interval: Table A5,
+friction class B."""
+ROUNDING_TOLERANCE = 1e-6
+"""Relative excess [1] over the Rz of a row that counts as none: Rz 10 um belongs to the row of 10 um."""
+FRICTION_SOURCE = "VDI 2230, Table A5, friction class B"
+MAX_UTILISATION_ERROR = 0.02
+"""Relative excess [1] over YIELD_UTILISATION that counts as none: Table A1 prints torques with two digits."""
 
 
 def pitch_diameter(thread: Thread) -> float:
@@ -127,14 +133,57 @@ def members_compliance(
     return total
 
 
-def assembly_preload(thread: Thread, yield_strength: float) -> float:
+def comparative_stress(thread: Thread, preload: float, thread_friction: float = DEFAULT_FRICTION) -> float:
+    """Comparative stress sigma_red,M [Pa] of a shank bolt in tightening: von Mises, tension and torsion.
+
+    preload         : assembly preload F_M [N]
+    thread_friction : coefficient of friction mu_G in the thread [1]
+
+    The torsion section is fully plastic, W_P = pi d_0^3/12, as in Table A1.
+    """
+    d_2, d_0 = pitch_diameter(thread), 0.5 * (pitch_diameter(thread) + minor_diameter(thread))
+    torsion = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * thread_friction)
+    return float(preload / stress_area(thread) * np.sqrt(1.0 + 3.0 * torsion**2))
+
+
+def assembly_preload(
+    thread: Thread, yield_strength: float, thread_friction: float = DEFAULT_FRICTION
+) -> float:
     """Assembly preload F_M [N] of a shank bolt (Table A1).
 
     Tension and torsion together use the share YIELD_UTILISATION of the yield strength.
     """
-    d_2, d_0 = pitch_diameter(thread), 0.5 * (pitch_diameter(thread) + minor_diameter(thread))
-    twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * THREAD_FRICTION)
-    return float(stress_area(thread) * YIELD_UTILISATION * yield_strength / np.sqrt(1.0 + 3.0 * twist**2))
+    return YIELD_UTILISATION * yield_strength / comparative_stress(thread, 1.0, thread_friction)
+
+
+def head_friction_diameter(bearing_diameter: float, hole_diameter: float) -> float:
+    """Mean friction diameter D_Km [m] of the bearing face under the head: (d_w + d_h)/2."""
+    return 0.5 * (bearing_diameter + hole_diameter)
+
+
+def torque_per_preload(
+    pitch: float,
+    pitch_diameter: float,
+    head_friction_diameter: float,
+    thread_friction: float,
+    head_friction: float,
+) -> float:
+    """Tightening torque per preload M_A/F_M [m]: 0.16 P + 0.58 d_2 mu_G + D_Km mu_K/2 (section 5.4.3).
+
+    pitch                  : P [m]
+    pitch_diameter         : d_2 [m]
+    head_friction_diameter : D_Km [m]
+    thread_friction        : mu_G [1]
+    head_friction          : mu_K [1]
+    """
+    return (
+        0.16 * pitch + 0.58 * pitch_diameter * thread_friction + 0.5 * head_friction_diameter * head_friction
+    )
+
+
+def preload_scatter(tightening_factor: float) -> float:
+    """Relative scatter [1] of the preload about its mean, from alpha_A = F_Mmax/F_Mmin (Table A8)."""
+    return (tightening_factor - 1.0) / (tightening_factor + 1.0)
 
 
 def embedding_depth(Rz: float, interface_count: int, is_tapped: bool) -> float:
@@ -144,7 +193,9 @@ def embedding_depth(Rz: float, interface_count: int, is_tapped: bool) -> float:
     interface_count : number of interfaces between clamped parts
     """
     rows = tables.read_embedding()
-    thread, seat, interface = next((row for limit, row in rows if limit >= Rz), rows[-1][1])
+    thread, seat, interface = next(
+        (row for limit, row in rows if limit * (1.0 + ROUNDING_TOLERANCE) >= Rz), rows[-1][1]
+    )
     return thread + (1 if is_tapped else 2) * seat + interface_count * interface
 
 

@@ -192,7 +192,8 @@ def _fit_friction_torque(torque: Array, angle: Array, direction: Array) -> float
 
     The friction torque is assumed constant over the samples.
     """
-    grid = np.linspace(np.min(angle), np.max(angle), max(angle.size // POINTS_PER_KNOT, 2))
+    knots = int(np.clip(angle.size // POINTS_PER_KNOT, 2, MAX_KNOTS))
+    grid = np.linspace(np.min(angle), np.max(angle), knots)
     design = np.column_stack([_hat_functions(angle, grid).toarray(), direction])
     return float(np.linalg.lstsq(design, torque)[0][-1])
 

@@ -33,6 +33,23 @@ motions over their range."""
 MIN_COMMON_RANGE = 0.9
 """Range of motion common to two branches, over the range of the longer branch [1], from which they count as
 a closed loop."""
+RISE_FRACTION = 0.9
+"""Force change since the turning point over that of the whole branch [1], up to which a branch counts as
+rising. Beyond it a slipped branch is flat."""
+FLAT_FRACTION, MAX_FLAT_RISE = 0.3, 0.05
+"""Last part of a branch over its range of motion [1], and rise of the force over this part, relative to the
+force change of the branch [1], up to which the branch counts as slipping."""
+MIN_FLAT_SAMPLES = 3
+"""Minimum number of samples on the flat end of a branch."""
+BEARING_INTERVALS = 12
+"""Number of equal parts of a branch that show whether its stiffness rises again."""
+MIN_BEARING_RISE, MIN_BEARING_SLOPE_RATIO = 0.2, 3.0
+"""Rise of the force after the softest part over that of the branch [1], and stiffness there over that of the
+softest part [1], from which a joint bears after slip."""
+MIN_BEARING_NOISE = 8.0
+"""Rise of the stiffness over its standard deviation by noise [1], from which a joint bears after slip."""
+MIN_RISING_SAMPLES = 5
+"""Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
 _GRID_POINTS = 200
 """Points of the integration grid for the area between two branches."""
 _MAX_REST_ITERATIONS, _REST_DIFFERENCE = 6, 1e-4
@@ -47,8 +64,10 @@ class Loops:
     branch_index           : (n) index of the branch of each sample
     start_motion           : (branches) motion at the turning point at which the branch begins
     start_motion_deviation : (branches) standard deviation of `start_motion`
+    start_force            : (branches) approximate force at the turning point
     run_index              : (n) index of the run of each sample
     widest_loops           : for each run with a closed loop: area [J] and range of motion of the widest loop
+    slip_steps             : force steps between branches that slip, see `find_slip_steps`
     """
 
     motion: Array
@@ -56,8 +75,10 @@ class Loops:
     branch_index: NDArray[np.int64]
     start_motion: Array
     start_motion_deviation: Array
+    start_force: Array
     run_index: NDArray[np.int64]
     widest_loops: Sequence[tuple[float, float]]
+    slip_steps: Sequence["SlipStep"] = ()
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
@@ -80,13 +101,115 @@ class Loops:
     def rest_stiffness(self) -> float:
         """Approximate stiffness [N/m or N.m/rad] after a reversal: the largest initial slope of the branches.
 
-        Each branch is approximated by a parabola.
+        If `is_stiffness_resolved` is false, the result is a lower bound.
+        """
+        slopes = self._initial_slopes(is_resolved=True) or self._initial_slopes(is_resolved=False)
+        return max(slopes)
+
+    @property
+    def is_stiffness_resolved(self) -> bool:
+        """Whether a branch has enough samples between its turning point and slip to show its stiffness."""
+        return bool(self._initial_slopes(is_resolved=True))
+
+    def _initial_slopes(self, is_resolved: bool) -> list[float]:
+        """Initial slopes of the branches with a resolved stiffness; or lower bounds for the other branches.
+
+        Only the rising part of a branch is used: a slipped part would lower the slope.
         """
         slopes = []
-        for k, start in enumerate(self.start_motion):
-            distance, force = self.motion[self.branch_index == k] - start, self.force[self.branch_index == k]
-            slopes.append(float(np.polyfit(np.abs(distance), np.sign(distance) * force, 2)[1]))
-        return max(slopes)
+        for k in range(self.start_motion.size):
+            distance, change = self.branch_curve(k)
+            rising = int(np.argmax(change >= RISE_FRACTION * np.max(change)))
+            if (rising >= MIN_RISING_SAMPLES) is not is_resolved:
+                continue
+            if is_resolved:
+                slopes.append(float(np.polyfit(distance[:rising], change[:rising], 2)[1]))
+            else:
+                slopes.append(float(change[rising] / (distance[rising] + self.start_motion_deviation[k])))
+        return slopes
+
+    @property
+    def slip_force(self) -> float | None:
+        """Friction force at gross slip [N or N.m]: half the force change of branches with a flat end.
+
+        None if no branch has a flat end.
+        """
+        plateaus = []
+        for k in range(self.start_motion.size):
+            _, change = self.branch_curve(k)
+            if (flat := self._flat_samples(k)).any():
+                plateaus.append(0.5 * float(np.mean(change[flat])))
+        return float(np.median(plateaus)) if plateaus else None
+
+    def _flat_samples(self, branch_number: int) -> NDArray[np.bool_]:
+        """Mask (n) of the samples of a branch on its flat end; all false if its end is not flat."""
+        distance, change = self.branch_curve(branch_number)
+        end = distance >= (1.0 - FLAT_FRACTION) * np.max(distance)
+        if np.count_nonzero(end) < MIN_FLAT_SAMPLES:
+            return np.zeros_like(end)
+        slope = float(np.polyfit(distance[end], change[end], 1)[0])
+        is_flat = abs(slope) * FLAT_FRACTION * np.max(distance) < MAX_FLAT_RISE * np.max(change)
+        return np.asarray(end & is_flat)
+
+    def find_slip_steps(self) -> list["SlipStep"]:
+        """Find the turning points between two branches with flat ends."""
+        flat = [
+            np.flatnonzero(self.branch_index == k)[self._flat_samples(k)]
+            for k in range(self.start_motion.size)
+        ]
+        sizes = np.bincount(self.branch_index)
+        steps = []
+        for number, (before, after) in enumerate(pairwise(flat), 1):
+            if not before.size or not after.size or self.run_index[before[0]] != self.run_index[after[0]]:
+                continue
+            deviation = np.hypot(
+                *(np.std(self.force[rows], ddof=1) / np.sqrt(rows.size) for rows in (before, after))
+            )
+            steps.append(
+                SlipStep(
+                    branch_number=number,
+                    samples_before=before,
+                    samples_after=after,
+                    force_step=float(np.mean(self.force[after]) - np.mean(self.force[before])),
+                    deviation=float(deviation),
+                    relative_deviation=float(np.hypot(*sizes[number - 1 : number + 1] ** -0.5)),
+                )
+            )
+        return steps
+
+    def find_bearing(self) -> tuple[float, float] | None:
+        """Range of motion of slip before the joint bears, and force change of slip; None if it never bears.
+
+        After a reversal, friction alone makes a joint softer and softer. A joint that becomes stiffer again
+        has slipped through a clearance.
+        """
+        for k in range(self.start_motion.size):
+            distance, change = self.branch_curve(k)
+            part = distance / np.max(distance) * BEARING_INTERVALS
+            part = np.clip(part.astype(np.int64), 0, BEARING_INTERVALS - 1)
+            counts = np.bincount(part, minlength=BEARING_INTERVALS)
+            if not np.all(counts):
+                continue
+            x, y = (np.bincount(part, values) / counts for values in (distance, change))
+            slopes = np.diff(y) / np.diff(x)
+            softest = int(np.argmin(slopes))
+            later = softest + int(np.argmax(slopes[softest:]))
+            noise = noise_deviation(change) * np.sqrt(2.0 / np.min(counts)) / np.min(np.diff(x))
+            if (
+                y[-1] - y[softest + 1] > MIN_BEARING_RISE * y[-1]
+                and slopes[later] > MIN_BEARING_SLOPE_RATIO * slopes[softest]
+                and slopes[later] - slopes[softest] > MIN_BEARING_NOISE * noise
+            ):
+                limit = slopes[softest] + (slopes[later] - slopes[softest]) / MIN_BEARING_SLOPE_RATIO
+                return float(np.sum(np.diff(x)[slopes < limit])), float(y[softest + 1])
+        return None
+
+    def branch_curve(self, branch_number: int) -> tuple[Array, Array]:
+        """Distance (n) from the turning point and force change (n) in this direction, of one branch."""
+        samples = self.branch_index == branch_number
+        shift = self.motion[samples] - self.start_motion[branch_number]
+        change = self.force[samples] - self.start_force[branch_number]
+        return np.abs(shift), np.copysign(1.0, shift[-1]) * change
 
     def fit_turning_points(self, law: HysteresisLaw, residual_scale: Array) -> tuple[Array, Array, Array]:
         """Fit the turning points to the samples: force and motion (branches) there, and residual force (n).
@@ -141,14 +264,38 @@ class Loops:
     def residuals(self, law: HysteresisLaw, residual_scale: Array) -> Array:
         """Residuals against a law, over their standard deviations [1].
 
-        These are the force errors (n), then the shifts of the turning points (branches).
+        These are the force errors (n), then the shifts of the turning points (branches), then the force steps
+        between slipping branches (`slip_steps`): the offsets of the branches would hide them.
         """
-        _, start, residual = self.fit_turning_points(
-            law.with_rest_position(self.rest_position(law, residual_scale)), residual_scale
-        )
+        law = law.with_rest_position(self.rest_position(law, residual_scale))
+        _, start, residual = self.fit_turning_points(law, residual_scale)
+        steps = [self._slip_step_residual(law, step, start, residual_scale) for step in self.slip_steps]
         return np.concatenate(
-            [residual / residual_scale, (start - self.start_motion) / self.start_motion_deviation]
+            [residual / residual_scale, (start - self.start_motion) / self.start_motion_deviation, steps]
         )
+
+    def _slip_step_residual(
+        self, law: HysteresisLaw, slip_step: "SlipStep", start_motion: Array, residual_scale: Array
+    ) -> float:
+        """Force step between two slipping branches, measured minus law, over its standard deviation [1].
+
+        start_motion : fitted motion (branches) at the turning points
+        """
+        k = slip_step.branch_number
+
+        def mean_change(samples: NDArray[np.int64], start: float) -> float:
+            return float(np.mean(law.force_change(self.motion[samples], np.full(samples.size, start))))
+
+        before, after = start_motion[k - 1], start_motion[k]
+        end_change = float(law.force_change(np.array([after]), np.array([before]))[0])
+        law_step = (
+            mean_change(slip_step.samples_after, after)
+            + end_change
+            - mean_change(slip_step.samples_before, before)
+        )
+        scale = float(residual_scale[slip_step.samples_after[0]])
+        deviation = max(slip_step.deviation, scale * slip_step.relative_deviation)
+        return (slip_step.force_step - law_step) / deviation
 
     def _force_residuals(self, law: HysteresisLaw, start_shift: float) -> Array:
         """Force (n) minus the force change by the law since the turning point.
@@ -168,6 +315,26 @@ class Loops:
         return np.asarray(self._branch_sums(sample_values) / np.bincount(self.branch_index))
 
 
+@dataclass(frozen=True, slots=True)
+class SlipStep:
+    """Force step between the flat ends of two consecutive branches: twice the friction force at gross slip.
+
+    branch_number                 : index of the second branch
+    samples_before, samples_after : indices of the samples on both flat ends
+    force_step                    : difference of the mean forces, second minus first
+    deviation                     : standard deviation of `force_step` by the scatter of the samples
+    relative_deviation            : least standard deviation over the residual scale [1]: if the law misses
+                                    the data systematically, the step counts as all samples of both branches
+    """
+
+    branch_number: int
+    samples_before: NDArray[np.int64]
+    samples_after: NDArray[np.int64]
+    force_step: float
+    deviation: float
+    relative_deviation: float
+
+
 def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     """Cut measured runs into branches at the turning points of the motion.
 
@@ -177,17 +344,16 @@ def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     Samples before the first turning point are left out, because their history is unknown. Samples beyond the
     previous turning point are left out, because there a smaller loop has closed.
 
-    Raises ValueError: no branch, a force that falls with the motion, a loop that creates energy.
+    Raises ValueError: no branch, a loop that creates energy, a force that falls with the motion.
     """
-    branches: list[tuple[Array, Array, float, float, int]] = []
+    branches: list[tuple[Array, Array, float, float, float, int]] = []
     areas = []
     for number, (name, motion, force) in enumerate(measured_runs):
         turns = find_turning_points(motion)
         if not turns.size:
             raise ValueError(f"{name}the motion never reverses; give loops with reversals")
-        _check_sign(name, motion, force)
         ends = [*turns.tolist(), motion.size - 1]
-        areas += _check_energy(name, motion, force, ends)
+        areas += _check_work(name, motion, force, ends)
         run_branches = [(*branch, number) for branch in _branches_of_run(motion, force, ends)]
         if not run_branches:
             raise ValueError(
@@ -195,23 +361,29 @@ def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> Loops:
             )
         branches += run_branches
     sizes = [branch[0].size for branch in branches]
-    return Loops(
+    loops = Loops(
         motion=np.concatenate([branch[0] for branch in branches]),
         force=np.concatenate([branch[1] for branch in branches]),
         branch_index=np.repeat(np.arange(len(branches)), sizes),
         start_motion=np.array([branch[2] for branch in branches]),
         start_motion_deviation=np.array([branch[3] for branch in branches]),
-        run_index=np.repeat([branch[4] for branch in branches], sizes),
+        start_force=np.array([branch[4] for branch in branches]),
+        run_index=np.repeat([branch[5] for branch in branches], sizes),
         widest_loops=areas,
     )
+    return replace(loops, slip_steps=loops.find_slip_steps())
 
 
 def _branches_of_run(
     motion: Array, force: Array, branch_ends: Sequence[int]
-) -> Iterator[tuple[Array, Array, float, float]]:
-    """Yield for each branch of a run: motion, force, motion at the turning point and its standard deviation.
+) -> Iterator[tuple[Array, Array, float, float, float]]:
+    """Yield for each branch of a run: motion, force; motion, its standard deviation and force at the start.
 
     branch_ends : indices of the turning points, and of the last sample
+
+    The extreme sample of the motion may lie behind the reversal, where the force has changed already. The
+    force at the start is that of the extreme sample or of the sample before, whichever is further from the
+    force at the end.
     """
     deviation = noise_deviation(motion)
     turns = [refine_turning_point(motion, k, deviation) for k in branch_ends]
@@ -221,7 +393,8 @@ def _branches_of_run(
         if np.count_nonzero(inside) >= MIN_BRANCH_SAMPLES:
             step = 0.25 * (abs(motion[first + 1] - motion[first]) + abs(motion[first] - motion[first - 1]))
             turn_deviation = max(float(np.hypot(step, deviation)), RELATIVE_ROUNDING * float(np.ptp(motion)))
-            yield u[inside], F[inside], turns[k], turn_deviation
+            start_force = max(force[first - 1 : first + 1], key=lambda F_0: abs(F_0 - F[inside][-1]))
+            yield u[inside], F[inside], turns[k], turn_deviation, float(start_force)
 
 
 def find_turning_points(motion: Array) -> NDArray[np.int64]:
@@ -272,50 +445,72 @@ def noise_deviation(signal: Array) -> float:
     return float(np.median(np.abs(np.diff(signal, 2))) / 0.6745 / np.sqrt(6.0))
 
 
-def _check_sign(message_prefix: str, motion: Array, force: Array) -> None:
-    """Raise ValueError if the force decreases as the motion increases."""
-    if np.sum((motion - motion.mean()) * (force - force.mean())) <= 0.0:
-        raise ValueError(
-            f"{message_prefix}the force decreases as the motion increases; reverse the sign of one column"
-        )
-
-
-def _check_energy(
+def _check_work(
     message_prefix: str, motion: Array, force: Array, branch_ends: Sequence[int]
 ) -> list[tuple[float, float]]:
-    """Check that the loops of a run dissipate energy; return the widest closed loop.
+    """Check that the loops of a run dissipate work and that the force rises with the motion.
 
-    Returns its area [J] and range of motion, as a list of one or no element.
+    The work of the loops decides, not the number of rows: rows may be dense after the reversals. Returns area
+    [J] and range of motion of the widest closed loop, as a list of one or no element.
 
     branch_ends : indices of the turning points, and of the last sample
 
-    Raises ValueError if the loops create more energy (mean negative area) than noise explains.
+    Raises ValueError if the loops create more energy (mean negative area) than noise explains, or if the mean
+    of the branches falls by more than the branches differ.
     """
     branches = [(motion[a : b + 1], force[a : b + 1]) for a, b in pairwise(branch_ends)]
-    loops = [loop for first, second in pairwise(branches) if (loop := _area_between_branches(first, second))]
+    loops = [loop for first, second in pairwise(branches) if (loop := _enclosed_loop(first, second))]
     if not loops:
+        if sum((u[-1] - u[0]) * (F[-1] - F[0]) for u, F in branches) < 0.0:
+            raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
         return []
-    areas, ranges, _ = np.array(loops).T
-    area, size = float(np.mean(areas)), float(np.max(ranges))
+    area, size = float(np.mean([loop.area for loop in loops])), max(loop.motion_range for loop in loops)
+    rise = float(np.mean([loop.mean_rise for loop in loops]))
     slope = float(np.ptp(force) / np.ptp(motion))
-    deviation = (
-        np.hypot(noise_deviation(force), slope * noise_deviation(motion)) * size / np.sqrt(0.5 * motion.size)
-    )
+    # the area between two branches is integrated over at most _GRID_POINTS of their samples
+    samples = min(motion.size / len(branches), _GRID_POINTS) * len(loops)
+    noise = np.hypot(noise_deviation(force), slope * noise_deviation(motion))
+    deviation = noise * size * np.sqrt(2.0 / samples)
+    if rise < -abs(area) / size:
+        raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
     if area < -max(MAX_CREATED_ENERGY * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
+        sign_hint = "" if rise > abs(area) / size else "reverse the sign of one column, or "
         raise ValueError(
             f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected 0 or more: the force "
-            "must lead the motion; reverse the order of the rows if their time order is reversed"
+            f"must lead the motion; {sign_hint}reverse the order of the rows if their time order is reversed"
         )
-    closed = [(work, common) for work, common, longer in loops if common >= MIN_COMMON_RANGE * longer]
-    return [max(closed, key=lambda loop: loop[1])] if closed else []
+    closed = [loop for loop in loops if loop.motion_range >= MIN_COMMON_RANGE * loop.longer_range]
+    if not closed:
+        return []
+    widest = max(closed, key=lambda loop: loop.motion_range)
+    return [(widest.area, widest.motion_range)]
 
 
-def _area_between_branches(
+_SIGN_ERROR = "the force decreases as the motion increases; reverse the sign of one column"
+
+
+@dataclass(frozen=True, slots=True)
+class _EnclosedLoop:
+    """Loop between two consecutive branches.
+
+    area         : work [J] dissipated between the branches
+    motion_range : range of motion common to both branches
+    longer_range : range of motion of the longer branch
+    mean_rise    : rise of the mean of both branches over `motion_range`, by linear regression
+    """
+
+    area: float
+    motion_range: float
+    longer_range: float
+    mean_rise: float
+
+
+def _enclosed_loop(
     first_branch: tuple[Array, Array], second_branch: tuple[Array, Array]
-) -> tuple[float, float, float] | None:
-    """Area [J] between two consecutive branches, their common range of motion, range of the longer branch.
+) -> _EnclosedLoop | None:
+    """Loop between two consecutive branches. Each branch: motion, force.
 
-    Each branch: motion, force. None if the branches have no common range, or too few samples.
+    None if the branches have no common range, or too few samples.
     """
     (u, F), (v, G) = (
         (first_branch, second_branch)
@@ -327,7 +522,13 @@ def _area_between_branches(
         return None
     grid = np.linspace(low, high, _GRID_POINTS)
     up, down = (np.interp(grid, *sort_points(x, y)) for x, y in ((u, F), (v, G)))
-    return float(np.trapezoid(up - down, grid)), float(high - low), float(max(np.ptp(u), np.ptp(v)))
+    fraction = np.linspace(-0.5, 0.5, _GRID_POINTS)
+    return _EnclosedLoop(
+        float(np.trapezoid(up - down, grid)),
+        float(high - low),
+        float(max(np.ptp(u), np.ptp(v))),
+        float(fraction @ (0.5 * (up + down)) / (fraction @ fraction)),
+    )
 
 
 def sort_points(x: Array, y: Array) -> tuple[Array, Array]:

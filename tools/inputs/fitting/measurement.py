@@ -70,13 +70,19 @@ class ColumnNames:
         return next(iter(self.force_units)), next(iter(self.motion_units))
 
     def check_stiffness_ratio(
-        self, path: Path, stiffness_ratio: float, stated_units: Mapping[str, str], start_file: ParameterFile
+        self,
+        path: Path,
+        stiffness_ratio: float,
+        stated_units: Mapping[str, str],
+        start_file: ParameterFile,
+        is_force_plausible: bool = False,
     ) -> None:
         """Check that the measured stiffness is near the stiffness of the start values.
 
-        stiffness_ratio : measured stiffness over stiffness of the start values [1]
-        stated_units    : {column: unit in the heading}
-        start_file      : parameter file with the start values
+        stiffness_ratio    : measured stiffness over stiffness of the start values [1]
+        stated_units       : {column: unit in the heading}
+        start_file         : parameter file with the start values
+        is_force_plausible : whether the force at gross slip shows that the unit of the force is right
 
         Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
         """
@@ -85,35 +91,43 @@ class ColumnNames:
         raise InputRefusal(
             f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, allowed are "
             f"{1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
-            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units)}; if the units are right, "
-            "start from the parameter file of a joint of similar stiffness",
+            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units, is_force_plausible)}; if the "
+            "units are right, start from the parameter file of a joint of similar stiffness",
             "params",
         )
 
-    def describe_likely_unit_error(self, stiffness_ratio: float, stated_units: Mapping[str, str]) -> str:
+    def describe_likely_unit_error(
+        self, stiffness_ratio: float, stated_units: Mapping[str, str], is_force_plausible: bool = False
+    ) -> str:
         """Describe the unit error that best explains a wrong ratio of stiffnesses, as text.
 
-        stiffness_ratio : measured stiffness over stiffness of the start values [1]
-        stated_units    : {column: unit in the heading}
+        stiffness_ratio    : measured stiffness over stiffness of the start values [1]
+        stated_units       : {column: unit in the heading}
+        is_force_plausible : whether the unit of the force is known to be right
 
-        If a wrong unit of either column explains the ratio equally well, the text names both.
+        If a wrong unit of either column explains the ratio, the text names both.
         """
         explanations = []
-        for column, power, own in (
+        for column, power, units in (
             (self.motion_column, -1.0, self.motion_units),
             (self.force_column, 1.0, self.force_units),
         ):
-            stated = measured_in(stated_units[column], own)
-            text = f"where the heading says {stated_units[column]}"
+            if is_force_plausible and column == self.force_column:
+                continue
+            stated = measured_in(stated_units[column], units)
             errors = {
-                unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in own.items()
+                unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in units.items()
             }
             unit = min(errors, key=errors.__getitem__)
-            explanations.append((float(errors[unit]), f"the {column} is in {unit}, {text}"))
-        smallest = min(explanations)[0]
-        if not smallest < np.log(MAX_EXPLAINED_RATIO):
-            return "check the units of both columns, no usual one explains it"
-        return "likely " + ", or ".join(text for error, text in explanations if error < smallest + 1e-6)
+            if errors[unit] < np.log(MAX_EXPLAINED_RATIO):
+                text = f"the {column} is in {unit}, where the heading says {stated_units[column]}"
+                explanations.append((float(errors[unit]), text))
+        if not explanations:
+            columns_text = f"column {self.motion_column}" if is_force_plausible else "both columns"
+            return f"check the units of {columns_text}, no usual one explains it"
+        return "likely " + ", or ".join(
+            text for _, text in sorted(explanations, key=lambda item: round(item[0], 6))
+        )
 
 
 def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, columns.Columns]:

@@ -144,6 +144,7 @@ class FitResult:
     pictures             : plots, drawn side by side
     notes                : messages for the user, one line each
     confidence_intervals : {name: ends of the 95 % confidence interval}, if they are known
+    doubt                : reason to reject the fit that the procedure found, as text; None: no reason
     """
 
     parameters: ParameterFile
@@ -152,6 +153,7 @@ class FitResult:
     pictures: Sequence[Picture]
     notes: Sequence[str] = ()
     confidence_intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    doubt: str | None = None
 
     def unknown_rows(self) -> list[dict[str, Any]]:
         """Table of the unknowns: name, value, unit, relative standard deviation, whether it is determined."""
@@ -175,8 +177,11 @@ class FitResult:
     def rejection_reason(self) -> str | None:
         """Reason to reject the fit, as text; None if the fit is accepted."""
         names = [u.name for u in self.solution.unknowns]
-        if names and {*names} == {*self.solution.names_at_bound}:
-            return f"{', '.join(names)} ended on a bound of its interval; no other parameter was fitted"
+        if self.doubt:
+            return self.doubt
+        if at_bound := self.solution.names_at_bound:
+            interval = "their intervals" if at_bound[1:] else "its interval"
+            return f"{', '.join(at_bound)} ended on a bound of {interval}"
         if (height := self.solution.values.get(HEIGHT_PARAMETER, 0.0)) > MAX_HEIGHT:
             return (
                 f"{HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, {1e6 * MAX_HEIGHT:g}] "

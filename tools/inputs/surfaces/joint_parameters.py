@@ -77,7 +77,7 @@ def with_surface(
     for side, scan in identification.roughness_by_side.items():
         name = identification.file_names[min(side, len(identification.file_names)) - 1]
         source = f"measured: {name}; waves up to {scan.longest_wave:.4g} m"
-        file = file.with_roughness({f"Rq{side}": scan.h}, "user", source)
+        file = file.with_roughness({f"Rq{side}": scan.h}, "measured", source)
     return file
 
 
@@ -87,12 +87,14 @@ def _with_roughness_law(
     """Set slope, longest wave and, if it is determined, the Hurst exponent of the law `roughness`."""
     shortest, longest = identification.scans[0].shortest_wave, identification.longest_wave
     source = f"measured: {_describe_files(identification)}; waves up to {longest:.4g} m"
-    file = file.with_values({"longest_wave": longest}, "user", source)
-    file = file.with_values({"slope": identification.slope}, "user", f"{source}, down to {shortest:.3g} m")
+    file = file.with_values({"longest_wave": longest}, "measured", source)
+    file = file.with_values(
+        {"slope": identification.slope}, "measured", f"{source}, down to {shortest:.3g} m"
+    )
     if not set_hurst:
         return file
     result = identification.select_best_result(method=method)
-    return file.with_values({"hurst": result.fit.H}, "user", _describe_fit(identification, result))
+    return file.with_values({"hurst": result.fit.H}, "measured", _describe_fit(identification, result))
 
 
 def _with_fractal_parameters(
@@ -110,7 +112,7 @@ def _with_fractal_parameters(
             )
         prefix, _, symbol = name.rpartition(".")
         source = _describe_source(identification, result, surfaces[prefix], symbol)
-        file = file.with_values({name: value}, "user", source)
+        file = file.with_values({name: value}, "measured", source)
     return file
 
 

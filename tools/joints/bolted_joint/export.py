@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.equilibrium import condense_stiffness
+from jointfmu.joints.bolted_joint.compliances import condense_stiffness
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure
 from jointfmu.joints.model import Variable
@@ -131,7 +131,7 @@ def _interface_totals(spring: BoltedJointSpring, preload: float, moment: float) 
     state = spring.evaluate(preload, moment, rest, rest)
     sums = {name: float(state[name]) for name in TOTAL_OUTPUTS}
     tightened = spring.bolts.preload_force(spring.joint, preload, moment)
-    bolts = spring.bolts.bolts_per_position * spring.bolts.tangent_stiffness(
+    bolts = spring.bolts.bolts_per_position * spring.bolts.active_stiffness(
         tightened, np.zeros_like(tightened)
     )
     return sums | {"K_zz": sums["K_zz"] - float(np.sum(bolts))}
@@ -214,7 +214,7 @@ def tabulate_normal_force(
         """Force [N] and stiffness [N/m] by which bolts, which only pull, deviate from linear springs."""
         elongation = separation[:, None] + np.zeros(len(held_bolts))
         gap = springs.head_gap(held_bolts, elongation)
-        lost = springs.stiffness - springs.tangent_stiffness(held_bolts, elongation)
+        lost = springs.stiffness - springs.active_stiffness(held_bolts, elongation)
         return springs.bolts_per_position * springs.stiffness * gap.sum(
             axis=1
         ), springs.bolts_per_position * lost.sum(axis=1)

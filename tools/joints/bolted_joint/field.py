@@ -81,8 +81,8 @@ def _default_preload(joint: AnyBoltedJoint) -> float:
 
 
 def _proof_load(joint: AnyBoltedJoint) -> tuple[float, str] | None:
-    pattern = joint.pattern
-    return None if isinstance(pattern, NodalField) else proof_load(pattern.hole_diameter)
+    hole = PlaneLayout.from_joint(joint).hole_diameter
+    return proof_load(hole) if hole else None
 
 
 NOMINAL_PRESSURE = NominalPressure(

@@ -1,8 +1,6 @@
 """Figures in the report of a bolted joint: pictures, stiffness shares, bolt forces, effect of friction."""
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
@@ -12,19 +10,19 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
     ElasticBodies,
     slip_force,
-    superposed_pressure,
-    with_rigid_members,
     working_preload,
 )
 from jointfmu.joints.bolted_joint.outputs import bolt_force_name
 from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from ...common.shown import format_quantity
 from ...pages.report.figure import ComparisonRow, Figure
 from ...pages.report.load_history import LoadHistory
 from .field import PlaneLayout
+from .gross_slip import PRELOAD_ENTRY, friction_results, preload_results
 from .picture import draw_plan, draw_section
 from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces
 
@@ -32,13 +30,18 @@ PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-REPORTED_SHEAR_RATIO = 0.1
-"""Shear force over the gross-slip force [1] at which the loss factor is reported."""
+EQUAL_FORCE_TOLERANCE = 1e-3
+"""Difference of two bolt forces over the largest one [1], up to which they share a curve."""
 
 
 def joint_figures(load_history: LoadHistory) -> list[Figure]:
-    """All figures of the joint: pictures, complete joint, friction."""
-    return [picture_figure(load_history), *stiffness_figures(load_history), *friction_figures(load_history)]
+    """All figures of the joint: pictures, complete joint, preload, friction."""
+    return [
+        picture_figure(load_history),
+        *stiffness_figures(load_history),
+        *preload_figures(load_history),
+        *friction_figures(load_history),
+    ]
 
 
 def picture_figure(load_history: LoadHistory) -> Figure:
@@ -86,61 +89,27 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
     return [Figure("Effect of the friction coefficient", text, table=table)]
 
 
-class FrictionResult(NamedTuple):
-    """Gross-slip force and loss factor for one friction coefficient.
+def preload_figures(load_history: LoadHistory) -> list[Figure]:
+    """Table of stiffness, gross-slip force and opening load over the range of the preload.
 
-    mu          : friction coefficient [1]
-    slip_force  : shear force [N] of gross slip
-    loss_factor : [1] of a loop with a given amplitude of the shear force
+    Empty if the file states no range of the preload.
     """
-
-    mu: float
-    slip_force: float
-    loss_factor: float
-
-
-def friction_results(parameter_file: ParameterFile, preload: float) -> tuple[float, list[FrictionResult]]:
-    """Gross-slip force and loss factor for mu of the file and both ends of its range, at a preload [N].
-
-    Returns the amplitude [N] of the shear force, then one FrictionResult per mu. The loss factors are those
-    of the interface between rigid sides, all at this amplitude.
-    """
-    joint = with_rigid_members(parameter_file.values)
-    remaining_preload = float(working_preload(joint, preload))
-    shear = REPORTED_SHEAR_RATIO * float(slip_force(joint, remaining_preload))
-    rows = []
-    for mu in (joint.mu, *parameter_file.ranges.get("mu", ())):
-        other = replace(joint, mu=mu)
-        loss = loss_factor(BoltedJointSpring.for_joint(other), remaining_preload, shear)
-        rows.append(FrictionResult(mu, float(slip_force(other, remaining_preload)), loss))
-    return shear, rows
-
-
-def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear_amplitude: float) -> float:
-    """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
-
-    remaining_preload : [N] of each bolt after embedding; without a moment
-    shear_amplitude   : amplitude [N] of the shear force
-    """
-    joint, shape = spring.joint, spring.patches
-    law, mean = spring.friction_law.foundation(), remaining_preload * joint.n_bolts / joint.A_0
-    approach = spring.curve.inverse(
-        superposed_pressure(shape.preload_pressure_ratio, shape.moment_pressure_ratio, mean, 0.0)
+    file = load_history.file
+    if PRELOAD_ENTRY not in file.ranges:
+        return []
+    table: list[tuple[str, ...]] = [
+        ("preload", "stiffness along z", "stiffness along x", "gross slip at", "interface opens at")
+    ]
+    for row in sorted(preload_results(file)):
+        values = zip(row, ("N", "N/m", "N/m", "N", "N"), strict=True)
+        table.append(tuple(_format_value(value, unit) for value, unit in values))
+    text = (
+        "The preload is uncertain: "
+        f"{file.sources[PRELOAD_ENTRY]}. Embedding takes {_format_value(file.values.embedding, 'N')} of each "
+        "preload. The stiffness is that of the FMU; the force along z that opens the interface is a linear "
+        "estimate."
     )
-    low = 0.0
-    size = (
-        law.friction_coefficient
-        / law.stiffness_ratio
-        * float(np.max(approach - spring.curve.displacement[0]))
-    )
-    for _ in range(60):
-        middle = 0.5 * (low + size)
-        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.area_share)
-        low, size = (middle, size) if carried < shear_amplitude else (low, middle)
-    lost, stored = (
-        float(shape.area_share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
-    )
-    return lost / (2.0 * np.pi * stored)
+    return [Figure("Effect of the preload", text, table=table)]
 
 
 def _working_point(load_history: LoadHistory) -> tuple[float, float]:
@@ -214,17 +183,40 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
         "joint is that of the FMU. The last three columns are shares of its compliance, by stored energy. "
         "Members are a spring in series with interface and bolts; interface alone and bolts alone are "
         f"between rigid sides. The interface has {share[2]:.1%} of the compliance along z and at most "
-        f"{largest:.1%} in any direction: {effect}. The bolts carry {compliances.load_factor:.3f} of a force "
-        "along z (load factor n Phi_K of VDI 2230), with the other motions free; where the interface is "
-        "open they carry the full force, as the plot shows."
+        f"{largest:.1%} in any direction: {effect}. The bolts carry {compliances.joint_load_factor:.3f} of a "
+        "force along z (load factor n Phi_K of VDI 2230), with the other motions free; where the interface "
+        "is open they carry the full force, as the plot shows."
     )
+
+
+def _group_equal_rows(columns: Array) -> list[list[int]]:
+    """Indices of the rows, those with equal values together; in the order of the first of each group."""
+    groups: list[list[int]] = []
+    scale = float(np.max(np.abs(columns), initial=0.0))
+    for j, row in enumerate(columns):
+        for group in groups:
+            if np.allclose(row, columns[group[0]], rtol=0.0, atol=EQUAL_FORCE_TOLERANCE * scale):
+                group.append(j)
+                break
+        else:
+            groups.append([j])
+    return groups
+
+
+def _name_bolts(bolts: Sequence[int]) -> str:
+    """Name of a curve of bolts with equal forces."""
+    names = ", ".join(bolt_force_name(j) for j in bolts)
+    return f"{names} (equal)" if len(bolts) > 1 else names
 
 
 def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, max_force: float) -> Panel:
     """Panel of the force of each bolt over a tensile force along z, up to `max_force` [N]."""
     pulls = np.linspace(0.0, max_force, 27)
     columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
-    series = [Series(bolt_force_name(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
+    series = [
+        Series(_name_bolts(bolts), 1e-3 * pulls[: len(columns[bolts[0]])], columns[bolts[0]])
+        for bolts in _group_equal_rows(columns)
+    ]
     return Panel(
         "Bolt forces under a tensile force along z", "tensile force along z [kN]", "bolt force [kN]", series
     )

@@ -57,7 +57,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
             stiffness = spring.curve.derivatives(approach, 1)[1]
             normal = np.maximum(stiffness, MIN_STIFFNESS_RATIO * preload_stiffness.max()) * whole.point_area
             r = residual(z, K, pull)
-            pulling = bolts.tangent_stiffness(tension, E @ z)[:, None]
+            pulling = bolts.active_stiffness(tension, E @ z)[:, None]
             step = -np.linalg.solve(K + E.T @ (pulling * E) + G.T @ (normal[:, None] * G), r)
             energy_slope_0, size = float(r @ step), 1.0
             if -energy_slope_0 <= RELATIVE_TOLERANCE * pull * abs(z[2]):

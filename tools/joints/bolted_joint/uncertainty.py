@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import slip_force
 from jointfmu.joints.model import Variable
 from jointfmu.quantity import Array
@@ -21,6 +22,8 @@ MAX_SLIP_RATIO = 0.8
 """Largest shear force of the loop over the slip force [1]."""
 LOOP_LOADS = np.geomspace(0.02, 1.0, 5)
 """Loads of the loops over the end of the ramp [1]. The loss factor is interpolated between them."""
+START_EXPONENT = 12.0
+"""Exponent N of the pressure p ~ approach^N [1] from which the search of the amplitude of a loop starts."""
 MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
 """Limits of Newton's method for the amplitude of the loop [1]."""
 
@@ -38,16 +41,28 @@ def approach(sample: JointSample, preload: Array) -> Array:
     return np.asarray(rate[0] / exponent + spline_weights(x, np.log(preload / end), -1) @ rate)
 
 
+def opening_load(sample: JointSample, preload: Array) -> Array:
+    """Force along z (m) [N] that opens the interface around the most loaded bolt, by linear theory.
+
+    The load factor is that of the last preload: it hardly changes along the ramp.
+    """
+    spring = BoltedJointSpring.for_joint(replace(sample.parameters, embedding=0.0))
+    return np.asarray(preload * spring.compliances(float(preload[-1])).opening_load(1.0))
+
+
 def loss_factor(sample: JointSample, preload: Array) -> Array:
     """Loss factor (m) [1] of loops of the interface under SHEAR_RATIO of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
-    finds the displacement at which the shear force is reached: the virgin curve is concave, so the iteration
-    is monotone.
+    finds the displacement of the shear force, from that of a virgin curve with the same initial stiffness and
+    friction limit, for a pressure p ~ approach^START_EXPONENT.
     """
     loads, parameters = preload[-1] * LOOP_LOADS, sample.parameters
-    shear = parameters.n_bolts * loads * min(SHEAR_RATIO, MAX_SLIP_RATIO * parameters.mu)
-    amplitude = np.zeros_like(shear)
+    limit = parameters.mu * parameters.n_bolts * loads
+    shear = np.minimum(SHEAR_RATIO * parameters.n_bolts * loads, MAX_SLIP_RATIO * limit)
+    stiffness = sample.follow({"preload": loads, "s_rel_x": np.zeros_like(loads)}, INTERFACE)["K_xx"]
+    start_ratio = START_EXPONENT * (1.0 - (1.0 - shear / limit) ** (1.0 / START_EXPONENT))
+    amplitude = start_ratio * limit / stiffness
     for _ in range(MAX_ITERATIONS):
         state = sample.follow({"preload": loads, "s_rel_x": amplitude}, INTERFACE)
         step = (shear + state["f_x"]) / state["K_xx"]
@@ -73,6 +88,10 @@ CURVES = LoadCurves(
             lambda sample, preload: np.asarray(slip_force(sample.parameters, preload)),
         ),
         DerivedOutput(
+            Variable("opening_load", "N", "force along z that opens the interface, by linear theory", 1e4),
+            opening_load,
+        ),
+        DerivedOutput(
             Variable(
                 "loss_factor", "1", f"of a loop under a shear of {SHEAR_RATIO:g} times the bolts' force", 0.1
             ),
@@ -81,5 +100,6 @@ CURVES = LoadCurves(
     ),
     default_end=lambda joint: 30e3,
     max_load=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
+    load_loss=lambda joint: joint.embedding,
     settings={"embedding": 0.0},
 )

@@ -13,12 +13,12 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     from ...inputs.drawing import faces
     from ...inputs.drawing.faces import hertz_line_contact
     from ...inputs.drawing.part import ParameterSheet
-    from ...inputs.drawing.reading import parse_number
+    from ...inputs.drawing.quantities import parse_value
 
     sheet = ParameterSheet(KIND.name, "roughness")
     faces.add_faces(sheet, options)
-    load = parse_number("load", options["load"], "N", "N")
-    width = parse_number("width", options["width"], "mm", "m")
+    load = parse_value("load", options["load"])
+    width = parse_value("width", options["width"])
     if len(options["radii"]) != 2:
         raise ValueError(f"--radii has {len(options['radii'])} values, expected one of each flank")
     curvature = sum(_parse_curvature(text) for text in options["radii"])
@@ -47,11 +47,11 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
 
 
 def _parse_curvature(radius_text: str) -> float:
-    from ...inputs.drawing.reading import parse_number
+    from ...inputs.drawing.quantities import parse_value
 
     if radius_text.strip().lower() in ("inf", "flat"):
         return 0.0
-    radius = parse_number("radii", radius_text, "mm", "m", lower_bound=None)
+    radius = parse_value("radii", radius_text)
     if radius == 0.0:
         raise ValueError("--radii = 0 mm is not a radius; expected a radius (negative: concave) or flat")
     return 1.0 / radius

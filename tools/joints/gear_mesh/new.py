@@ -12,7 +12,7 @@ from ...common.options import Option, option_flag
 from ...inputs.drawing import faces
 from ...inputs.drawing.faces import FACE_OPTIONS, hertz_line_contact
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand, ParameterSheet
-from ...inputs.drawing.reading import parse_number
+from ...inputs.drawing.quantities import parse_quantity, parse_value
 
 E_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
@@ -125,7 +125,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    wheels, torque = _parse_wheels(options), parse_number("torque", options["torque"], "N.m", "N.m")
+    wheels, torque = _parse_wheels(options), parse_value("torque", options["torque"])
     sheet = ParameterSheet(KIND.name, "roughness")
     faces.add_faces(sheet, options)
     moduli = (sheet.value_of("side1.E"), sheet.value_of("side2.E"))
@@ -167,7 +167,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
     if len(options["teeth"]) != 2:
         raise ValueError(f"--teeth has {len(options['teeth'])} values, expected one of each wheel")
-    teeth = [parse_number("teeth", text, "1", "1") for text in options["teeth"]]
+    teeth = [parse_value("teeth", text) for text in options["teeth"]]
     if any(z % 1.0 for z in teeth):
         raise ValueError(f"--teeth = {' '.join(options['teeth'])}: expected whole numbers")
     angles = []
@@ -175,14 +175,14 @@ def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
         ("pressure_angle", "20", 0.0, 45.0),
         ("helix_angle", "0", -1.0, 60.0),
     ):
-        angle = parse_number(name, options[name] or default, "deg", "rad", lower_bound=None)
+        angle = parse_value(name, options[name] or default)
         if not max(lowest, 0.0) <= np.degrees(angle) < highest or (lowest == 0.0 and angle == 0.0):
             lower_end = "(0" if lowest == 0.0 else "[0"
             raise ValueError(
                 f"{option_flag(name)} = {options[name]} deg is outside {lower_end}, {highest:g})"
             )
         angles.append(angle)
-    width, module = (parse_number(name, options[name], "mm", "m") for name in ("width", "module"))
+    width, module = (parse_value(name, options[name]) for name in ("width", "module"))
     return InvoluteGearPair(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
 
 
@@ -207,9 +207,7 @@ def _add_parameters(
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
         parameter_sheet.add("backlash", min_backlash, "estimate", text)
     else:
-        parameter_sheet.add_drawing_value(
-            "backlash", parse_number("backlash", options["backlash"], "um", "m")
-        )
+        parameter_sheet.add_drawing_number("backlash", parse_quantity("backlash", options["backlash"]))
     parameter_sheet.add(
         "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
     )

@@ -59,6 +59,8 @@ TORQUE_SERIES = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with published torques, in the order in which they serve as estimates for other series."""
 TorqueTable: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
 """Published torques: {(series, size, ratio): row of the file}."""
+_MAX_SIZE_DIGITS = 3
+"""Digits of the largest size and of the largest ratio."""
 _SUGGESTION_COUNT = 3
 """Number of similar names in the error for an unknown name."""
 
@@ -66,7 +68,7 @@ _SUGGESTION_COUNT = 3
 def find_drive(drive_name: str) -> CatalogueEntry:
     """Find a drive by its name, SERIES-SIZE-RATIO.
 
-    Case and separators do not matter; further parts of the name are ignored.
+    Case and separators do not matter: csg32100 is CSG-32-100. Further parts of the name are ignored.
 
     Raises ValueError with similar names if there is no such drive.
     """
@@ -75,6 +77,9 @@ def find_drive(drive_name: str) -> CatalogueEntry:
     matches = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
     if matches:
         return max(matches, key=lambda item: len(item.name))
+    joined = [item for key, item in known.items() if _join_name(key) == _join_name(wanted)]
+    if len(joined) == 1:
+        return joined[0]
     similar = sorted(known, key=lambda key: _name_distance(key, wanted))[:_SUGGESTION_COUNT]
     raise ValueError(
         f"catalogue {drive_name!r} is unknown; nearest are {', '.join(known[key].name for key in similar)} "
@@ -82,8 +87,35 @@ def find_drive(drive_name: str) -> CatalogueEntry:
     )
 
 
+def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
+    """Find the drive of the same series and size with another ratio.
+
+    Raises ValueError with the ratios of the catalogue if there is no such drive.
+    """
+    siblings = {item.numbers["ratio"].value: item for item in list_drives() if _stem(item) == _stem(drive)}
+    if ratio in siblings:
+        return siblings[ratio]
+    raise ValueError(
+        f"--ratio = {ratio:g} is not in the catalogue for {_stem(drive).strip('-')}, allowed are "
+        f"{', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without --catalogue, "
+        "state the numbers of the row"
+    )
+
+
+def _stem(drive: CatalogueEntry) -> str:
+    """Name of a drive with its ratio left out: series, size, and parts after the ratio."""
+    parts, ratio = drive.name.split("-"), f"{drive.numbers['ratio'].value:g}"
+    places = [place for place, part in enumerate(parts) if part == ratio]
+    return "-".join(part for place, part in enumerate(parts) if place != (places or [len(parts)])[-1])
+
+
 def _name_distance(known_name: str, wanted_name: str) -> tuple[float, ...]:
-    """Distance between two names, for sorting: difference of the letters, then of size, then of ratio."""
+    """Distance between two names, for sorting: difference of the letters, then of size, then of ratio.
+
+    A number that is longer than any size is size and ratio without a separator; then the texts are compared.
+    """
+    if re.search(rf"\d{{{_MAX_SIZE_DIGITS + 1}}}", wanted_name) and not re.search(r"\d-\d", wanted_name):
+        return (-SequenceMatcher(None, _join_name(known_name), _join_name(wanted_name)).ratio(),)
     letters, wanted_letters = (re.sub("[^a-z]", "", name) for name in (known_name, wanted_name))
     numbers = ([float(n) for n in re.findall(r"[1-9]\d*", name)] for name in (known_name, wanted_name))
     distances = [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
@@ -235,6 +267,11 @@ def _single_drive(friction_row: Mapping[str, str], similar_drive: CatalogueEntry
 def _read_table(table_name: str) -> list[dict[str, str]]:
     path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{table_name}.csv"
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def _join_name(drive_name: str) -> str:
+    """Normalised name without separators."""
+    return drive_name.replace("-", "")
 
 
 def _normalise_name(drive_name: str) -> str:

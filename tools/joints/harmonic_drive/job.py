@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS
+from jointfmu.joints.harmonic_drive.drive import FRICTION_HARMONICS, KINEMATIC_ERROR_HARMONICS
 
 from ...pages.laboratory.joint_additions import (
     ExampleValues,
@@ -233,6 +233,8 @@ _SLIDER_SPANS = {
     "friction_viscous": (0.0, 1e-3),
     "load_loss": (0.0, 0.5),
     "load_loss_back": (-1.0, 0.5),
+    **{f"friction_{n}": (0.0, 0.05) for n in FRICTION_HARMONICS},
+    **{f"friction_{n}_phase": (-math.pi, math.pi) for n in FRICTION_HARMONICS},
     "temperature_factor": (0.5, 5.0),
     "viscous_temperature_coefficient": (0.0, 0.1),
     "dry_temperature_coefficient": (0.0, 0.1),

@@ -10,8 +10,9 @@ from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 from ...common.options import Option, option_flag
 from ...inputs.catalogue import SourcedNumber
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
-from ...inputs.drawing.reading import parse_number, parse_temperature
-from .catalogue import COLUMNS, STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive
+from ...inputs.drawing.quantities import parse_value
+from ...inputs.drawing.reading import parse_temperature
+from .catalogue import STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive, find_ratio
 from .friction import (
     CATALOGUE_SPEED,
     FRICTION_COLUMNS,
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
 _OPTION_COLUMNS = ("ratio", *STIFFNESS_NAMES, "rated_torque", *FRICTION_COLUMNS)
 """Columns of the catalogue that the user can state."""
-_DEFAULT_UNITS = {column.name: column.unit for column in COLUMNS if column.name in _OPTION_COLUMNS}
-"""{column: unit of a number without a unit}."""
 DAMPING_TIME = 1e-4
 """Damping d over K1 [s]: a damping ratio of 2 % for a natural frequency of 60 Hz."""
 FIXED_PARTS: Mapping[str, str] = {
@@ -35,25 +34,30 @@ FIXED_PARTS: Mapping[str, str] = {
     "wave-generator": "wave generator fixed, from flexspline to circular spline: 1 + 1/(ratio printed)",
 }
 """{fixed part of the drive: effect on the ratio}."""
+MIN_EFFICIENCY = 0.1
+"""Least efficiency [1] at rated torque and 2000 rev/min: drives of the catalogue have 0.5 to 0.85."""
 PEAK_TORQUE_RATIO = 4.0
 """max_torque over rated torque [1], if no repeated peak torque is known; about that of catalogue drives."""
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
-    source = options["source"] or options["catalogue"] or "catalogue"
-    printed = dict(find_drive(options["catalogue"]).numbers) if options["catalogue"] else {}
-    for name, unit in _DEFAULT_UNITS.items():
+    source, printed = options["source"] or options["catalogue"] or "catalogue", {}
+    if options["catalogue"]:
+        drive = find_drive(options["catalogue"])
+        printed = dict(drive.numbers)
+    for name in _OPTION_COLUMNS:
         if options[name] is not None:
-            value = parse_number(
-                name, options[name], _default_unit(options, name), unit, None if name == "ratio" else 0.0
+            value = parse_value(
+                name, options[name], options["stiffness_unit"] if name.startswith("K") else None
             )
             if value == 0.0:
                 raise ValueError("--ratio = 0 is outside (-inf, 0) and (0, inf)")
+            if name == "ratio" and options["catalogue"] and abs(value) != drive.numbers["ratio"].value:
+                drive = find_ratio(drive, abs(value))
+                source, printed = options["source"] or drive.name, dict(drive.numbers)
             printed[name] = _stated_number(options, value)
     if options["hysteresis"] is not None:
-        printed["hysteresis_loss"] = _stated_number(
-            options, parse_number("hysteresis", options["hysteresis"], "arcmin", "rad")
-        )
+        printed["hysteresis_loss"] = _stated_number(options, parse_value("hysteresis", options["hysteresis"]))
     if missing := [option_flag(name) for name in ("ratio", *STIFFNESS_NAMES) if name not in printed]:
         raise ValueError(f"{', '.join(missing)} missing: state the row of the catalogue, or --catalogue NAME")
     if "rated_torque" not in printed:
@@ -65,15 +69,35 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     if options["corner"] is not None:
         if options["law"] == "hu2023":
             raise ValueError("--corner is of the catalogue's lines; --law hu2023 has no corners")
-        corner = parse_number("corner", options["corner"], "1", "1", None)
+        corner = parse_value("corner", options["corner"])
         printed["corner"] = SourcedNumber(
             corner, "user", "stated" if corner else "stated: the lines, with kinks"
         )
     joint = (_make_pair_joint if options["law"] == "hu2023" else _make_line_joint)(
         printed, friction_numbers, source
     )
+    _check_efficiency(options, joint)
     joint = replace(joint, facts={"ratio": (printed["ratio"].value, "1", ratio_text), **joint.facts})
     return joint if options["temperature"] is None else _set_temperature(joint, options["temperature"])
+
+
+def _check_efficiency(options: DrawingOptions, joint: NewJoint) -> None:
+    """Raise ValueError if friction that the user states leaves no usable efficiency."""
+    stated = [
+        name for name in ("starting_torque", "running_torque", "motor_drag") if options[name] is not None
+    ]
+    if not stated:
+        return
+    drive, efficiency = joint.file.values, rated_efficiency(joint.file.values)
+    if efficiency >= MIN_EFFICIENCY:
+        return
+    name = max(stated, key=lambda name: parse_value(name, options[name]))
+    highest = drive.rated_torque / abs(drive.ratio) * (1.0 / MIN_EFFICIENCY - 1.0)
+    raise ValueError(
+        f"{option_flag(name)} = {options[name]!r} is read as {parse_value(name, options[name]):g} N.m at the "
+        f"motor: it leaves an efficiency of {efficiency:.1%} at rated torque, expected at least "
+        f"{MIN_EFFICIENCY:.0%}, which is up to about {highest:.2g} N.m; check the unit, as in 50mN.m"
+    )
 
 
 def _set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
@@ -159,9 +183,7 @@ def _add_motor_drag(
     """
     if drag_text is None:
         return friction_numbers
-    drag = parse_number("motor_drag", drag_text, "N.m", "N.m", None)
-    if drag < 0.0:
-        raise ValueError(f"--motor-drag = {drag_text!r} is outside [0, inf) N.m")
+    drag = parse_value("motor_drag", drag_text)
     text = f"motor drag {drag:g} N.m, stated"
     dry_friction = friction_numbers.get("friction_coulomb")
     if dry_friction is None:
@@ -180,15 +202,6 @@ def _stated_number(options: DrawingOptions, value: float) -> SourcedNumber:
     """Number that the user states, with its source: a catalogue row, or a replacement for a named drive."""
     kind = "user" if options["catalogue"] and not options["source"] else "catalogue"
     return SourcedNumber(value, kind, options["source"] or "stated")
-
-
-def _default_unit(options: DrawingOptions, column_name: str) -> str:
-    """Unit of a stated number without a unit."""
-    return (
-        options["stiffness_unit"] or _DEFAULT_UNITS[column_name]
-        if column_name.startswith("K")
-        else _DEFAULT_UNITS[column_name]
-    )
 
 
 def _make_line_joint(
@@ -281,7 +294,12 @@ NEW_JOINT_COMMAND = NewJointCommand(
     example="--catalogue CSG-17-100",
     options=(
         Option("catalogue", "name of the drive, see jointfmu catalogue", "NAME"),
-        Option("ratio", "speed ratio as in catalogues [1], above 0; negative: used with its sign", "R"),
+        Option(
+            "ratio",
+            "speed ratio as in catalogues [1], above 0; negative: used with its sign; with --catalogue it "
+            "selects the row of this ratio",
+            "R",
+        ),
         Option(
             "fixed",
             "part that is fixed; it decides the sign of the ratio (circular-spline: negative)",

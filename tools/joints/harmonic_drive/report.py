@@ -85,8 +85,7 @@ def _speed_figure(parameter_file: ParameterFile) -> Figure:
         for kelvin in sorted({*LUBRICANT_TEMPERATURES, parameter_file.start_value("temperature")})
     ]
     coefficients = [
-        f"{name} = {parameter_file.values_by_name[name]:g} 1/K "
-        f"({parameter_file.sources.get(name, 'default choice')})"
+        f"{name} = {parameter_file.values_by_name[name]:g} 1/K ({parameter_file.describe_source(name)[1]})"
         for name in ("viscous_temperature_coefficient", "dry_temperature_coefficient")
     ]
     text = (

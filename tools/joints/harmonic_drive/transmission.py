@@ -60,6 +60,8 @@ def _list_missing_effects(drive: Drive) -> Iterator[str]:
         )
     if drive.friction_coulomb or drive.friction_viscous:
         yield "the temperature of the lubricant: friction is that at 20 degrees C"
+    if ripple := drive.friction_1 + drive.friction_2:
+        yield f"the friction over the turn of the motor, up to {ripple:.3g} N.m"
     error = sum(abs(getattr(drive, f"error_{n}")) for n in KINEMATIC_ERROR_HARMONICS)
     if error:
         yield f"the kinematic error, up to {error:.3g} rad"

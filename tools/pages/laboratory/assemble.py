@@ -16,7 +16,7 @@ from jointfmu_fmu_src.templates import load_template
 
 from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import ORIGINS, RELATIVE_HEIGHT_TOLERANCE
+from jointfmu.parameters import ORIGIN_ALIASES, ORIGINS, RELATIVE_HEIGHT_TOLERANCE
 from jointfmu.quantity import units
 from jointfmu.version import __version__
 
@@ -55,7 +55,7 @@ def render_page() -> str:
         "modules": [
             describe_module(module) | {"size": n} for module, n in zip(page_modules, sizes, strict=True)
         ],
-        "origins": ORIGINS,
+        "origins": [*ORIGINS, *ORIGIN_ALIASES],
         "roughness": {"factor": RQ_OVER_RA, "close": RELATIVE_HEIGHT_TOLERANCE},
         "units": {base: units.unit_sizes(base, *others) for base, others in _COLUMN_UNITS.items()},
     }

@@ -1,7 +1,8 @@
 """The report page of one joint: curves, loops, friction, sources of the numbers, validity."""
 
+import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,14 +14,14 @@ from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.joints.model import Model
+from jointfmu.joints.model import Model, Variable
 from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.progress import set_status_text
 from jointfmu.quantity.units import conversion_factor
 from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
-from ...common.pressure import judge_joint_stiffness
+from ...common.pressure import judge_joint_stiffness, nominal_pressure
 from ...common.shown import FileEntry, choose_display_unit, format_quantity, format_unit, list_entries
 from ...run.ramps.loops import HysteresisLoops
 from .figure import ComparisonRow, Figure, Panel, Series, page_script, style_sheet
@@ -104,12 +105,15 @@ def _describe_loss(loops: HysteresisLoops) -> str:
 
 
 ORIGIN_MEANINGS = {
-    "published": "printed in the paper",
-    "derived": "computed from printed values or from a drawing",
+    "paper": "printed in a paper or handbook",
+    "standard": "a value of a standard",
     "catalogue": "a maker's catalogue",
+    "measured": "measured",
+    "derived": "computed from other values",
     "estimate": "an engineering estimate",
     "calibration": "fitted to published or measured points",
-    "user": "set by you",
+    "default": "not stated, the default of the package",
+    "user": "stated by you",
 }
 """{origin of a number: meaning}, for all parameters.ORIGINS."""
 VALIDITY_HEADINGS = {
@@ -156,7 +160,9 @@ def _render_page(model: Model, file: ParameterFile) -> str:
     module = load_tool_module(KINDS[model.joint], "report")
     set_status_text("loops")
     loops = course.compute_loops() if model.load_cycle else None
-    figures = [ramp_figure(course), *([loop_figure(course, loops)] if loops else [])]
+    figures = [ramp_figure(course)]
+    if loops and any(loop.energy_loss for loop in loops.loops):
+        figures.append(loop_figure(course, loops))
     if module and model.name in module.REPORT_FIGURES:
         figures += module.REPORT_FIGURES[model.name](course)
     compared = (
@@ -213,17 +219,30 @@ def _to_display_unit(values: Any, unit: str) -> tuple[Any, str]:
     return conversion_factor(unit, display_unit) * np.asarray(values), format_unit(display_unit)
 
 
+def _title_in_words(output_names: Sequence[str], over: str, variables: Mapping[str, Variable]) -> str:
+    """Title of a panel by the meanings of its variables: "Normal stiffness over preload of each bolt"."""
+
+    def meaning(name: str) -> str:
+        return re.split(r"[,;:(]| -?d\w+/d", variables[name].doc)[0].strip()
+
+    quantities = ", ".join(dict.fromkeys(map(meaning, output_names)))
+    return f"{quantities[0].upper()}{quantities[1:]} over {meaning(over)}"
+
+
 def ramp_figure(load_history: LoadHistory) -> Figure:
     """Figure of the curves over the load ramp, with the panels that the joint defines for its page."""
     columns = load_history.compute_ramp()
     variables = {v.name: v for v in (*load_history.model.inputs, *load_history.model.outputs)}
     charts, docs = [], dict[str, str]()
-    for over, names in find_ramp_panels(load_history.model):
+    unknown = getattr(load_history.file.values, "unknown_outputs", ())
+    for over, output_names in find_ramp_panels(load_history.model):
+        drawn = [name for name in output_names if name not in unknown]
+        names = [name for name in drawn if np.any(columns[name])] or drawn  # not C_zz = 0
         x, x_unit = _to_display_unit(columns[over], variables[over].unit)
         unit = choose_display_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
         scale = conversion_factor(variables[names[0]].unit, unit)
         series = [Series(name, x, scale * columns[name]) for name in names]
-        title = f"{', '.join(names)} over {over}"
+        title = _title_in_words(names, over, variables)
         charts.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
         docs |= {name: variables[name].doc for name in (over, *names)}
     ramped = variables[load_history.model.ramp.input_name]
@@ -261,11 +280,13 @@ def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
     text = "Quasi-static load cycles, each amplitude from rest with two cycles" + (
         f", at {', '.join(settings)}. " if settings else ". "
     )
-    if not any(loop.energy_loss for loop in loops.loops):
-        text += "With these parameters there is no hysteresis: loading and unloading follow one curve."
     force = f"{'-' if loops.force_sign < 0.0 else ''}{loops.force_name}"
+    variables = {v.name: v for v in (*load_history.model.inputs, *load_history.model.outputs)}
     panel = Panel(
-        f"{force} over {loops.motion_name}", f"{loops.motion_name} [{x_unit}]", f"{force} [{y_unit}]", series
+        _title_in_words([loops.force_name], loops.motion_name, variables),
+        f"{loops.motion_name} [{x_unit}]",
+        f"{force} [{y_unit}]",
+        series,
     )
     return Figure("Loops", text, [panel], table=_loop_rows(loops))
 
@@ -300,8 +321,18 @@ def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
 
 
 def _describe_range(load_history: LoadHistory) -> str:
-    """Describe the load range in which the law is valid."""
+    """Describe the range of loads: the end of the law, or the load capacity of the parts if it is less."""
     ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
+    nominal = nominal_pressure(KINDS[load_history.file.joint])
+    capacity = nominal.load_capacity(load_history.file.values) if nominal else None
+    if nominal and capacity and nominal.load_variable == ramped.name:
+        largest, name = capacity
+        if load_history.law_limit is None or largest < load_history.law_limit[0]:
+            value, unit = _to_display_unit(largest, ramped.unit)
+            return (
+                f"Use it up to {ramped.name} = {float(value):.3g} {unit}, {name}. The law of the interface "
+                "ends at a larger load only."
+            )
     if load_history.law_limit is None:
         return f"The law is valid for {ramped.name} far beyond the load ramp."
     value, unit = _to_display_unit(load_history.law_limit[0], ramped.unit)

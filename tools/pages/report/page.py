@@ -14,6 +14,7 @@ from jointfmu.joints.kind import JointKind
 from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
+from ...studies.published.law_reference import format_law_summary
 from ...studies.published.reference import ROLES
 from ...studies.published.validation import format_claim, format_error, format_summary, format_tolerance
 from ...systems.system import load_systems
@@ -40,6 +41,7 @@ def write_report(path: Path, build_result: Any) -> None:
         when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
         outcome=build_result,
         roles=ROLES,
+        law_sentence=format_law_summary(build_result.law_comparisons),
         sentence=format_summary(build_result.validated_points),
         shown_error=format_error,
         shown_tolerance=format_tolerance,

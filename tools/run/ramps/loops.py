@@ -22,6 +22,8 @@ WAVEFORMS = ("triangle", "sine")
 DEFAULT_POINTS, DEFAULT_CYCLES = 200, 2
 MIN_POINTS, MAX_POINTS = 8, 1_000_000
 MAX_CYCLES = 1000
+MAX_AMPLITUDE_RATIO = 1e4
+"""Largest amplitude over the nominal value of the input [1]: 10 mm of a relative displacement."""
 RELATIVE_WORK_ROUNDING = 1e-12
 """Work over the area of the loop's bounding box [1] below which the work is round-off."""
 ENERGY_UNIT = units.base_exponents("J")
@@ -212,10 +214,25 @@ def run_loops(
     """
     points = [cyclic_path.input_values(amplitude) for amplitude in amplitudes]
     with unpack_fmu(fmu) as (_, description):
+        _check_amplitudes(description, input_name, amplitudes)
         output = find_conjugate_output(*input_and_output_units(description), input_name, output, str(fmu))
     return loops_from_results(
         [ramp.run_path(fmu, input_name, each, settings) for each in points], input_name, output, cyclic_path
     )
+
+
+def _check_amplitudes(description: "ModelDescription", input_name: str, amplitudes: Sequence[float]) -> None:
+    """Raise ValueError for an amplitude far above the nominal value of the input: it is in another unit."""
+    for variable in description.modelVariables:
+        if variable.name == input_name and variable.nominal and variable.unit:
+            nominal = float(variable.nominal)
+            largest = MAX_AMPLITUDE_RATIO * nominal
+            for amplitude in amplitudes:
+                if amplitude > largest:
+                    raise ValueError(
+                        f"loop = {amplitude:g} {variable.unit} of {input_name} is outside (0, {largest:g}] "
+                        f"{variable.unit}: values are in SI units, usual are {nominal:g} {variable.unit}"
+                    )
 
 
 def loops_from_results(

@@ -11,6 +11,7 @@ import numpy as np
 ROLES = {
     "calibration": "used for calibration",
     "circular": "met by construction",
+    "contradiction": "two numbers of the paper that do not agree",
     "constant": "constant of the paper, computed again",
     "self-check": "computed by hand from the paper",
     "interpolation": "between calibrated points",
@@ -19,9 +20,10 @@ ROLES = {
 }
 """{role of a published number in the comparison: meaning}.
 
-Numbers used for calibration, or met by construction (circular), are no test of the model.
+Numbers used for calibration, met by construction (circular), or in contradiction with another number of the
+paper are no test of the model.
 """
-UNTESTED_ROLES = ("calibration", "circular")
+UNTESTED_ROLES = ("calibration", "circular", "contradiction")
 """Roles of numbers that are no test of the model."""
 GUESS_ROLES = ("interpolation", "prediction")
 """Roles of numbers that are also compared with a trivial guess."""

@@ -47,6 +47,13 @@ class ValidatedPoint:
             return ""
         return "law" if abs(self.error) < abs(self.guess_error) else "guess"
 
+    @property
+    def verdict(self) -> str:
+        """`pass` or `miss`; for a point that tests nothing `no test`, or `no test, moved` for a miss."""
+        if self.point.role in UNTESTED_ROLES:
+            return "no test" if self.has_passed else "no test, moved"
+        return "pass" if self.has_passed else "miss"
+
     def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object, with the verdict as a word."""
         p = self.point
@@ -58,7 +65,7 @@ class ValidatedPoint:
             "guess_error": self.guess_error,
             "guess_rule": str(p.guess) if p.guess else None,
             "nearer": self.nearer_estimate or None,
-            "verdict": "pass" if self.has_passed else "miss",
+            "verdict": self.verdict,
         }
 
 
@@ -181,7 +188,7 @@ def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
         *guess,
         source,
         p.role,
-        "pass" if validated_point.has_passed else "MISS",
+        validated_point.verdict.replace("miss", "MISS"),
     )
 
 

@@ -56,6 +56,7 @@ class LoadCurves:
     derived  : further quantities
     default_end  : function, parameter set -> default end of the ramp
     max_load     : function, parameter set -> largest load of the tabulated law
+    load_loss    : function, parameter set -> part of the input in a file that is no load in the ramp
     settings     : {parameter: value} during the ramp, in place of its value in the sample
     other_inputs : function, parameter set -> {input: value}
     """
@@ -67,6 +68,7 @@ class LoadCurves:
     derived: Sequence[DerivedOutput] = ()
     default_end: Callable[[Any], float]
     max_load: Callable[[Any], float]
+    load_loss: Callable[[Any], float] = lambda parameters: 0.0
     settings: Mapping[str, Any] = field(default_factory=dict)
     other_inputs: Callable[[Any], Mapping[str, float]] = lambda parameters: {}
 

@@ -20,6 +20,8 @@ from .worker import LOAD_LIMIT_TEXT, JointRamp, RampEvaluator
 
 INTERVAL_SETTING = "interval"
 """Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
+_INPUTS_PREFIX = "inputs."
+"""Prefix of the start values of inputs in a parameter file."""
 _INTERVAL_PATTERN = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 """Interval in the text of a source: its two ends."""
 
@@ -74,7 +76,8 @@ def state_problem(
     ramp_end : end of the load ramp; None: end of the joint's law, or of the file
     points   : number of points of the ramp
 
-    A parameter without setting is uniformly distributed over the range that the file states, if it does.
+    A parameter without setting is uniformly distributed over the range that the file states, if it does. So
+    is the load, if its start value in the file has a range, unless `ramp_end` is stated.
 
     Raises ValueError for an unknown name, a value outside its interval, or a distribution of a parameter that
     cannot be uncertain.
@@ -86,8 +89,16 @@ def state_problem(
     if unknown := [name for name in settings if name not in settable]:
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in settable)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
-    settings = dict.fromkeys(file.ranges, INTERVAL_SETTING) | dict(settings)
-    settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
+    stated = {name for name in file.ranges if name in base}
+    if _INPUTS_PREFIX + curves.load.name in file.ranges and ramp_end is None:
+        stated.add(curves.load.name)
+    settings = dict.fromkeys(sorted(stated), INTERVAL_SETTING) | dict(settings)
+    settings = {
+        name: _load_interval(curves, file)
+        if (name, value) == (curves.load.name, INTERVAL_SETTING)
+        else resolve_interval(name, value, file)
+        for name, value in settings.items()
+    }
     load_text = settings.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split_settings(settings, base | ({curves.load.name: 1.0} if relative else {}))
@@ -122,6 +133,24 @@ def state_problem(
     return Problem(file.joint, curves.load, loads, curves.units, order, {}, ramp, record)
 
 
+def _load_interval(curves: LoadCurves, file: ParameterFile) -> str:
+    """Range of the load as text LOW..HIGH, without the part of the load that the joint loses.
+
+    Raises ValueError if the file states no range for the start value of the load, or if the joint loses all.
+    """
+    name = _INPUTS_PREFIX + curves.load.name
+    if name not in file.ranges:
+        raise ValueError(f"{curves.load.name} = {INTERVAL_SETTING}: the file states no range of {name}")
+    loss = curves.load_loss(file.values)
+    low, high = (end - loss for end in file.ranges[name])
+    if low <= 0.0:
+        raise ValueError(
+            f"range of {name}: {file.ranges[name][0]:g} {curves.load.unit} is outside ({loss:g}, inf) "
+            f"{curves.load.unit}: the joint loses all of it; state {curves.load.name}=LOW..HIGH"
+        )
+    return f"{low!r}..{high!r}"
+
+
 def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
     """Replace the setting "interval" by the text LOW..HIGH; other settings are returned unchanged.
 
@@ -131,8 +160,9 @@ def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
     """
     if value != INTERVAL_SETTING:
         return value
-    if name in file.ranges:
-        return "{!r}..{!r}".format(*file.ranges[name])
+    for entry in (name, _INPUTS_PREFIX + name):
+        if entry in file.ranges:
+            return "{!r}..{!r}".format(*file.ranges[entry])
     source = file.sources.get(name, "")
     if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(

@@ -18,7 +18,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, assemble_parameter_set
 
-from ...run.engine import JointEngine, open_joint
+from ...run.engine import VariableJoint
 from ...run.host import is_needed_to_run
 from ...run.ramps import ramp
 from .curves import LoadCurves, load_curves, spline_weights
@@ -216,7 +216,7 @@ class JointRamp:
         load = settings.get(curves.load.name)
         factor = 1.0 if load is None else load if self.load_is_relative else load / self.loads[-1]
         loads = factor * self.loads
-        sample = _Sample(_open_joint(self), values)
+        sample = _Sample(self, values)
         allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(sample.parameters))
         if not allowed.contains(loads[-1]):
             sample.follow({curves.load.name: np.zeros(1)})  # a refused parameter is stated first
@@ -260,20 +260,21 @@ class JointRamp:
 class _Sample:
     """Joint with the parameters of one sample; implements `curves.JointSample`."""
 
-    def __init__(self, joint: "_OpenJoint", values: Settings) -> None:
-        self._joint, self._values = joint, {**values, **joint.curves.settings}
+    def __init__(self, ramp: JointRamp, values: Settings) -> None:
+        curves, base = ramp.curves, ramp.file.values
+        self._joint, self._values = _open_joint(ramp), {**values, **curves.settings}
         numbers = {
             name: np.float64(value) if type(value) is float else value for name, value in values.items()
         }
-        base = joint.file.values
         self.parameters: Any = assemble_parameter_set(
-            type(base), {**joint.file.values_by_name, **numbers}, _make_unchecked
+            type(base), {**ramp.file.values_by_name, **numbers}, _make_unchecked
         )
-        self._other_inputs = joint.curves.other_inputs(self.parameters)
+        self._other_inputs = curves.other_inputs(self.parameters)
 
     def follow(self, inputs: Mapping[str, Array], settings: Settings | None = None) -> Mapping[str, Array]:
         """Evaluate the joint at inputs (n), each reached from the virgin state: all outputs (n) [SI]."""
-        return self._joint.follow({**self._values, **(settings or {})}, {**self._other_inputs, **inputs})
+        engine = self._joint.with_values({**self._values, **(settings or {})})
+        return engine.follow({**self._other_inputs, **inputs}, each_from_rest=True).columns
 
 
 def _make_unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
@@ -284,53 +285,14 @@ def _make_unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
     return instance
 
 
-class _OpenJoint:
-    """Joint that is evaluated with changing parameters.
-
-    Parameters that the FMU exposes are set. For other values of the remaining parameters the joint is opened
-    again; the last MAX_ENGINES joints stay open.
-    """
-
-    MAX_ENGINES = 4
-
-    def __init__(self, ramp: JointRamp) -> None:
-        self.file, self.curves = ramp.file, ramp.curves
-        kind = KINDS[self.file.joint]
-        self._model = kind.find_model(self.curves.model)
-        self._exposed = self._model.with_parameters(kind.name, self.file.values).parameter_fields().keys()
-        self._engines: dict[tuple[Any, ...], tuple[JointEngine, dict[str, Any]]] = {}
-
-    def follow(self, values: Settings, inputs: Mapping[str, Any]) -> Mapping[str, Array]:
-        """Outputs at inputs (n), each reached from the virgin state, with other values of parameters."""
-        stated = self.file.values_by_name
-        hidden = {k: v for k, v in values.items() if k not in self._exposed and v != stated[k]}
-        engine, current = self._find_engine(hidden)
-        needed = {k: values.get(k, stated[k]) for k in {*current, *values} if k in self._exposed}
-        if changed := {k: v for k, v in needed.items() if current.get(k, stated[k]) != v}:
-            current |= changed
-            engine.set_parameters(changed)
-        return engine.follow(inputs, each_from_rest=True).columns
-
-    def _find_engine(self, hidden: Settings) -> tuple[JointEngine, dict[str, Any]]:
-        """Engine of the joint for given parameters that the FMU does not expose, and the values set in it."""
-        key = tuple(sorted(hidden.items()))
-        found = self._engines.pop(key, None)
-        if found is None:
-            file = self.file.with_values(hidden, "user", "sample") if hidden else self.file
-            if len(self._engines) >= self.MAX_ENGINES:
-                del self._engines[next(iter(self._engines))]
-            found = open_joint(self._model, file), {}
-        self._engines[key] = found
-        return found
-
-
 _opened = local()
 """Joint that this thread has open: `key` of its study, and `joint`."""
 
 
-def _open_joint(ramp: JointRamp) -> _OpenJoint:
+def _open_joint(ramp: JointRamp) -> VariableJoint:
     """Open the joint of a study, once in a thread."""
     if getattr(_opened, "key", None) != ramp.key:
-        _opened.key, _opened.joint = ramp.key, _OpenJoint(ramp)
-    joint: _OpenJoint = _opened.joint
+        model = KINDS[ramp.file.joint].find_model(ramp.curves.model)
+        _opened.key, _opened.joint = ramp.key, VariableJoint(model, ramp.file)
+    joint: VariableJoint = _opened.joint
     return joint

@@ -70,8 +70,8 @@ class BoltSprings:
         """Force F (b) [N] of each bolt, at least 0, from force at tightening (b) [N] and elongation [m]."""
         return np.maximum(preload_force + self.stiffness * elongation, 0.0)
 
-    def tangent_stiffness(self, preload_force: Array, elongation: Array) -> Array:
-        """Stiffness dF/de (b) [N/m] of each bolt; at lift-off the mean of both sides."""
+    def active_stiffness(self, preload_force: Array, elongation: Array) -> Array:
+        """Stiffness dF/de (b) [N/m] of each bolt: 0 after lift-off; at lift-off the mean of both sides."""
         force = preload_force + self.stiffness * elongation
         pulling = np.where(
             force > self.lift_off_force,

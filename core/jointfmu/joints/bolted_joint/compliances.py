@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...quantity import Array
-from .equilibrium import JointAssembly, condense_stiffness
+from .equilibrium import JointAssembly
 
 STIFFNESS_UNITS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
 """{force along or moment about an axis: unit of its stiffness}."""
@@ -14,6 +14,14 @@ MIN_INTERFACE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
 RELATIVE_ROUND_OFF = 1e-9
 """Stiffness of the bolts over that of the joint [1] that counts as zero: round-off of the bolt positions."""
+
+
+def condense_stiffness(tangent_stiffness: Array) -> Array:
+    """Stiffness (6, 6) [N/m, N, N.m] with the members in equilibrium: static condensation of H to q."""
+    return np.asarray(
+        tangent_stiffness[:6, :6]
+        - tangent_stiffness[:6, 6:] @ np.linalg.solve(tangent_stiffness[6:, 6:], tangent_stiffness[6:, :6])
+    )
 
 
 class Compliances(NamedTuple):
@@ -33,18 +41,18 @@ class Compliances(NamedTuple):
 
     @classmethod
     def for_assembly(
-        cls, assembly: JointAssembly, tangent_stiffness: Array, bolt_tangent: Array
+        cls, assembly: JointAssembly, tangent_stiffness: Array, active_bolt_stiffness: Array
     ) -> "Compliances":
         """Compliances of a tightened joint.
 
-        tangent_stiffness : H (6 + k, 6 + k) of the assembly, see `JointAssembly.tangent_stiffness`
-        bolt_tangent      : (b) [N/m] of the bolts, part of H
+        tangent_stiffness     : H (6 + k, 6 + k) of the assembly, see `JointAssembly.tangent_stiffness`
+        active_bolt_stiffness : (b) [N/m] of the bolts, part of H
         """
         K, follow = (
             condense_stiffness(tangent_stiffness),
             -np.linalg.solve(tangent_stiffness[6:, 6:], tangent_stiffness[6:, :6]),
         )
-        rigid, bolt = assembly.elongation_jacobian[:, :6], bolt_tangent[:, None]
+        rigid, bolt = assembly.elongation_jacobian[:, :6], active_bolt_stiffness[:, None]
         elongation = rigid + assembly.modes.bolt_elongation @ follow
         members = assembly.modes.stiffness @ follow**2
         bolts, rigid_bolts = (np.sum(bolt * each**2, axis=0) for each in (elongation, rigid))
@@ -85,7 +93,7 @@ class Compliances(NamedTuple):
         return bool(np.max(self.compliance_shares[0]) >= MIN_INTERFACE_SHARE)
 
     @property
-    def load_factor(self) -> float:
+    def joint_load_factor(self) -> float:
         """Share of all bolts in a force along z [1]: n Phi_K of VDI 2230."""
         return float(self.bolt_force[:, 2].sum())
 
@@ -97,7 +105,7 @@ class Compliances(NamedTuple):
         """
         force = self.bolt_force[:, 2]
         share = force.max() / force.sum() if np.any(force) else 1.0 / len(force)
-        return tightening_force / float(share * (1.0 - self.load_factor))
+        return tightening_force / float(share * (1.0 - self.joint_load_factor))
 
 
 def _stiffness_name(direction: str) -> str:

@@ -9,9 +9,22 @@ patches along the surface and elongate the bolts, by G_q q + G_a a. In equilibri
 S modal stiffness, p contact pressure, t traction, A area, k_b and e stiffness and elongation of a bolt. k_b e
 is at least the negative preload of the bolt, see `BoltSprings`.
 
-Newton's method starts with the tangent at the start of the load step and corrects it by Broyden's update. The
-tangent is not symmetric: pressure changes the friction limit. A load step that does not converge is divided.
-Shapes: n points, m patches, b bolts, k modes.
+Newton's method takes the part of H (below) for a as its first Jacobian, and corrects it by Broyden's update.
+Later it computes J. A load step that does not converge is divided: q is then prescribed at step fractions
+between 0 (start of the load step) and 1 (end). Shapes: n points, m patches, b bolts, k modes.
+
+Five derivatives of forces occur, in this module and in the C code under the same names:
+
+- tangent stiffness H (6 + k, 6 + k): of the assembly with respect to q and a, at fixed friction limits,
+  symmetric. `compliances.py` condenses it to q, for outputs; the equilibrium does not need the result.
+- residual Jacobian J = dr/da (k, k): with the change of the friction limits by the pressure, not symmetric.
+- friction tangent (m, 6): of the traction of each patch, with respect to its tangential displacement.
+- active bolt stiffness (b): k_b of a bolt, 0 if its head has lifted off.
+- continued-motion stiffness (3), `friction.py`: of the shear forces of the joint with rigid members, if the
+  motion goes on. It is an output.
+
+An assembly is a `JointAssembly`: members, contact and bolts as one mechanical system. The state after the
+bolts are tightened is called preload state.
 """
 
 from collections.abc import Callable, Sequence
@@ -38,15 +51,15 @@ nearly all of this force."""
 INTERMEDIATE_TOLERANCE_FACTOR = 1e7
 """Tolerance inside a divided load step over the tolerance at its end [1]."""
 MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH = 16, 6
-"""Newton iterations at one load factor [1], and trial lengths in each iteration [1]."""
-TANGENT_REUSE_RATIO = 0.03
-"""Residual after an iteration over the residual before [1], below which the tangent is reused."""
+"""Newton iterations at one step fraction [1], and trial lengths in each iteration [1]."""
+JACOBIAN_REUSE_RATIO = 0.03
+"""Residual after an iteration over the residual before [1], below which J is reused."""
 MAX_ENERGY_SLOPE_RATIO = 0.5
 """Energy slope at the end of a correction over its initial size [1], above which the step is too long."""
 MIN_LENGTH_RATIO = 0.1
 """Smallest length of a shortened correction, over the length of the previous trial [1]."""
 MIN_LOAD_STEP = 1e-4
-"""Increment of the load factor [1] below which a load step is given up."""
+"""Increment of the step fraction [1] below which a load step is given up."""
 DIFFERENCE_STEP = 1e-7
 """Perturbation for finite differences over the largest approach of a patch at tightening [1], or over the
 approach at which the contact has closed if it is larger: without preload all patches are open."""
@@ -62,7 +75,7 @@ class TrialState:
     friction_update      : tractions, tangent and history variables of the patches
     elongation           : (b) [m] of the bolts since tightening
     residual             : r (k) [N]
-    residual_tolerance   : largest entry of r [N] that counts as equilibrium
+    residual_tolerance   : [N] the state is in equilibrium if no entry of r is larger, see RELATIVE_TOLERANCE
     """
 
     modal_coordinates: Array
@@ -153,18 +166,18 @@ class JointAssembly:
         return np.asarray(r)
 
     def tangent_stiffness(
-        self, contact_stiffness: Array, friction_tangent: Array, bolt_tangent: Array
+        self, contact_stiffness: Array, friction_tangent: Array, active_bolt_stiffness: Array
     ) -> Array:
         """Tangent stiffness H (6 + k, 6 + k) [N/m, N, N.m] with respect to q and a, at fixed friction limits.
 
-        contact_stiffness : (n) [Pa/m] of the points
-        friction_tangent  : (m, 6) [Pa/m] of the patches: xx, xy, yy, xt, yt, tt
-        bolt_tangent      : (b) [N/m] of the bolts
+        contact_stiffness     : (n) [Pa/m] of the points
+        friction_tangent      : (m, 6) [Pa/m] of the patches: xx, xy, yy, xt, yt, tt
+        active_bolt_stiffness : (b) [N/m] of the bolts
         """
         normal, (u, v, w), bolts = self.opening_jacobian, self.tangential_jacobian, self.elongation_jacobian
         xx, xy, yy, xt, yt, tt = (self.patch_area * friction_tangent.T)[:, :, None]
         H = normal.T @ ((self.point_area * contact_stiffness)[:, None] * normal)
-        H += (bolt_tangent * bolts.T) @ bolts
+        H += (active_bolt_stiffness * bolts.T) @ bolts
         H += u.T @ (xx * u + xy * v + xt * w) + v.T @ (xy * u + yy * v + yt * w)
         H += w.T @ (xt * u + yt * v + tt * w)
         H[6:, 6:] += np.diag(self.modes.stiffness)
@@ -176,7 +189,7 @@ class LoadStep:
     """Straight path of the relative displacement, from the last equilibrium to the prescribed inputs.
 
     preload_state, preload_bolt_force    : contact, and force (b) [N] of the bolts, at tightening
-    start_displacement, end_displacement : q (6) [m, rad] at load factors 0 and 1
+    start_displacement, end_displacement : q (6) [m, rad] at step fractions 0 and 1
     modal_coordinates                    : a (k) [m] at the start
     friction_tangent                     : (m, 6) [Pa/m] of the patches at the start
     update_friction                      : friction law with the history at the start, a function of the patch
@@ -194,12 +207,12 @@ class LoadStep:
     update_friction: Callable[[Array, Array], FrictionUpdate]
     input_summary: str
 
-    def displacement_at(self, load_factor: float) -> Array:
-        """Relative displacement q (6) [m, rad] at a load factor [1]."""
+    def displacement_at(self, step_fraction: float) -> Array:
+        """Relative displacement q (6) [m, rad] at a step fraction [1]."""
         return (
             self.end_displacement
-            if load_factor == 1.0
-            else self.start_displacement + load_factor * (self.end_displacement - self.start_displacement)
+            if step_fraction == 1.0
+            else self.start_displacement + step_fraction * (self.end_displacement - self.start_displacement)
         )
 
     def evaluate_trial(self, relative_displacement: Array, modal_coordinates: Array) -> TrialState:
@@ -227,11 +240,16 @@ class LoadStep:
         tolerance = float(RELATIVE_TOLERANCE * force_sum)
         return TrialState(modal_coordinates, normal, increment, friction, elongation, residual, tolerance)
 
-    def modal_tangent(self, trial_state: TrialState) -> Array:
-        """Tangent J = dr/da (k, k) [N/m] of the modal coordinates."""
+    def residual_jacobian(self, trial_state: TrialState) -> Array:
+        """Jacobian J = dr/da (k, k) [N/m] of the residual with respect to the modal coordinates."""
         assembly, modes = self.assembly, self.assembly.modes
-        bolt_tangent = assembly.bolts.tangent_stiffness(self.preload_bolt_force, trial_state.elongation)
-        J = np.diag(modes.stiffness) + (bolt_tangent * modes.bolt_elongation.T) @ modes.bolt_elongation
+        active_bolt_stiffness = assembly.bolts.active_stiffness(
+            self.preload_bolt_force, trial_state.elongation
+        )
+        J = (
+            np.diag(modes.stiffness)
+            + (active_bolt_stiffness * modes.bolt_elongation.T) @ modes.bolt_elongation
+        )
         J += modes.opening.T @ (
             (assembly.point_area * trial_state.normal_state.stiffness)[:, None] * modes.opening
         )
@@ -269,37 +287,40 @@ class LoadStep:
 
 
 class ModalPredictor(NamedTuple):
-    """Modal coordinates (k) [m] at the end of a load step by the tangent (k, k) [N/m] at its start."""
+    """Modal coordinates (k) [m] at the end of a load step, by the tangent stiffness H at its start.
+
+    modal_stiffness : (k, k) [N/m] part of H for the modal coordinates, the first J of Newton's method
+    """
 
     modal_coordinates: Array
-    modal_tangent: Array
+    modal_stiffness: Array
 
 
 def solve_equilibrium(load_step: LoadStep) -> TrialState:
     """Equilibrium at the end of a load step, which is divided where Newton's method does not converge.
 
-    Raises ValueError if there is no equilibrium, with the inputs, the load factor and the residual.
+    Raises ValueError if there is no equilibrium, with the inputs, the step fraction and the residual.
     """
-    a, load_factor, increment = load_step.modal_coordinates, 0.0, 1.0
+    a, step_fraction, increment = load_step.modal_coordinates, 0.0, 1.0
     predictor = predict_by_tangent(load_step)
     rate = predictor.modal_coordinates - a
     while True:
-        target = min(load_factor + increment, 1.0)
+        target = min(step_fraction + increment, 1.0)
         state, converged = solve_newton(
-            load_step, target, a + (target - load_factor) * rate, predictor.modal_tangent
+            load_step, target, a + (target - step_fraction) * rate, predictor.modal_stiffness
         )
         if not converged:
             increment *= 0.5
             if increment < MIN_LOAD_STEP:
                 raise ValueError(
                     f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction "
-                    f"of {load_factor:.3g} of the way, the residual is {state.residual_norm:.2g} N"
+                    f"of {step_fraction:.3g} of the way, the residual is {state.residual_norm:.2g} N"
                 )
         elif target == 1.0:
             return state
         else:
-            rate = (state.modal_coordinates - a) / (target - load_factor)
-            a, load_factor, increment = state.modal_coordinates, target, 2.0 * increment
+            rate = (state.modal_coordinates - a) / (target - step_fraction)
+            a, step_fraction, increment = state.modal_coordinates, target, 2.0 * increment
 
 
 def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
@@ -309,10 +330,10 @@ def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
     """
     assembly, a = load_step.assembly, load_step.modal_coordinates
     normal = assembly.evaluate_normal(load_step.preload_state, load_step.start_displacement, a)
-    bolt_tangent = assembly.bolts.tangent_stiffness(
+    active_bolt_stiffness = assembly.bolts.active_stiffness(
         load_step.preload_bolt_force, assembly.elongation(load_step.start_displacement, a)
     )
-    H = assembly.tangent_stiffness(normal.stiffness, load_step.friction_tangent, bolt_tangent)
+    H = assembly.tangent_stiffness(normal.stiffness, load_step.friction_tangent, active_bolt_stiffness)
     try:
         change = np.linalg.solve(
             H[6:, 6:], H[6:, :6] @ (load_step.end_displacement - load_step.start_displacement)
@@ -326,25 +347,17 @@ def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
     return ModalPredictor(np.asarray(a - change), H[6:, 6:])
 
 
-def condense_stiffness(tangent_stiffness: Array) -> Array:
-    """Stiffness (6, 6) [N/m, N, N.m] with the members in equilibrium: static condensation of H to q."""
-    return np.asarray(
-        tangent_stiffness[:6, :6]
-        - tangent_stiffness[:6, 6:] @ np.linalg.solve(tangent_stiffness[6:, 6:], tangent_stiffness[6:, :6])
-    )
-
-
 def solve_newton(
-    load_step: LoadStep, load_factor: float, modal_coordinates: Array, modal_tangent: Array
+    load_step: LoadStep, step_fraction: float, modal_coordinates: Array, residual_jacobian: Array
 ) -> tuple[TrialState, bool]:
-    """Newton's method at a load factor [1]: last trial state, and whether the method converged.
+    """Newton's method at a step fraction [1]: last trial state, and whether the method converged.
 
-    It starts at modal coordinates a (k) [m] with the tangent J (k, k) [N/m] of an earlier state. J is reused,
-    with Broyden's update, after an iteration that reduces the residual to TANGENT_REUSE_RATIO.
+    It starts at modal coordinates a (k) [m] with the Jacobian J (k, k) [N/m] of an earlier state. J is
+    reused, with Broyden's update, after an iteration that reduces the residual to JACOBIAN_REUSE_RATIO.
     """
-    q = load_step.displacement_at(load_factor)
-    tolerance_factor = 1.0 if load_factor == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
-    state, last_norm, tangent_is_current = load_step.evaluate_trial(q, modal_coordinates), np.inf, False
+    q = load_step.displacement_at(step_fraction)
+    tolerance_factor = 1.0 if step_fraction == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
+    state, last_norm, jacobian_is_current = load_step.evaluate_trial(q, modal_coordinates), np.inf, False
     corrections: list[Array] = []  # since J was computed
     for iteration in range(MAX_NEWTON_ITERATIONS + 1):
         norm = state.residual_norm
@@ -352,18 +365,18 @@ def solve_newton(
             return state, True
         if iteration == MAX_NEWTON_ITERATIONS:
             break
-        if not norm < TANGENT_REUSE_RATIO * last_norm:
-            modal_tangent, corrections, tangent_is_current = load_step.modal_tangent(state), [], True
+        if not norm < JACOBIAN_REUSE_RATIO * last_norm:
+            residual_jacobian, corrections, jacobian_is_current = load_step.residual_jacobian(state), [], True
         try:
             correction = apply_broyden(
-                np.asarray(-np.linalg.solve(modal_tangent, state.residual)), corrections
+                np.asarray(-np.linalg.solve(residual_jacobian, state.residual)), corrections
             )
         except np.linalg.LinAlgError:  # J is singular
             break
         corrections.append(correction)
-        state, is_full = search_line(load_step, q, state, correction, tangent_is_current)
+        state, is_full = search_line(load_step, q, state, correction, jacobian_is_current)
         last_norm = norm if is_full else 0.0  # 0: the next iteration computes J
-        tangent_is_current = False
+        jacobian_is_current = False
     return state, False
 
 
@@ -372,12 +385,12 @@ def search_line(
     relative_displacement: Array,
     trial_state: TrialState,
     correction: Array,
-    tangent_is_current: bool,
+    jacobian_is_current: bool,
 ) -> tuple[TrialState, bool]:
     """State after a correction (k) [m] of the modal coordinates, and whether it is the full correction.
 
     If the energy slope r . correction [J] at the end exceeds MAX_ENERGY_SLOPE_RATIO, the correction is
-    shortened by regula falsi, or dropped if the tangent is that of an earlier state. If the initial slope is
+    shortened by regula falsi, or dropped if J is that of an earlier state. If the initial slope is
     positive, too, regula falsi has no zero: the correction is shortened to MIN_LENGTH_RATIO.
     """
     length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
@@ -388,7 +401,7 @@ def search_line(
         energy_slope_1 = float(trial.residual @ correction)
         if not energy_slope_1 > MAX_ENERGY_SLOPE_RATIO * abs(energy_slope_0):
             return trial, shortenings == 0
-        if not tangent_is_current:
+        if not jacobian_is_current:
             return trial_state, False
         has_zero = energy_slope_0 < 0.0 < energy_slope_1
         zero = energy_slope_0 / (energy_slope_0 - energy_slope_1) if has_zero else 0.0

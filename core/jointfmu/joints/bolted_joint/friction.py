@@ -206,7 +206,7 @@ def directional_stiffness(tangent: Array, direction: Array) -> Array:
     return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
 
 
-def consistent_tangent(patches: FrictionPatches, friction_update: FrictionUpdate) -> list[float]:
+def continued_motion_stiffness(patches: FrictionPatches, friction_update: FrictionUpdate) -> list[float]:
     """Tangent stiffness per area [Pa/m], [Pa.m] for further displacements s_x, s_y and rotation theta_z.
 
     In the direction of the traction of their patch, sliders at their limits continue to slip; in the opposite

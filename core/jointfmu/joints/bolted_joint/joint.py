@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...contact.interface import solve_largest_spot
+from ...files.results import compute_once
 from ...mechanics.curve import Curve, tabulate_approach
 from ...mechanics.footprint.bolts import PressureSource, pressure_distribution
 from ...mechanics.footprint.distribution import MAX_PATCHES, FrictionPatches, NodalField, PressureDistribution
@@ -20,14 +21,21 @@ from .bolts import BoltSprings, bolt_positions
 from .compliances import Compliances
 from .contact import Contact, NormalState, PreloadState, elastic_shear
 from .equilibrium import JointAssembly, LoadStep, solve_equilibrium
-from .friction import NO_HISTORY, FrictionLaw, FrictionUpdate, History, consistent_tangent, history_layout
+from .friction import (
+    NO_HISTORY,
+    FrictionLaw,
+    FrictionUpdate,
+    History,
+    continued_motion_stiffness,
+    history_layout,
+)
 from .kinematics import NORMAL_COMPONENTS, TANGENTIAL_COMPONENTS, point_displacement, tangential_displacement
 from .law import MAX_MODES, AnyBoltedJoint, ElasticBodies, with_rigid_members
 from .outputs import (
-    assembly_sums,
     bolt_force_name,
     bolt_gap_sums,
     cycle_sums,
+    elastic_member_sums,
     first_moments,
     friction_sums,
     joint_outputs,
@@ -43,14 +51,24 @@ ZERO_MOTION = (0.0, 0.0, 0.0)
 @lru_cache(maxsize=8)
 def contact_points(pressure_source: PressureSource) -> PressureDistribution:
     """Points that carry the normal force of a joint."""
-    return reduce_points(pressure_distribution(pressure_source), MAX_POINTS)
+    nodes = pressure_distribution(pressure_source)
+    rows = compute_once(
+        f"points {MAX_POINTS}", nodes.rows, lambda: np.stack(reduce_points(nodes, MAX_POINTS).rows)
+    )
+    return PressureDistribution.from_rows(rows)
 
 
 @lru_cache(maxsize=8)
 def find_friction_patches(pressure_source: PressureSource) -> FrictionPatches:
     """Patches that carry the friction of a joint."""
     stated = pressure_source.friction_patches() if isinstance(pressure_source, NodalField) else None
-    return stated or reduce_patches(pressure_distribution(pressure_source), MAX_PATCHES)
+    if stated:
+        return stated
+    nodes = pressure_distribution(pressure_source)
+    rows = compute_once(
+        f"patches {MAX_PATCHES}", nodes.rows, lambda: np.stack(reduce_patches(nodes, MAX_PATCHES).rows)
+    )
+    return FrictionPatches.from_rows(rows)
 
 
 class JointInputs(NamedTuple):
@@ -186,17 +204,17 @@ class BoltedJointSpring:
         state = self._cached_preload_state(preload, moment)
         stiffness = self.curve.derivatives(state.approach, 1)[1]
         stick = self.friction_law.stick_tangent(state.patch_approach)
-        return self.assembly.tangent_stiffness(stiffness, stick, self._bolt_tangent(preload, moment))
+        return self.assembly.tangent_stiffness(stiffness, stick, self._active_bolt_stiffness(preload, moment))
 
-    def _bolt_tangent(self, preload: float, moment: float) -> Array:
+    def _active_bolt_stiffness(self, preload: float, moment: float) -> Array:
         """Stiffness (b) [N/m] of the bolts at tightening."""
         force = self.bolts.preload_force(self.joint, preload, moment)
-        return self.bolts.tangent_stiffness(force, np.zeros_like(force))
+        return self.bolts.active_stiffness(force, np.zeros_like(force))
 
     def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
         """Compliances of the tightened joint with elastic members."""
         H = self.tangent_stiffness(preload, moment)
-        return Compliances.for_assembly(self.assembly, H, self._bolt_tangent(preload, moment))
+        return Compliances.for_assembly(self.assembly, H, self._active_bolt_stiffness(preload, moment))
 
     @property
     def history_layout(self) -> HistoryLayout:
@@ -243,7 +261,7 @@ class BoltedJointSpring:
             loss = float(before["loss"]) + joint.A_0 * float(
                 self.patches.area_share @ friction.slider_update.dissipated_energy
             )
-            tangent = consistent_tangent(self.patches, friction)
+            tangent = continued_motion_stiffness(self.patches, friction)
             shear = friction_sums(self.patches, friction.traction, tangent, loss / joint.A_0)
             added, history = (0.0, 0.0), self._join_history(q, a, friction, loss)
         else:
@@ -262,7 +280,7 @@ class BoltedJointSpring:
         }
         elongation = assembly.elongation(q, a)
         if state is not None:
-            sums |= assembly_sums(joint, assembly, state, bolt_force, sums["loop_energy"])
+            sums |= elastic_member_sums(joint, assembly, state, bolt_force, sums["loop_energy"])
         else:
             sums |= bolt_gap_sums(self.bolts, joint.A_0, elongation, bolt_force, sums)
         s_rel, theta = q.reshape(2, 3).tolist()

@@ -10,7 +10,8 @@ from ...mechanics.sliders import Foundation
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS, largest_stable_steps
 from ...quantity import Array, Number, select
 from .bolts import BoltSprings
-from .equilibrium import JointAssembly, TrialState, condense_stiffness
+from .compliances import condense_stiffness
+from .equilibrium import JointAssembly, TrialState
 from .friction import directional_stiffness, unit_displacements
 from .law import AnyBoltedJoint
 
@@ -21,7 +22,7 @@ SUM_NAMES = (
     "pressure", "stiffness", "stiffness_x", "stiffness_y", "about_x", "about_y", "about_xy",
     "plastic", "elastic",
     "traction_x", "traction_y", "torsion",
-    "tangent_x", "tangent_y", "tangent_z",
+    "shear_stiffness_x", "shear_stiffness_y", "torsional_stiffness",
     "loss", "loop_work", "loop_energy",
     "stretch", "stretch_x", "stretch_y",
 )  # fmt: skip
@@ -34,19 +35,20 @@ normal_stiffness           : [Pa/m] its derivative with respect to the approach;
 pressure, stiffness        : [Pa], [Pa/m] of the normal law; _x, _y, about_*: times x, y, y^2, x^2, x y
 plastic, elastic           : [J] work of first loading of the whole area
 traction_x, _y, torsion    : [Pa] shear traction against the displacement; its moment [N/m] about the normal
-tangent_x, _y, _z          : [Pa/m], [N/m] derivatives of these with respect to s_x, s_y and theta_z
+shear_stiffness_x, _y      : [Pa/m] derivatives of traction_x and traction_y with respect to s_x and s_y
+torsional_stiffness        : [N/m] derivative of torsion with respect to theta_z
 loss                       : [J/m2] energy dissipated by friction
 loop_work, loop_energy     : [J/m2] loss of a cycle with the present amplitude, and elastic energy at its end
 stretch                    : [m] elongation of all bolts by the modes, plus gaps under their heads; _x, _y:
                              times x and y [m2]
 
 Rigid members: normal_stiffness and normal_about_* are without the stiffness of bolts that have lifted off.
-Elastic members: they and tangent_* are for the complete joint, without the stiffness of all bolts between
-rigid members.
+Elastic members: they and the shear and torsional stiffness are for the complete joint, without the stiffness
+of all bolts between rigid members.
 """
-_TRACTION_SUMS, _TANGENT_SUMS = (
+_TRACTION_SUMS, _SHEAR_STIFFNESS_SUMS = (
     ("traction_x", "traction_y", "torsion"),
-    ("tangent_x", "tangent_y", "tangent_z"),
+    ("shear_stiffness_x", "shear_stiffness_y", "torsional_stiffness"),
 )
 _ELONGATION_SUMS = SUM_NAMES[-3:]
 
@@ -100,7 +102,7 @@ def friction_sums(
     tangent, loss : (3) [Pa/m] and [J/m2] sums over the patches
     """
     sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
-    named = [*zip(_TRACTION_SUMS, sums, strict=True), *zip(_TANGENT_SUMS, tangent, strict=True)]
+    named = [*zip(_TRACTION_SUMS, sums, strict=True), *zip(_SHEAR_STIFFNESS_SUMS, tangent, strict=True)]
     return {**dict(named), "loss": loss}
 
 
@@ -134,7 +136,7 @@ def bolt_gap_sums(
     """
     gap = bolt_springs.bolts_per_position * bolt_springs.head_gap(bolt_force, elongation)
     missing = bolt_springs.bolts_per_position * (
-        bolt_springs.stiffness - bolt_springs.tangent_stiffness(bolt_force, elongation)
+        bolt_springs.stiffness - bolt_springs.active_stiffness(bolt_force, elongation)
     )
     x, y = bolt_springs.position.T
     return {
@@ -145,7 +147,7 @@ def bolt_gap_sums(
     }
 
 
-def assembly_sums(
+def elastic_member_sums(
     joint: AnyBoltedJoint,
     assembly: JointAssembly,
     trial_state: TrialState,
@@ -160,12 +162,14 @@ def assembly_sums(
     area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, trial_state.elongation
     bolt_stiffness = joint.n_bolts * joint.bolt_stiffness
     _, _, x2, y2, _ = joint.pattern.bolt_position_means
-    gap, bolt_tangent = (
+    gap, active_bolt_stiffness = (
         bolts.head_gap(bolt_force, elongation),
-        bolts.tangent_stiffness(bolt_force, elongation),
+        bolts.active_stiffness(bolt_force, elongation),
     )
     H = assembly.tangent_stiffness(
-        trial_state.normal_state.stiffness, trial_state.friction_update.slider_update.tangent, bolt_tangent
+        trial_state.normal_state.stiffness,
+        trial_state.friction_update.slider_update.tangent,
+        active_bolt_stiffness,
     )
     K = np.maximum(np.diag(condense_stiffness(H)), 0.0)
     stretch = modes.bolt_elongation @ trial_state.modal_coordinates + gap
@@ -173,12 +177,12 @@ def assembly_sums(
     energy = 0.5 * (modes.stiffness @ trial_state.modal_coordinates**2 + elastic)
     return {
         **dict(zip(_ELONGATION_SUMS, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
-        "tangent_x": K[0] / area,
-        "tangent_y": K[1] / area,
+        "shear_stiffness_x": K[0] / area,
+        "shear_stiffness_y": K[1] / area,
         "normal_stiffness": (K[2] - bolt_stiffness) / area,
         "normal_about_x": (K[3] - bolt_stiffness * y2) / area,
         "normal_about_y": (K[4] - bolt_stiffness * x2) / area,
-        "tangent_z": K[5] / area,
+        "torsional_stiffness": K[5] / area,
         "loop_energy": loop_energy + energy / area,
     }
 
@@ -223,7 +227,7 @@ def joint_outputs(
     f_x, f_y, m_z = (-area * contact_sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio_or_zero(contact_sums["loop_work"], 2.0 * np.pi * contact_sums["loop_energy"])
     K_zz = np.maximum(area * contact_sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off
-    K = [area * contact_sums["tangent_x"], area * contact_sums["tangent_y"], K_zz]
+    K = [area * contact_sums["shear_stiffness_x"], area * contact_sums["shear_stiffness_y"], K_zz]
     damped = [select(joint.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
     steps = [largest_stable_steps(k, c, 1.0 / joint.mass) for k, c in zip(K, damped, strict=True)]
     shortest = {
@@ -256,7 +260,7 @@ def joint_outputs(
         "eta_n": eta_n,
         "K_rx": np.maximum(area * contact_sums["normal_about_x"] + bolts * bolt_y2, 0.0),
         "K_ry": np.maximum(area * contact_sums["normal_about_y"] + bolts * bolt_x2, 0.0),
-        "K_rz": area * contact_sums["tangent_z"],
+        "K_rz": area * contact_sums["torsional_stiffness"],
         "p_mean": contact_sums["pressure"],
         "p_max": p_max,
         "slip": _friction_utilization(contact_sums, joint.mu),

@@ -22,6 +22,11 @@ _MIN_LOOP_PRELOAD = 9e3
 """Smallest preload of the load cycle [N], if none is stated: preload of the published pressures."""
 _NORMAL_INPUTS = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
 _INTERFACE_OUTPUTS = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
+_UNDAMPED_STEP_ADVICE = (
+    "; 0 at the defaults, because C_zz = 0: then use model exchange, a sequential master or one FMU of the "
+    "system (jointfmu system), or damp the body along z by a part of your own"
+)
+"""What to do where no step is stable for a parallel master."""
 _MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
 
 
@@ -172,8 +177,8 @@ MODELS = (
             # nominal as of eta_loop = 1, whose round-off it has: sqrt(mass K)
             Variable("C_loop", "N.s/m", "equivalent viscous damping for eta_loop, as C_xx for eta_t", 1e6),
             *(
-                Variable(name, "s", f"{doc}: smallest of x, y and z, with `mass` on the joint", 1e-4)
-                for name, doc in STABLE_STEP_OUTPUTS
+                Variable(name, "s", f"{doc}: smallest of x, y and z, with `mass` on the joint{advice}", 1e-4)
+                for (name, doc), advice in zip(STABLE_STEP_OUTPUTS, ("", _UNDAMPED_STEP_ADVICE), strict=True)
             ),
         ),
         evaluate=lambda s, v: _advance_spring(s, v, s.initial_history())[0],

@@ -28,6 +28,8 @@ import numpy as np
 
 from ...quantity import Interval, Number, ParameterLimit, check_fields, check_limits, quantity_field, select
 
+FRICTION_HARMONICS = (1, 2)
+"""Periods of the dry friction per turn of the wave generator."""
 KINEMATIC_ERROR_HARMONICS = (1, 2, 4)
 """Periods of the kinematic error per turn of the wave generator."""
 PLAY_WIDTH_RATIO = 0.01
@@ -88,6 +90,20 @@ class Drive(ABC):
     load_loss_back: float = quantity_field(
         "1", "load_loss while the load drives the motor; negative: equal to load_loss", default=-1.0
     )
+    friction_1: float = quantity_field(
+        "N.m",
+        "amplitude of friction_coulomb, one period per turn of the wave generator",
+        ge=0.0,
+        default=0.0,
+    )
+    friction_1_phase: float = quantity_field("rad", "phase of friction_1 at phi1 = 0", default=0.0)
+    friction_2: float = quantity_field(
+        "N.m",
+        "amplitude of friction_coulomb, two periods per turn of the wave generator",
+        ge=0.0,
+        default=0.0,
+    )
+    friction_2_phase: float = quantity_field("rad", "phase of friction_2 at phi1 = 0", default=0.0)
     presliding: float = quantity_field(
         "rad",
         "angle of the wave generator over which dry friction builds up to 1 - 1/e",
@@ -179,7 +195,13 @@ class Drive(ABC):
     def find_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
         any_sign = Interval.from_bounds(gt=np.minimum(2.0 * self.ratio, 0.0))
-        return [ParameterLimit("ratio", any_sign, "allowed are (-inf, 0) and (0, inf)")]
+        positive_friction = Interval.from_bounds(ge=0.0, le=self.friction_coulomb - self.friction_2)
+        return [
+            ParameterLimit("ratio", any_sign, "allowed are (-inf, 0) and (0, inf)"),
+            ParameterLimit(
+                "friction_1", positive_friction, "friction_1 + friction_2 must not exceed friction_coulomb"
+            ),
+        ]
 
     def find_table_limits(self) -> list[ParameterLimit]:
         """Limits of parameters, besides `find_limits`, that a table up to the last torque requires."""

@@ -1,8 +1,10 @@
 r"""Friction between the wave generator of a harmonic drive and the housing: Jenkins sliders and viscosity.
 
-The limit of dry friction decreases with the speed w1 and grows with the torque tau,
+The limit of dry friction decreases with the speed w1, grows with the torque tau, and varies over the turn of
+the wave generator, with the angle phi1,
 
-    M = f_dry [friction_coulomb + friction_stribeck exp(-(w1/stribeck_speed)^2) + loss |tau/ratio|],
+    M = f_dry [friction_coulomb + friction_stribeck exp(-(w1/stribeck_speed)^2) + ripple + loss |tau/ratio|],
+    ripple = sum of friction_n sin(n phi1 + friction_n_phase),   n = FRICTION_HARMONICS,
 
 where f_dry is `dry_friction_factor`, a function of the temperature. loss is load_loss for motion against the
 load torque (the motor drives), and load_loss_back for motion in the direction of the load torque (the load
@@ -29,12 +31,14 @@ from numpy.typing import ArrayLike
 from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
 from ...quantity import Array, Number
-from .drive import PLAY_WIDTH_RATIO, Drive
+from .drive import FRICTION_HARMONICS, PLAY_WIDTH_RATIO, Drive
 from .hysteresis import slider_shares
 
 FRICTION_SLIDERS = 8
 """Number of sliders: friction from the virgin state is then within 1 % of M of Dahl's curve."""
-HISTORY_LAYOUT = HistoryLayout({"brake": (FRICTION_SLIDERS,), "angle": (), "limit": (2,), "begun": ()})
+HISTORY_LAYOUT = HistoryLayout(
+    {"friction_torque": (FRICTION_SLIDERS,), "angle": (), "limit": (2,), "begun": ()}
+)
 """History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
 _REMAINING_FRICTION_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
 _SLIDER_STIFFNESS_AND_LIMIT_SHARES = slider_shares(1.0, _REMAINING_FRICTION_SHARES)
@@ -57,13 +61,18 @@ def _temperature_factor(coefficient: Number, temperature: Number) -> Number:
 
 
 def friction_limits(
-    drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENCE_TEMPERATURE
+    drive: Drive,
+    w1: Number,
+    tau: Number,
+    temperature: Number = REFERENCE_TEMPERATURE,
+    phi1: Number | None = None,
 ) -> tuple[Number, Number]:
     """Friction limits M (...) [N.m] of positive and of negative friction.
 
     w1          : (...) [rad/s] speed of the wave generator
     tau         : (...) [N.m] torque at the output; tau/ratio is its torque on the wave generator
     temperature : (...) [K]
+    phi1        : (...) [rad] angle of the wave generator; None: mean over a turn
 
     Both functions of the sign of tau are smooth, with t = PLAY_WIDTH_RATIO rated_torque: |tau| is
     tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
@@ -75,9 +84,20 @@ def friction_limits(
     back = 0.5 * (1.0 + load_sign * drive.ratio / np.abs(drive.ratio))
     sides = (drive.load_loss + difference * weight for weight in (back, 1.0 - back))
     constant = drive.friction_coulomb + stribeck
+    if phi1 is not None:
+        constant = constant + friction_ripple(drive, phi1)
     factor = dry_friction_factor(drive, temperature)
     positive, negative = (factor * (constant + loss * size) for loss in sides)
     return positive, negative
+
+
+def friction_ripple(drive: Drive, phi1: Number) -> Number:
+    """Periodic part (...) [N.m] of the dry friction at angles phi1 (...) [rad] of the wave generator."""
+    ripple = 0.0
+    for n in FRICTION_HARMONICS:
+        amplitude, phase = getattr(drive, f"friction_{n}"), getattr(drive, f"friction_{n}_phase")
+        ripple = ripple + amplitude * np.sin(n * phi1 + phase)
+    return ripple
 
 
 def viscous_torque(drive: Drive, w1: Number, temperature: Number = REFERENCE_TEMPERATURE) -> Number:
@@ -125,7 +145,7 @@ class FrictionSliders(Sliders):
         if not self.is_active:
             none = np.zeros(now.shape[:-1])
             return SliderUpdate(np.zeros((*none.shape, self.stiffness.size)), none, none)
-        begun, force = start["begun"] > 0.0, start["brake"]
+        begun, force = start["begun"] > 0.0, start["friction_torque"]
         way = np.where(begun, np.asarray(phi1) - start["angle"], PRIOR_ROTATION_TIME * np.asarray(w1))
         negative = force + self.stiffness * way[..., None] < 0.0
         before, after = (
@@ -144,5 +164,5 @@ class FrictionSliders(Sliders):
             return np.zeros((*shape, HISTORY_LAYOUT.size))
         limit = np.stack(np.broadcast_arrays(*end_friction_limits), axis=-1)
         return HISTORY_LAYOUT.join(
-            {"brake": slider_update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
+            {"friction_torque": slider_update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
         )

@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -67,6 +67,9 @@ class PrescribedDrive(Drive):
     equals K_FTS where the drive is stiffest, and is finite everywhere. There is no contact pressure: it is 0.
     """
 
+    unknown_outputs: ClassVar[tuple[str, ...]] = ("K_TS",)
+    """Outputs that a prescribed midline does not determine; they are not drawn."""
+
     @abstractmethod
     def make_nodes(self) -> Sequence[SplineNode]:
         """Nodes of the midline from zero wind-up on; the midline is odd."""
@@ -122,7 +125,7 @@ class CatalogueDrive(PrescribedDrive):
             ParameterLimit(
                 "corner",
                 Interval.from_bounds(ge=0.0, lt=(second - first) / (second + first)),
-                "the smooth corners must not overlap",
+                "the corners at T1 and T2 must not overlap; check first that K1, K2, T1 and T2 are right",
             ),
             ParameterLimit(
                 "lost_motion",

@@ -127,7 +127,7 @@ class HarmonicDriveSpring:
         load = np.copysign(load, phi)
         state = SpringState(phi, load, stiffness, hysteresis_update.traction, error, slope)
         friction_limits_ = friction_limits(
-            self.joint, motion[1], transmitted_torque(self.joint, motion, state), kelvin
+            self.joint, motion[1], transmitted_torque(self.joint, motion, state), kelvin, motion[0]
         )
         friction_update = self.friction.advance(friction_history, motion[0], motion[1], friction_limits_)
         loss = (

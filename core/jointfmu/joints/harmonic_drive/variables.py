@@ -3,12 +3,12 @@
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity.units import LUBRICANT_TEMPERATURES
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
-from .drive import KINEMATIC_ERROR_HARMONICS
+from .drive import FRICTION_HARMONICS, KINEMATIC_ERROR_HARMONICS
 from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 
-_STIFFNESS_OUTPUTS = (
+_COMMON_OUTPUTS = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi of the midline at the present wind-up", 5e3),
     Variable("K_TS", "N.m/rad", "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
     Variable("K_FTS", "N.m/rad", "stiffness of circular spline and flexspline", 2e4),
@@ -38,6 +38,7 @@ _FRICTION_PARAMETERS = (
     "friction_viscous",
     "load_loss",
     "load_loss_back",
+    *(f"friction_{n}{what}" for n in FRICTION_HARMONICS for what in ("", "_phase")),
 )
 _TEMPERATURE_PARAMETERS = (
     "temperature_factor",
@@ -92,7 +93,7 @@ MODELS = (
                 "output torque: midline T(phi_rel) + hysteresis friction T_h + d der(phi_rel)",
                 5.0,
             ),
-            *_STIFFNESS_OUTPUTS,
+            *_COMMON_OUTPUTS,
             Variable(
                 "tau_friction",
                 "N.m",
@@ -148,7 +149,7 @@ MODELS = (
         inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
         outputs=(
             Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3),
-            *_STIFFNESS_OUTPUTS,
+            *_COMMON_OUTPUTS,
         ),
         evaluate=lambda s, v: s.evaluate_torque(v["tau"]),
         initial_history=lambda s: s.initial_history(),

@@ -1,7 +1,8 @@
 """Pressure distribution of a bolted contact: nodes, friction patches, nodal fields of parameter files."""
 
-from dataclasses import dataclass, replace
-from typing import TypeAlias
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,18 @@ class PressureDistribution:
     position: Array
     preload_pressure_ratio: Array
     moment_pressure_ratio: Array
+
+    @property
+    def rows(self) -> list[Array]:
+        """Arrays (n) of all numbers: share, x, y, both pressure ratios, and the radius of patches."""
+        share, position, *others = (getattr(self, item.name) for item in fields(self))
+        return [share, *position.T, *others]
+
+    @classmethod
+    def from_rows(cls, rows: Sequence[Array] | Array) -> Self:
+        """Distribution with the numbers of `rows`."""
+        share, x, y, *others = rows
+        return cls(share, np.column_stack([x, y]), *others)
 
     def select_nodes(self, node_indices: "slice | NDArray[np.intp]") -> "PressureDistribution":
         """Distribution at a subset of the nodes, with unchanged shares."""

@@ -75,20 +75,38 @@ static Status log_input_refusal(const Instance *m, size_t i)
     return log_refusal(m, &reason);
 }
 
+/* Largest number of inputs in a refusal: a system has hundreds, and the reason must fit. */
+enum { MAX_LISTED_INPUTS = 4 };
+
+/* Number of inputs with a larger magnitude than input i; of equal ones the first counts as larger. */
+static size_t magnitude_rank(const double *inputs, size_t i)
+{
+    size_t rank = 0;
+    for (size_t j = 0; j < N_INPUTS; j++)
+        rank += fabs(inputs[j]) > fabs(inputs[i]) || (j < i && fabs(inputs[j]) == fabs(inputs[i]));
+    return rank;
+}
+
 static Status log_output_refusal(const Instance *m)
 {
     Text reason;
     text_clear(&reason);
     const char *separator = "";
-    size_t first_infinite = 0;
+    size_t first_infinite = 0, omitted = 0;
     while (isfinite(m->state.values[FIRST_OUTPUT + first_infinite]))
         first_infinite++;
     for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
         if (m->state.values[i] != 0.0) {
+            if (magnitude_rank(m->state.values + FIRST_INPUT, i - FIRST_INPUT) >= MAX_LISTED_INPUTS) {
+                omitted++;
+                continue;
+            }
             text_append(&reason, separator);
             text_append_quantity(&reason, variables[i].name, m->state.values[i], 6, variables[i].unit);
             separator = ", ";
         }
+    if (omitted)
+        text_append_format(&reason, " and %zu more", omitted);
     text_append_format(&reason, ": too large, %s is not finite", variables[FIRST_OUTPUT + first_infinite].name);
     return log_refusal(m, &reason);
 }

@@ -37,9 +37,9 @@ static inline double slider_displacement(const double *const torsion_directions[
 }
 
 /* Friction limit of a slider, see Sliders2D; round-off would make it negative where its springs just touch. */
-static inline double limit_at_growth(double limit, double K, double growth)
+static inline double limit_at_growth(double limit_at_zero_growth, double K, double growth)
 {
-    const double new_limit = limit + K * growth;
+    const double new_limit = limit_at_zero_growth + K * growth;
     return new_limit > 0.0 ? new_limit : 0.0;
 }
 

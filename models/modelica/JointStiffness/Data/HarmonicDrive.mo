@@ -13,6 +13,10 @@ record HarmonicDrive "A harmonic drive"
   parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0)=0 "viscous friction coefficient at the wave generator";
   parameter Real load_loss(min=0, unit="1")=0 "load-dependent dry friction torque divided by the torque transmitted to the wave generator";
   parameter Real load_loss_back(unit="1")=-1 "load_loss while the load drives the motor; negative: equal to load_loss";
+  parameter Modelica.Units.SI.Torque friction_1(min=0)=0 "amplitude of friction_coulomb, one period per turn of the wave generator";
+  parameter Modelica.Units.SI.Angle friction_1_phase=0 "phase of friction_1 at phi1 = 0";
+  parameter Modelica.Units.SI.Torque friction_2(min=0)=0 "amplitude of friction_coulomb, two periods per turn of the wave generator";
+  parameter Modelica.Units.SI.Angle friction_2_phase=0 "phase of friction_2 at phi1 = 0";
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small)=0.01 "angle of the wave generator over which dry friction builds up to 1 - 1/e";
   parameter Real temperature_factor(min=0, unit="1")=1 "factor that multiplies all friction";
   parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient=0 "relative decrease of friction_viscous per kelvin above 293.15 K";

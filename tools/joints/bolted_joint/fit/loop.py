@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure
+from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure, working_preload
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.progress import set_status_text
@@ -52,6 +52,8 @@ SERIES_STIFFNESS_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
 TABLE_DISPLACEMENT_RATIO = 1.05
 """Largest displacement of the tabulated law over the amplitude of the loops [1]."""
+PLAUSIBLE_FRICTION = (0.005, 3.0)
+"""Friction coefficients [1] that are plausible for loops in gross slip."""
 _TABLE_STEPS = 48
 """Steps of the table of first loading, finer near rest."""
 _ELASTIC_TABLE_STEPS, _GROSS_SLIP_RATIO = 24, 4.0
@@ -261,10 +263,17 @@ def fit(
             + (0.0 if series is None else 1.0 / series)
         )
 
-    if data.kind == "loops":
-        COLUMN_NAMES.check_stiffness_ratio(
-            data.path, measured_rest / total_rest_stiffness({}), data.stated_units, file
-        )
+    notes = []
+    if isinstance(data.data, Loops):
+        _check_loops(data, data.data, measured_rest / total_rest_stiffness({}), make_joint({}), force, file)
+        if not data.data.is_stiffness_resolved and not fitted_names:
+            _, *level_names = names
+            names = names[:1]
+            notes.append(
+                f"the loops do not determine {', '.join(level_names)}, values of {file.name} are kept: "
+                "all of the interface slips within few samples after each reversal; the stiffness after a "
+                f"reversal is at least {measured_rest:.3g} N/m"
+            )
     if series_stiffness is not None and SERIES_STIFFNESS not in names and series_stiffness <= measured_rest:
         raise InputRefusal(
             f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): the data "
@@ -317,8 +326,49 @@ def fit(
         solution,
         facts | hysteresis_fit.summarize_fit(data, solution, law, scale),
         hysteresis_fit.make_pictures(data, model, solution.values, scale),
-        notes=hysteresis_fit.misfit_notes(data, solution),
+        notes=[*notes, *hysteresis_fit.misfit_notes(data, solution)],
     )
+
+
+def _check_loops(
+    measurement: Measurement,
+    loops: Loops,
+    stiffness_ratio: float,
+    joint: AnyBoltedJoint,
+    preload: float,
+    start_file: ParameterFile,
+) -> None:
+    """Check stiffness after reversals, force at gross slip, and bearing after slip, of measured loops.
+
+    stiffness_ratio : measured stiffness over stiffness of the start values [1]
+    joint, preload  : with the start values, and [N] of each bolt
+
+    Raises ValueError for loops that bear after slip. Raises InputRefusal for a stiffness far from that of the
+    start values, and for a slip force without a plausible friction coefficient.
+    """
+    if bearing := loops.find_bearing():
+        clearance, slip_change = bearing
+        raise ValueError(
+            f"{measurement.path}: the force rises again after slip: the joint slips at about "
+            f"{0.5 * slip_change:.3g} N through a clearance of about {1e6 * clearance:.3g} um "
+            "and then bears; "
+            "the fit has friction alone: expected loops that stay within the clearance"
+        )
+    slip_force = loops.slip_force
+    if slip_force is not None:
+        normal_force = float(working_preload(joint, preload)) * joint.n_bolts
+        low, high = PLAUSIBLE_FRICTION
+        if not low <= slip_force / normal_force <= high:
+            raise InputRefusal(
+                f"{measurement.path}: the force at gross slip is {slip_force:.4g} N, which needs mu = "
+                f"{slip_force / normal_force:.3g} at a normal force of {normal_force:.4g} N, allowed are "
+                f"{low:g} to {high:g}: check the unit of column force, and the preload of each bolt",
+                "preload",
+            )
+    if loops.is_stiffness_resolved or stiffness_ratio > 1.0:
+        COLUMN_NAMES.check_stiffness_ratio(
+            measurement.path, stiffness_ratio, measurement.stated_units, start_file, slip_force is not None
+        )
 
 
 def _level_exchange(

@@ -6,11 +6,11 @@ and bolts. A structure in series is optional:
     1/K = 1/K_joint(preload) + 1/K_series,        f = sqrt(K/mass)/(2 pi).
 
 K_joint is nearly a power of the preload P, `K_N ~ P^(D/(3-D))` for D below 1.5 and `~ P` above. So a curve
-determines two parameters: the exponent (D, below about 1.5) and the level, the factor of the power. The level
-depends on G, on the moduli and weakly on H: G is fitted, the others keep their start values. A_0 has no
-effect, because the law depends on loads, not on pressures. In the law `roughness` h sets the level, and the
-exponent is fixed. A resonance frequency determines only K/mass: without a stated mass the fit adjusts `mass`
-and keeps G or h.
+of two preloads or more determines two parameters: the exponent (D, below about 1.5) and the level, the factor
+of the power. The level depends on G, on the moduli and weakly on H: G is fitted, the others keep their start
+values. A_0 has no effect, because the law depends on loads, not on pressures. In the law `roughness` h sets
+the level, and the exponent is fixed. One preload determines the level alone. A resonance frequency determines
+only K/mass: without a stated mass the fit adjusts `mass` and keeps G or h.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -27,12 +27,12 @@ from jointfmu.joints.bolted_joint.variables import MODELS
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
 from jointfmu.mechanics.footprint.distribution import MergedDistribution
-from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
 from ....common import columns
-from ....inputs.fitting.least_squares import Solution, Unknown, select_start, solve
+from ....inputs.fitting.least_squares import Solution, Unknown, covariance, select_start, solve
 from ....inputs.fitting.outcome import (
     Facts,
     FitResult,
@@ -41,7 +41,7 @@ from ....inputs.fitting.outcome import (
     fitted_parameters,
     make_unknowns,
 )
-from ....run.engine import TrialJoint
+from ....run.engine import VariableJoint
 
 SERIES_STIFFNESS = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
@@ -50,8 +50,10 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "stiffness": unit_sizes("N/m", "N/um", "kN/mm", "N/mm"),
     "frequency": unit_sizes("Hz", "kHz"),
 }
-MIN_POINTS = 4
-"""Required number of points, and of different preloads."""
+MIN_DEGREES_OF_FREEDOM = 2
+"""Points beyond the number of unknowns from which the fit estimates the noise of a point [1]."""
+ASSUMED_NOISE = 0.05
+"""Relative standard deviation [1] of a point, assumed if there are too few points to estimate it."""
 FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "zhao2018": ("surface.G", "surface.D"),
     "roughness": ("h",),
@@ -65,7 +67,7 @@ START_VALUES: Mapping[str, tuple[float, ...]] = {
 """{parameter: further start values of the search}, in addition to the values of the start file."""
 
 
-COMPLETE_JOINT = TrialJoint(MODELS[0])
+COMPLETE_JOINT = VariableJoint(MODELS[0])
 """The joint with elastic sides at the parameters of a trial."""
 
 
@@ -110,9 +112,9 @@ def fit(
 
     Parameters
     ----------
-    start_parameters : parameters to start from; None: the default joint
+    start_parameters : parameters of the joint to start from
     fitted_names     : names to fit; None: those of FITTED_PARAMETERS, with `mass` instead of the level for
-                       frequencies without `modal_mass`
+                       frequencies without `modal_mass`; for one preload the level alone
     direction        : of the motion, "normal" or "tangential"
     modal_mass       : [kg] mass that vibrates on the joint, for frequencies; replaces `mass`
     series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is among the names
@@ -121,11 +123,16 @@ def fit(
     Raises RuntimeError if the fit does not converge.
     """
     curve = _read_curve(Path(path))
-    file = _set_modal_mass(
-        start_parameters or load_default("bolted_joint"), curve, modal_mass, series_stiffness
-    )
+    if start_parameters is None:
+        raise ValueError(
+            "the joint to start from is missing; state its parameter file (--params), as jointfmu new "
+            "writes it"
+        )
+    file = _set_modal_mass(start_parameters, curve, modal_mass, series_stiffness)
     is_mass_fitted = curve.quantity_name == "frequency" and modal_mass is None
     level, *exponent = FITTED_PARAMETERS[file.law]
+    if curve.preload_count == 1:
+        exponent = []
     names = list(
         fitted_names if fitted_names is not None else (*exponent, "mass" if is_mass_fitted else level)
     )
@@ -138,12 +145,19 @@ def fit(
     def logarithmic_error(parameter_values: Mapping[str, float]) -> Array:
         return np.log(predict(parameter_values) / curve.measured_values)
 
-    solution = solve(_find_start(file, names, curve, logarithmic_error), logarithmic_error)
+    if curve.preload_count < len(names) <= 2:
+        raise ValueError(
+            f"{path}: has {curve.preload_count} different preloads, too few for {' and '.join(names)}: at "
+            f"least {len(names)} are needed"
+        )
+    unknowns = _find_start(file, names, curve, logarithmic_error)
+    solution, is_noise_assumed = _solve(unknowns, logarithmic_error, curve)
     own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS}
     span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.quantity_name}"
     result = fitted_parameters(file, own, "calibration", Path(path).name, span)
     stiffness = solution.values.get(SERIES_STIFFNESS, series_stiffness)
-    grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
+    margin = 0.5 * curve.preload[0] if curve.preload_count == 1 else 0.0
+    grid = np.linspace(curve.preload[0] - margin, curve.preload[-1] + margin, 200)
     finer = replace(curve, preload=grid, measured_values=np.ones_like(grid))
     unit, size = (
         ("Hz", 1.0) if curve.quantity_name == "frequency" else ("N/um", conversion_factor("N/m", "N/um"))
@@ -156,7 +170,17 @@ def fit(
         law_curve=(grid / kN, finer.predict(result.values, stiffness, direction) * size),
         axis_labels=("preload of each bolt [kN]", f"{curve.quantity_name} [{unit}]", "data / law - 1 [%]"),
     )
-    notes = correlation_note(solution.residuals, "curve")
+    notes = [] if is_noise_assumed else correlation_note(solution.residuals, "curve")
+    if is_noise_assumed:
+        notes.append(
+            f"the scatter of a point is not known from {curve.preload.size}: the intervals are those of "
+            f"{solution.noise:.0%} for each point"
+        )
+    if curve.preload_count == 1 and FITTED_PARAMETERS[file.law][1:]:
+        notes.append(
+            f"one preload determines the level alone: {FITTED_PARAMETERS[file.law][1]}, which gives the "
+            "exponent, is kept; measure at a second preload to fit it"
+        )
     if is_mass_fitted and "mass" in names and level not in names:
         notes.append(
             f"frequencies without a stated mass give K/mass only: the level is in mass, {level} is kept; "
@@ -178,6 +202,16 @@ class PreloadCurve:
     preload: Array
     measured_values: Array
 
+    @property
+    def power(self) -> float:
+        """Exponent [1] of the preload with which the quantity grows; at least two different preloads."""
+        return float(np.polyfit(np.log(self.preload), np.log(self.measured_values), 1)[0])
+
+    @property
+    def preload_count(self) -> int:
+        """Number of different preloads."""
+        return int(np.unique(self.preload).size)
+
     def predict(self, joint: AnyBoltedJoint, series_stiffness: float | None, direction: str) -> Array:
         """Predict the quantity (n) for a joint, with an optional stiffness [N/m] in series."""
         K = joint_stiffness(joint, self.preload, direction)
@@ -187,7 +221,7 @@ class PreloadCurve:
 
 def _read_curve(path: Path) -> PreloadCurve:
     """Read and check a measured curve: stiffness or frequency over preload."""
-    table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS)
+    table = columns.read_columns(path, COLUMN_UNITS, 1)
     preload = table.require_column("preload", COLUMN_UNITS)
     quantities = [name for name in ("stiffness", "frequency") if name in table.columns]
     if len(quantities) != 1:
@@ -199,14 +233,32 @@ def _read_curve(path: Path) -> PreloadCurve:
     table.check_positive(("preload", quantities[0]), COLUMN_UNITS)
     order = np.argsort(preload, kind="stable")
     preload, value = preload[order], table.columns[quantities[0]][order]
-    if np.unique(preload).size < MIN_POINTS:
+    curve = PreloadCurve(quantities[0], preload, value)
+    if curve.preload_count > 1 and curve.power <= 0.0:
         raise ValueError(
-            f"{path}: has {np.unique(preload).size} different preloads, at least {MIN_POINTS} are needed"
+            f"{path}: the {quantities[0]} does not rise with the preload (power {curve.power:.2g})"
         )
-    slope = float(np.polyfit(np.log(preload), np.log(value), 1)[0])
-    if slope <= 0.0:
-        raise ValueError(f"{path}: the {quantities[0]} does not rise with the preload (power {slope:.2g})")
-    return PreloadCurve(quantities[0], preload, value)
+    return curve
+
+
+def _solve(
+    unknowns: Sequence[Unknown],
+    logarithmic_error: Callable[[Mapping[str, float]], Array],
+    preload_curve: PreloadCurve,
+) -> tuple[Solution, bool]:
+    """Solve the fit. Returns the solution, and whether the noise of a point is assumed.
+
+    Few points for up to two unknowns: the noise is ASSUMED_NOISE, or that of the residuals if it is larger.
+    """
+    degrees_of_freedom = preload_curve.preload.size - len(unknowns)
+    if len(unknowns) > 2 or degrees_of_freedom >= MIN_DEGREES_OF_FREEDOM:
+        return solve(unknowns, logarithmic_error), False
+    solution = solve(unknowns, logarithmic_error, noise=ASSUMED_NOISE)
+    if degrees_of_freedom < 1:
+        return solution, True
+    noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
+    noise = max(noise, ASSUMED_NOISE)
+    return replace(solution, noise=noise, covariance=covariance(solution.jacobian, noise)), True
 
 
 def _set_modal_mass(
@@ -267,10 +319,13 @@ def _find_start(
 
 
 def _fit_facts(preload_curve: PreloadCurve, solution: Solution) -> Facts:
-    power = float(np.polyfit(np.log(preload_curve.preload), np.log(preload_curve.measured_values), 1)[0])
+    power = {}
+    if preload_curve.preload_count > 1:
+        text = f"of the preload with which the {preload_curve.quantity_name} grows"
+        power["power"] = (preload_curve.power, "1", text)
     return {
         "points": (float(preload_curve.preload.size), "1", "points used"),
-        "power": (power, "1", f"of the preload with which the {preload_curve.quantity_name} grows"),
+        **power,
         "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
         "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
     }

@@ -18,13 +18,22 @@ ATTACHMENTS = {
 }
 """{name: surfaces of both plates that move rigidly with the connected bodies}."""
 
+TIGHTENING_METHODS = ("torque-wrench", "angle", "yield", "impact")
+"""Methods of tightening, keys of the table `tightening` in models/tables/bolts.toml."""
+
 NEW_JOINT_COMMAND = NewJointCommand(
     description="a bolted joint of two plates",
     example="--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --finish ground "
     "--preload 30e3",
     options=(
         Option("plate", "length along x and width along y [mm]", "LxW", separator="x", is_required=True),
-        Option("bolts", "number and thread", "NxMd", separator="x", is_required=True),
+        Option(
+            "bolts",
+            "number and thread, as in 4xM12; with a fine pitch in mm: 4xM12x1.25",
+            "NxMd",
+            separator="x",
+            is_required=True,
+        ),
         Option(
             "at",
             "distances of the outermost bolts along x and y, LxW, or the position X,Y of each bolt from "
@@ -46,13 +55,36 @@ NEW_JOINT_COMMAND = NewJointCommand(
         Option("head", "head of the bolts (default: hexagon)", choices=("hexagon", "socket")),
         Option("hole", "diameter of the clearance holes [mm] (default: ISO 273, medium)", "D"),
         Option("bearing", "outer diameter of the bearing surface [mm] (default: of the head)", "D"),
-        Option("preload", "preload of each bolt [N] (default: VDI 2230)", "F"),
+        Option("preload", "preload of each bolt [N] (default: VDI 2230, or from --torque)", "F"),
+        Option(
+            "torque",
+            "tightening torque of each bolt [N.m], in place of --preload: VDI 2230 gives the preload and its "
+            "range",
+            "M",
+        ),
+        Option(
+            "thread_friction",
+            "coefficient of friction in the thread [1] (default: 0.12, 0.08 to 0.16, VDI 2230, Table A5)",
+            "MU",
+        ),
+        Option(
+            "head_friction",
+            "coefficient of friction under the head [1], for --torque (default: 0.12, 0.08 to 0.16)",
+            "MU",
+        ),
+        Option(
+            "tightening",
+            "method of tightening, which gives the scatter of the preload by VDI 2230, Table A8 (default: "
+            "torque-wrench with --torque, else no scatter)",
+            choices=TIGHTENING_METHODS,
+        ),
         Option(
             "embedding", "preload that each bolt loses by embedding [N] (default: VDI 2230, Table 5)", "F"
         ),
         Option(
             "property_class",
-            "property class of the bolts, for the default preload (default: 8.8)",
+            "property class of the bolts: for the default preload (default: 8.8), and for the share of "
+            "the yield strength that tightening may use (0.9)",
             choices=("8.8", "10.9", "12.9"),
         ),
         Option(
@@ -63,8 +95,8 @@ NEW_JOINT_COMMAND = NewJointCommand(
         Option("thickness", "thickness of each plate [mm] (default: half the grip)", "T", is_list=True),
         Option(
             "sides",
-            "elastic: the complete joint, with members and bolts; rigid: the interface only (default: "
-            "elastic if the finite elements are installed)",
+            "elastic: the complete joint, with members and bolts, which needs the extra fem; rigid: the "
+            "interface only (default: elastic)",
             choices=("elastic", "rigid"),
         ),
         Option(

@@ -6,17 +6,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointfmu.quantity import Array
+from jointfmu.quantity.units import conversion_factor
 
 from ....inputs.drawing.part import DrawingOptions
-from ....inputs.drawing.reading import parse_number, parse_numbers
-from ....inputs.drawing.tables import Thread, read_threads
+from ....inputs.drawing.quantities import parse_value, parse_values
+from ....inputs.drawing.tables import Thread, find_thread
 
-_BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
+_BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)(?:\s*x\s*(\d+(?:\.\d+)?))?", re.IGNORECASE)
 _GRID_PATTERN = re.compile(r"(\d+)x(\d+)")
 
 
 def parse_bolts(bolts_text: str) -> tuple[int, Thread]:
-    """Parse number and thread of the bolts, as in 4xM12.
+    """Parse number and thread of the bolts, as in 4xM12 or, with a fine pitch, 4xM12x1.25.
 
     Raises ValueError for bad text or an unknown thread.
     """
@@ -25,12 +26,11 @@ def parse_bolts(bolts_text: str) -> tuple[int, Thread]:
         raise ValueError(
             f"--bolts = {bolts_text!r} are no bolts; expected a number and a thread, as in 4xM12"
         )
-    name = match[2].upper()
-    if name not in read_threads():
-        raise ValueError(
-            f"--bolts = {bolts_text!r}: thread {name} is unknown, allowed are {', '.join(read_threads())}"
-        )
-    return int(match[1] or 1), read_threads()[name]
+    pitch = float(match[3]) * conversion_factor("mm", "m") if match[3] else None
+    try:
+        return int(match[1] or 1), find_thread(match[2].upper(), pitch)
+    except ValueError as error:
+        raise ValueError(f"--bolts = {bolts_text!r}: {error}") from None
 
 
 def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:
@@ -44,26 +44,27 @@ def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:
     if options["grid"] and not (texts and "," not in texts[0]):
         raise ValueError(f"--grid = {options['grid']!r} needs the distances of the outermost bolts, --at LxW")
     if circle:
-        radius = 0.5 * parse_number("circle", circle, "mm", "m")
+        radius = 0.5 * parse_value("circle", circle)
         angle = 2.0 * np.pi * (np.arange(bolt_count) + 0.5) / bolt_count
         return radius * np.column_stack([np.cos(angle), np.sin(angle)])
     if not texts:
         if bolt_count == 1:
             return np.zeros((1, 2))
         raise ValueError(f"the places of {bolt_count} bolts are missing; expected --at or --circle")
+    if any("," in text and "x" in text for text in texts):
+        raise ValueError(
+            f"--at = {' '.join(texts)!r} has x and comma; write LxW with decimal points, as in 160.5x60"
+        )
     if "," in texts[0]:
         return _parse_positions(texts, bolt_count)
     if len(texts) > 1:
         raise ValueError(f"--at = {texts[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
-    spans = parse_numbers("at", texts[0], "mm", "m", separator="x", count=2, lower_bound=None)
+    spans = parse_values("at", texts[0], separator="x", count=2)
     return _grid_positions(spans, bolt_count, options["grid"])
 
 
 def _parse_positions(position_texts: Sequence[str], bolt_count: int) -> Array:
-    places = [
-        parse_numbers("at", text, "mm", "m", separator=",", count=2, lower_bound=None)
-        for text in position_texts
-    ]
+    places = [parse_values("at", text, separator=",", count=2) for text in position_texts]
     if len(places) != bolt_count:
         raise ValueError(f"--at has {len(places)} places, expected {bolt_count}: one for each of --bolts")
     return np.array(places)

@@ -10,14 +10,14 @@ from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....common.pressure import warn_overload
 from ....inputs.drawing import faces, vdi2230
 from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
-from ....inputs.drawing.reading import parse_number, parse_numbers
-from ....inputs.drawing.tables import Thread, property_class_strength, thread_source
-from ..report import friction_results
-from . import layout, plate_finite_elements
+from ....inputs.drawing.quantities import parse_quantity, parse_value, parse_values
+from ....inputs.drawing.tables import Thread, thread_source
+from ..gross_slip import PRELOAD_ENTRY, friction_results, preload_results
+from . import ATTACHMENTS, layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
+from .tightening import find_preload
 
 ZERO_MOTION = (0.0, 0.0, 0.0)
 """Zero displacement [m] or rotation [rad] along x, y, z."""
@@ -25,6 +25,8 @@ THICKNESS_TOLERANCE = 1e-6
 """Relative difference [1] allowed between the grip and the sum of the thicknesses."""
 MAX_GRIP_RATIO = 50
 """Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
+MAX_HOLE_RATIO, MAX_BEARING_RATIO = 3.0, 8.0
+"""Largest diameter of hole and of bearing surface over that of the thread [1]; washers of ISO 7094 have 4."""
 THREAD_DEPTH_RATIO = 1.0
 """Depth of a tapped thread over its diameter [1]: a usual value in steel."""
 
@@ -60,7 +62,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    length, width = parse_numbers("plate", options["plate"], "mm", "m", separator="x", count=2)
+    length, width = parse_values("plate", options["plate"], separator="x", count=2)
     count, thread = layout.parse_bolts(options["bolts"])
     positions = layout.bolt_positions(options, count)
     law = options["law"] or "roughness"
@@ -89,7 +91,9 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         * faces.read_materials(options)[0].numbers["density"].value
     )
     sheet.add("mass", mass, "estimate", "mass of the plate of side 1, assumed to vibrate")
-    preload, warnings = _add_preload(sheet, options, thread)
+    tightening = find_preload(options, thread, bolt.bearing_diameter, hole)
+    tightening.add_to(sheet)
+    preload, warnings = tightening.force, [*tightening.warnings]
     if not loss < preload:
         raise ValueError(
             f"embedding takes {loss:.4g} N of a preload of {preload:.4g} N: expected less than all; state "
@@ -108,23 +112,31 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     shape = None
     if options["field"] == "computed":
         file, shape = compute_pressure_field(file, plates)
+    is_rigid = options["sides"] == "rigid" or (options["tapped"] and options["thickness"] is None)
+    joint = NewJoint(file, {})
+    if not is_rigid:
+        attached = options["attached"] or next(iter(ATTACHMENTS))
+        joint = plate_finite_elements.compute_facts(file, plates, attached, shape)
     facts = _design_facts(file, bolt, heights, preload)
-    alone = _interface_only_text(facts["interface_K_zz"][0] / count, bolt)
-    if options["tapped"] and options["thickness"] is None:
-        return NewJoint(
-            file, facts, [*warnings, f"{alone}: for the complete joint state --thickness of both plates"]
+    if is_rigid:
+        facts |= _interface_share_facts(facts["interface_K_zz"][0] / count, bolt)
+    if is_rigid and options["sides"] is None:
+        warnings.append(
+            "the FMU is the interface alone; for the complete joint state --thickness of both plates"
         )
-    attached, sides = options["attached"] or "faces", options["sides"]
-    complete_joint = plate_finite_elements.compute_facts(file, plates, attached, sides, alone, shape)
-    return NewJoint(
-        complete_joint.file, {**facts, **complete_joint.facts}, [*warnings, *complete_joint.warnings]
-    )
+    facts |= {**tightening.facts(), **joint.facts, **_preload_range_facts(joint.file)}
+    if tightening.has_range and not tightening.low > loss:
+        warnings.append(
+            f"embedding takes {loss:.4g} N, but the preload may be {tightening.low:.4g} N: the joint may be "
+            "loose"
+        )
+    return NewJoint(joint.file, facts, [*warnings, *joint.warnings])
 
 
 def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
     if options["hole"] is None:
-        return thread.hole, ("published", f"{thread_source('hole')} for {thread.name}")
-    return parse_number("hole", options["hole"], "mm", "m"), ("user", "stated on the drawing")
+        return thread.hole, ("standard", f"{thread_source('hole')} for {thread.name}")
+    return parse_value("hole", options["hole"]), ("user", "stated on the drawing")
 
 
 def clamp_bolt(
@@ -147,13 +159,17 @@ def clamp_bolt(
     head, tapped = options["head"] or "hexagon", bool(options["tapped"])
     bearing = getattr(thread, head)
     if options["bearing"] is not None:
-        bearing = parse_number("bearing", options["bearing"], "mm", "m")
-    for name, value, low in (
-        ("hole", hole_diameter, thread.nominal_diameter),
-        ("bearing", bearing, hole_diameter),
+        bearing = parse_value("bearing", options["bearing"])
+    for name, value, low, ratio in (
+        ("hole", hole_diameter, thread.nominal_diameter, MAX_HOLE_RATIO),
+        ("bearing", bearing, hole_diameter, MAX_BEARING_RATIO),
     ):
-        if not value > low:
-            raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
+        high = ratio * thread.nominal_diameter
+        if not low < value <= high:
+            raise ValueError(
+                f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, {high * 1e3:g}] mm of "
+                f"{thread.name}"
+            )
     thicknesses = _clamped_thicknesses(options)
     if len(thicknesses) > (1 if tapped else 2):
         expected = "that of side 1" if tapped else "both plates together, or each"
@@ -183,7 +199,7 @@ def clamp_bolt(
 
 def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
     """Thickness [m] of each plate, or one value for both plates together."""
-    grip = [parse_number("grip", text, "mm", "m") for text in options["grip"]]
+    grip = [parse_value("grip", text) for text in options["grip"]]
     if options["thickness"] is None:
         return grip
     plates = _plate_thicknesses(options)
@@ -203,7 +219,7 @@ def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
 
 
 def _plate_thicknesses(options: DrawingOptions) -> list[float]:
-    thicknesses = [parse_number("thickness", text, "mm", "m") for text in options["thickness"]]
+    thicknesses = [parse_value("thickness", text) for text in options["thickness"]]
     if len(thicknesses) != 2:
         raise ValueError(f"--thickness has {len(thicknesses)} values, expected that of each plate")
     return thicknesses
@@ -258,29 +274,6 @@ def _add_bolts(
     parameter_sheet.add("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
 
 
-def _add_preload(
-    parameter_sheet: ParameterSheet, options: DrawingOptions, thread: Thread
-) -> tuple[float, list[str]]:
-    """Add the preload [N] to the sheet.
-
-    Returns the preload, and a warning if it exceeds the proof load of the bolt.
-    """
-    name = options["property_class"] or "8.8"
-    if options["preload"] is None:
-        preload = vdi2230.assembly_preload(thread, property_class_strength(name, "yield", thread))
-        text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
-        parameter_sheet.add("inputs.preload", preload, "estimate", text)
-    else:
-        preload = parse_number("preload", options["preload"], "N", "N")
-        parameter_sheet.add_drawing_value("inputs.preload", preload)
-    if options["property_class"] is None:
-        return preload, []
-    proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
-    return preload, warn_overload(
-        "preload", preload, (proof_load, f"the proof load of {thread.name}-{name} (ISO 898-1)")
-    )
-
-
 def _add_embedding_loss(
     parameter_sheet: ParameterSheet,
     options: DrawingOptions,
@@ -289,9 +282,9 @@ def _add_embedding_loss(
 ) -> float:
     """Add the preload loss [N] by embedding to the sheet, and return it."""
     if options["embedding"] is not None:
-        loss = parse_number("embedding", options["embedding"], "N", "N", None)
-        parameter_sheet.add_drawing_value("embedding", loss)
-        return loss
+        stated = parse_quantity("embedding", options["embedding"])
+        parameter_sheet.add_drawing_number("embedding", stated)
+        return stated.value
     depth = vdi2230.embedding_depth(height_range.Rz, 1, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
     text = (
@@ -316,16 +309,42 @@ def _friction_facts(parameter_file: ParameterFile, preload: float) -> dict[str, 
     return facts
 
 
-def _interface_only_text(interface_stiffness: float, clamped_bolt: ClampedBolt) -> str:
-    """Warning that the FMU contains the interface only, with its share of the compliance.
+def _preload_range_facts(parameter_file: ParameterFile) -> dict[str, tuple[float, str, str]]:
+    """Facts about the joint at both ends of the range of the preload; empty if the file states no range."""
+    ends = parameter_file.ranges.get(PRELOAD_ENTRY)
+    if ends is None:
+        return {}
+    facts = {}
+    for result in preload_results(parameter_file):
+        if result.preload not in ends:
+            continue
+        end = "low" if result.preload == ends[0] else "high"
+        text = f"at preload = {result.preload:.4g} N"
+        facts[f"K_zz_at_{end}_preload"] = (result.K_zz, "N/m", f"output K_zz of the FMU {text}")
+        facts[f"K_xx_at_{end}_preload"] = (result.K_xx, "N/m", f"output K_xx of the FMU {text}")
+        slip = f"shear force {text} at which the whole interface slips"
+        facts[f"slip_force_at_{end}_preload"] = (result.slip_force, "N", slip)
+        facts[f"opening_load_at_{end}_preload"] = (
+            result.opening_load,
+            "N",
+            f"force along z {text} that opens the interface around the most loaded bolt, by linear theory",
+        )
+    return facts
+
+
+def _interface_share_facts(
+    interface_stiffness: float, clamped_bolt: ClampedBolt
+) -> dict[str, tuple[float, str, str]]:
+    """Fact about a joint of which the FMU has the interface only: its share of the compliance, by VDI 2230.
 
     interface_stiffness : [N/m] normal stiffness of the interface per bolt
     """
     share = clamped_bolt.member_stiffness / (clamped_bolt.member_stiffness + interface_stiffness)
-    return (
-        f"the FMU is the interface alone ({share:.1%} of the compliance along z that it has in series with "
-        "the members of VDI 2230, loaded at the heads)"
+    text = (
+        "share of the interface in the compliance along z that it has in series with the members of VDI "
+        "2230, loaded at the heads; the FMU is the interface alone (sides = rigid)"
     )
+    return {"interface_share": (share, "1", text)}
 
 
 def _design_facts(
@@ -376,6 +395,6 @@ def _design_facts(
     facts |= _friction_facts(parameter_file, preload)
     if height_range.h_max > height_range.h_min and parameter_file.law == "roughness":
         h = float(parameter_file.values_by_name["h"])
-        facts["interface_K_zz_low"] = (K * h / height_range.h_max, "N/m", "with the roughest usual finish")
-        facts["interface_K_zz_high"] = (K * h / height_range.h_min, "N/m", "with the finest usual finish")
+        facts["interface_K_zz_low"] = (K * h / height_range.h_max, "N/m", "with the largest of the heights")
+        facts["interface_K_zz_high"] = (K * h / height_range.h_min, "N/m", "with the smallest of the heights")
     return {name: fact for name, fact in facts.items() if np.isfinite(fact[0])}

@@ -220,59 +220,36 @@ def compute_facts(
     parameter_file: ParameterFile,
     bolted_plates: BoltedPlates,
     attachment: str,
-    requested_sides: str | None,
-    interface_only_text: str,
     normalised_pressure: PressureDistribution | None = None,
 ) -> NewJoint:
-    """Compute the complete joint: parameters with elastic sides and facts, or a warning why this failed.
+    """Compute the complete joint: parameters with elastic sides, and facts.
 
-    requested_sides     : "rigid" or "elastic" as the user states it; None: elastic if the packages are
-                          installed
-    interface_only_text : warning that the FMU contains the interface only
     normalised_pressure : as in `compute_joint_of_assembly`
 
-    Raises ValueError if the user asked for elastic sides and they cannot be computed.
+    Raises ValueError if the complete joint cannot be computed; the message names the interface alone as the
+    way out.
     """
     try:
         computed = compute_joint(parameter_file, bolted_plates, attachment, normalised_pressure)
     except ValueError as error:
-        if requested_sides == "elastic":
-            raise
-        return NewJoint(
-            parameter_file, {}, [f"members and bolts are not computed, {interface_only_text}: {error}"]
-        )
-    if requested_sides == "rigid":
-        return NewJoint(
-            parameter_file, _fact_rows(computed.compliances, bolted_plates.remaining_preload, attachment), []
-        )
-    return NewJoint(computed.parameter_file, joint_facts(computed.parameter_file, bolted_plates.preload), [])
+        raise ValueError(f"{error}; or state --sides rigid for the interface alone") from None
+    return NewJoint(computed.parameter_file, joint_facts(computed.parameter_file, bolted_plates.preload))
 
 
 def joint_facts(parameter_file: ParameterFile, preload: float) -> Facts:
     """Facts about a joint with elastic sides at a preload [N] of each bolt, equal to report and FMU."""
     compliances = BoltedJointSpring.for_joint(parameter_file.values).compliances(preload)
-    tension = float(working_preload(parameter_file.values, preload))
-    suffix = f" at preload = {preload:.5g} N"
-    return _fact_rows(compliances, tension, parameter_file.values.bodies.attached, suffix)
-
-
-def _fact_rows(
-    compliances: Compliances, remaining_preload: float, attachment: str, fmu_suffix: str = ""
-) -> Facts:
-    """Facts about the complete joint, at a remaining preload [N] of each bolt.
-
-    fmu_suffix : text with the load at which an output of the FMU has the same value; empty: the FMU contains
-                 the interface only
-    """
+    remaining_preload = float(working_preload(parameter_file.values, preload))
+    attachment = parameter_file.values.bodies.attached
     return (
-        _stiffness_facts(compliances, attachment, fmu_suffix)
+        _stiffness_facts(compliances, attachment, preload)
         | _load_facts(compliances, remaining_preload, attachment)
-        | _interface_share(compliances, not fmu_suffix)
+        | _interface_share(compliances)
     )
 
 
-def _stiffness_facts(compliances: Compliances, attachment: str, fmu_suffix: str) -> Facts:
-    """Stiffnesses in all directions, first of the complete joint, then of its members."""
+def _stiffness_facts(compliances: Compliances, attachment: str, preload: float) -> Facts:
+    """Stiffnesses in all directions at a preload [N], first of the complete joint, then of its members."""
     rows, members = {}, {}
     for name, unit, (joint, interface, alone, _), parts in compliances.table_rows():
         shares = ", ".join(
@@ -281,9 +258,9 @@ def _stiffness_facts(compliances: Compliances, attachment: str, fmu_suffix: str)
         rows[f"joint_{name}"] = (
             joint,
             unit,
-            f"complete joint between {ATTACHMENTS[attachment]}, other motions fixed"
-            + (f": output {name} of the FMU{fmu_suffix}" if fmu_suffix else "")
-            + f"; compliance: {shares}; the interface alone is {interface / joint:.3g} times as stiff",
+            f"complete joint between {ATTACHMENTS[attachment]}, other motions fixed: output {name} of the "
+            f"FMU at preload = {preload:.5g} N; compliance: {shares}; the interface alone is "
+            f"{interface / joint:.3g} times as stiff",
         )
         members[f"members_{name}"] = (
             alone,
@@ -293,14 +270,13 @@ def _stiffness_facts(compliances: Compliances, attachment: str, fmu_suffix: str)
     return rows | members
 
 
-def _interface_share(compliances: Compliances, is_interface_only: bool) -> Facts:
+def _interface_share(compliances: Compliances) -> Facts:
     """Share of the interface in the compliance of the complete joint."""
     share = compliances.compliance_shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
-    text = f"share of the interface in the compliance along z, at most {rest:.3g} in other directions; " + (
-        "the FMU is the interface alone (--sides rigid)"
-        if is_interface_only
-        else "the FMU is the complete joint (sides = elastic)"
+    text = (
+        f"share of the interface in the compliance along z, at most {rest:.3g} in other directions; the FMU "
+        "is the complete joint (sides = elastic)"
     )
     return {"interface_share": (float(share[2]), "1", text)}
 
@@ -312,7 +288,7 @@ def _load_facts(compliances: Compliances, remaining_preload: float, attachment: 
     free = f"{where}, other motions free"
     return {
         "joint_load_factor": (
-            compliances.load_factor,
+            compliances.joint_load_factor,
             "1",
             f"n Phi_K: share that all bolts carry of a {free}",
         ),

@@ -51,7 +51,20 @@ FIT_PROCEDURES = (
                 is_list=True,
             ),
             Option("torque_constant", "motor torque over motor current [N.m/A]", is_number=True),
-            Option("ratio", "speed ratio (default: that of the start file)", is_number=True),
+            Option(
+                "torque_at",
+                "place of the torque in column tau: joint for a torque sensor, or a controller that states "
+                "torques at the joint",
+                default="motor",
+                choices=("motor", "joint"),
+            ),
+            Option("drive", "name of the drive in the catalogue, instead of --params", "NAME"),
+            Option(
+                "rated_torque",
+                "rated torque of the drive [N.m], with --ratio, instead of --params",
+                default_unit="N.m",
+            ),
+            Option("ratio", "speed ratio (default: that of the drive)", is_number=True),
             Option(
                 "motor_inertia",
                 "moment of inertia of the rotor [kg.m2]; its torque does not pass through the teeth",

@@ -4,7 +4,7 @@ For validation the last 30 % of each log, or every third row of a table, are pre
 data.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,21 +14,31 @@ from scipy.linalg import block_diag
 
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
+from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
-from ....inputs.fitting.least_squares import Solution
+from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution
 from ....inputs.fitting.outcome import Facts, FitResult, Picture, fitted_parameters, undetermined_names
+from ..catalogue import find_drive
+from ..new import NEW_JOINT_COMMAND
 from . import hysteresis
+from .drive import resize_drive
+from .log_checks import check_repeated_logs, check_torque_scale, doubt_about_friction, doubt_about_gravity
 from .log_friction import (
+    FITTED_PARAMETERS,
+    LOAD_LOSS_BACK,
     FittedLog,
     LinearTerms,
+    accept_vanishing,
     drop_undetermined,
     fit_samples,
     fit_with_rotor,
+    has_friction,
     is_driven_by_friction,
     select_parameters,
 )
-from .log_reading import MIN_SPEED_RATIO, Samples, join_samples, parse_columns, read_log
+from .log_reading import MIN_SPEED_RATIO, Samples, join_samples, make_log, parse_columns, read_table
+from .log_ripple import add_ripples, find_ripple_terms, fitted_ripples
 
 CONFIDENCE_LEVEL = 0.95
 """Confidence level of the intervals [1]."""
@@ -43,6 +53,9 @@ def fit(
     fitted_names: Sequence[str] | None = None,
     columns: Sequence[str] | None = None,
     torque_constant: float | None = None,
+    torque_at: str = "motor",
+    drive: str | None = None,
+    rated_torque: float | None = None,
     ratio: float | None = None,
     motor_inertia: float | None = None,
 ) -> FitResult:
@@ -50,42 +63,111 @@ def fit(
 
     Parameters
     ----------
-    start_parameters : parameters to start from, with the ratio of the drive; None: the default, with `ratio`
+    start_parameters : parameters to start from; None: those of `drive`, or of `rated_torque` and `ratio`
     fitted_names     : names to fit; None: the parameters that the logs can determine
     columns          : `NAME=HEADING` or `NAME=HEADING [UNIT]`, for files with other headings
     torque_constant  : motor torque over motor current [N.m/A]
-    ratio            : speed ratio [1]; None: that of `start_parameters`
+    torque_at        : place of the torque in the column tau: "motor", or "joint" (sensor behind the drive, or
+                       a controller that states torques at the joint)
+    drive            : name of the drive in the catalogue
+    rated_torque     : [N.m] of the drive
+    ratio            : speed ratio [1]; None: that of `start_parameters` or `drive`
     motor_inertia    : [kg.m2] of the rotor, whose inertia torque does not load the teeth; None: fitted to the
-                       wind-up, if the log has the motor angle
+                       wind-up, if the log has the motor angle; or to the motor torque, if the log has the
+                       torque at the joint too
 
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
-    file = _start_parameters(start_parameters, ratio)
     names = parse_columns(columns or ())
-    logs = [read_log(path, names, torque_constant, file.values) for path in paths]
-    samples = join_samples([log.select(log.is_developed) for log in logs])
+    tables = [read_table(path, names) for path in paths]
+    file = _start_parameters(start_parameters, drive, rated_torque, ratio)
+    logs = [make_log(table, torque_constant, file.values, torque_at) for table in tables]
+    check_repeated_logs(logs)
     label = ", ".join(path.name for path in paths)
-    logs_with_motor_angle = [log for log in logs if np.all(np.isfinite(log.motor_angle + log.q))]
+    if len({log.has_motor_torque for log in logs}) > 1:
+        raise ValueError(f"{label}: some logs have no torque of the motor; expected it in all or in none")
+    for log in logs:
+        check_torque_scale(log, file.values, torque_constant)
+    samples = join_samples([log.samples.select(log.samples.is_developed) for log in logs])
+    logs_with_motor_angle = [
+        log.samples for log in logs if np.all(np.isfinite(log.samples.motor_angle + log.samples.q))
+    ]
     if not logs_with_motor_angle and (
         alone := [name for name in fitted_names or () if name in hysteresis.LOG_PARAMETERS]
     ):
         raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
     _check_speeds(label, samples)
+    notes = _sensor_notes(samples)
+    friction_names = [name for name in fitted_names or () if name not in hysteresis.LOG_PARAMETERS]
+    friction_samples = samples
+    if not logs[0].has_motor_torque:
+        friction_samples = replace(samples, sensor_torque=np.full(samples.dq.size, np.nan))
+        if not has_friction(friction_samples, file.values):
+            return _fit_without_friction(
+                file, label, samples, logs_with_motor_angle, fitted_names, friction_names
+            )
+        notes.append(
+            "the torque at the joint has the friction of the drive: it is that of the motor times ratio"
+        )
+        logs_with_motor_angle = [
+            replace(log, sensor_torque=np.full(log.q.size, np.nan)) for log in logs_with_motor_angle
+        ]
+    return _fit_with_friction(
+        file,
+        label,
+        friction_samples,
+        logs_with_motor_angle,
+        fitted_names,
+        friction_names,
+        motor_inertia,
+        torque_constant,
+        notes,
+    )
+
+
+def _sensor_notes(samples: Samples) -> list[str]:
+    """Notes about measured columns that the fit does not use."""
+    if samples.has_sensor:
+        if np.any(np.isfinite(samples.gravity_torque)):
+            return ["gravity is not used: link_torque is the measured load"]
+        return []
+    if np.any(np.isfinite(samples.sensor_torque)):
+        return ["link_torque is not used for the load: not all logs have it"]
+    return []
+
+
+def _fit_with_friction(
+    file: ParameterFile,
+    label: str,
+    samples: Samples,
+    logs_with_motor_angle: Sequence[Samples],
+    fitted_names: Sequence[str] | None,
+    friction_names: Sequence[str],
+    motor_inertia: float | None,
+    torque_constant: float | None,
+    notes: list[str],
+) -> FitResult:
+    """Fit friction, and stiffness if the motor angle is measured, to samples with developed friction.
+
+    label          : names of the files
+    friction_names : names of the friction parameters to fit; empty: select them
+    notes          : notes so far
+    """
     if is_driven_by_friction(samples, file.values):
         raise ValueError(
             f"{label}: friction drives the motion; reverse the sign of one column or of --torque-constant"
         )
     rotor_inertia = motor_inertia or 0.0
-    friction_names = [name for name in fitted_names or () if name not in hysteresis.LOG_PARAMETERS]
-    names_to_fit, notes = select_parameters(samples, file.values, friction_names, rotor_inertia)
+    names_to_fit, selection_notes = select_parameters(samples, file.values, friction_names, rotor_inertia)
+    notes = [*notes, *selection_notes]
     fitted_log = fit_samples(file, samples, names_to_fit, rotor_inertia)
     if rotor_inertia and samples.is_dynamic.any():
         _check_rotor_inertia(rotor_inertia, fitted_log)
     if not friction_names:
         fitted_log, names_to_fit, dropped = drop_undetermined(file, samples, fitted_log, names_to_fit)
         notes += dropped
-    if samples.is_dynamic.any() and motor_inertia is None:
+    if samples.is_dynamic.any() and motor_inertia is None and not samples.has_sensor:
         if logs_with_motor_angle and (
             rotor_fit := _fit_rotor_inertia(file, logs_with_motor_angle[0], fitted_log)
         ):
@@ -95,6 +177,17 @@ def fit(
                 "without --motor-inertia the rotor counts as part of the arm: load_loss and the stiffness "
                 "have an error equal to the share of the rotor in the inertia"
             )
+    samples, harmonics = find_ripple_terms(samples, fitted_log)
+    if harmonics:
+        rotor, deviation = fitted_log.rotor_inertia, fitted_log.rotor_deviation
+        fitted_log = replace(fit_samples(file, samples, names_to_fit, rotor), rotor_deviation=deviation)
+    fitted_log, vanishing_notes = accept_vanishing(fitted_log)
+    notes += vanishing_notes
+    if samples.has_sensor and LOAD_LOSS_BACK in fitted_log.solution.names_at_bound:
+        notes.append(
+            "while the load drives the motor, the friction falls with the load: check --torque-constant, and "
+            "the scale of link_torque"
+        )
     solution, drawn_pictures = fitted_log.solution, [*draw_pictures(samples, fitted_log)]
     intervals = _confidence_intervals(fitted_log.solution)
     if logs_with_motor_angle:
@@ -104,6 +197,78 @@ def fit(
             solution = _combine_solutions(solution, stiffness_fit[0])
             drawn_pictures = [*drawn_pictures, stiffness_fit[1]]
             intervals |= _confidence_intervals(stiffness_fit[0])
+    doubts = (
+        doubt_about_gravity(samples),
+        doubt_about_friction(samples, fitted_log, file.values, torque_constant),
+    )
+    result, ripple_facts, ripple_notes = add_ripples(
+        _fitted_file(file, label, samples, solution, intervals),
+        fitted_ripples(fitted_log, harmonics),
+        f"fitted to {label}, {_describe_ranges(samples)}",
+        CONFIDENCE_LEVEL,
+    )
+    return FitResult(
+        result,
+        solution,
+        ripple_facts | fit_facts(file, samples, fitted_log, names_to_fit),
+        drawn_pictures,
+        notes=[*notes, *ripple_notes],
+        confidence_intervals=intervals,
+        doubt=next((doubt for doubt in doubts if doubt), None),
+    )
+
+
+def _fit_without_friction(
+    file: ParameterFile,
+    label: str,
+    samples: Samples,
+    logs_with_motor_angle: Sequence[Samples],
+    fitted_names: Sequence[str] | None,
+    friction_names: Sequence[str],
+) -> FitResult:
+    """Fit a log with the torque behind the drive: load of the joint, and stiffness if q_motor is measured.
+
+    Raises ValueError if the user wants to fit a friction parameter.
+    """
+    if friction_names:
+        raise ValueError(
+            f"{label}: the torque at the joint has no friction of the drive, {friction_names[0]} needs the "
+            "torque or the current of the motor too"
+        )
+    notes = [
+        f"the log does not determine {', '.join(FITTED_PARAMETERS)}, which keep their values: the torque at "
+        "the joint has no friction of the drive; torque (tau) or current (i) of the motor are needed too"
+    ]
+    solution, pictures, intervals = EMPTY_SOLUTION, [_load_picture(samples)], {}
+    if logs_with_motor_angle:
+        stiffness_fit, more_notes = _fit_stiffness(file, logs_with_motor_angle[0], None, fitted_names)
+        notes += more_notes
+        if stiffness_fit is not None:
+            solution, intervals = stiffness_fit[0], _confidence_intervals(stiffness_fit[0])
+            pictures.append(stiffness_fit[1])
+    else:
+        notes.append(
+            f"the log does not determine {', '.join(hysteresis.LOG_PARAMETERS)}, which keep their values: "
+            "the angle of the motor (q_motor) is needed"
+        )
+    return FitResult(
+        _fitted_file(file, label, samples, solution, intervals),
+        solution,
+        load_facts(samples),
+        pictures,
+        notes=notes,
+        confidence_intervals=intervals,
+    )
+
+
+def _fitted_file(
+    file: ParameterFile,
+    label: str,
+    samples: Samples,
+    solution: Solution,
+    intervals: Mapping[str, tuple[float, float]],
+) -> ParameterFile:
+    """Parameter file with the fitted values; their sources state the intervals."""
     result = fitted_parameters(file, solution.values, "calibration", label, _describe_ranges(samples))
     for name, value in solution.values.items():
         kind, text = "estimate", "not determined: other values fit as well"
@@ -111,14 +276,7 @@ def fit(
             kind = "calibration"
             text = "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *intervals[name])
         result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
-    return FitResult(
-        result,
-        solution,
-        fit_facts(file, samples, fitted_log, names_to_fit),
-        drawn_pictures,
-        notes=notes,
-        confidence_intervals=intervals,
-    )
+    return result
 
 
 def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLog) -> None:
@@ -155,10 +313,12 @@ def _fit_rotor_inertia(
 def _fit_stiffness(
     parameter_file: ParameterFile,
     log_samples: Samples,
-    fitted_log: FittedLog,
+    fitted_log: FittedLog | None,
     fitted_names: Sequence[str] | None,
 ) -> tuple[tuple[Solution, Picture] | None, list[str]]:
     """Fit stiffness and hysteresis to a log with the motor angle.
+
+    fitted_log : gives the load of a log without a torque sensor
 
     Returns solution and picture, or None if there is no such fit; and notes.
     """
@@ -172,12 +332,13 @@ def _fit_stiffness(
     if parameter_file.law != "catalogue" or not names:
         return None, ["stiffness and hysteresis are fitted only if the start file has law = catalogue"]
     load, spread = log_samples.sensor_torque, np.zeros((0, log_samples.q.size))
-    if not np.all(np.isfinite(load)):
+    if not log_samples.has_sensor:
+        assert fitted_log is not None
         load, spread = fitted_log.evaluate_load(log_samples)
     return hysteresis.fit_log(
         parameter_file,
         names,
-        hysteresis.measured_wind_up(log_samples, abs(fitted_log.drive.ratio)),
+        hysteresis.measured_wind_up(log_samples, abs(parameter_file.values.ratio)),
         -load,
         -spread,
     ), []
@@ -200,12 +361,58 @@ def _combine_solutions(first_solution: Solution, second_solution: Solution) -> S
     )
 
 
-def _start_parameters(start_parameters: ParameterFile | None, ratio: float | None) -> ParameterFile:
-    """Start parameters with the speed ratio. Raises ValueError if neither a file nor a ratio is given."""
-    if start_parameters is None and ratio is None:
-        raise ValueError("the log does not tell the ratio; expected --params FILE of the drive, or --ratio")
-    file = start_parameters or load_default("harmonic_drive")
+def _start_parameters(
+    start_parameters: ParameterFile | None,
+    drive_name: str | None,
+    rated_torque: float | None,
+    ratio: float | None,
+) -> ParameterFile:
+    """Start parameters of the drive.
+
+    Raises ValueError unless the drive is stated in exactly one way, and InputRefusal if its ratio is missing.
+    """
+    given = [
+        name
+        for name, value in {
+            "--params": start_parameters,
+            "--drive": drive_name,
+            "--rated-torque": rated_torque,
+        }.items()
+        if value is not None
+    ]
+    if not given:
+        raise ValueError(
+            "the log does not state the drive; expected --params FILE, --drive NAME (jointfmu catalogue), or "
+            "--rated-torque with --ratio"
+        )
+    if len(given) > 1:
+        raise ValueError(f"{' and '.join(given)} both state the drive; expected one of them")
+    if start_parameters is not None:
+        file = start_parameters
+    elif drive_name is not None:
+        file = _catalogue_drive(drive_name, ratio)
+    else:
+        assert rated_torque is not None
+        if ratio is None:
+            raise InputRefusal(
+                f"rated torque = {rated_torque:g} N.m does not state the ratio; state both", "ratio"
+            )
+        default = load_default("harmonic_drive")
+        max_torque_ratio = default.values.max_table_torque / default.values.rated_torque
+        file = resize_drive(default, rated_torque, max_torque_ratio, "user", "stated with the log")
     return file if ratio is None else file.with_values({"ratio": ratio}, "user", "stated")
+
+
+def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
+    """Parameters of a drive of the catalogue; a stated ratio selects the row of this ratio.
+
+    A ratio that is larger by 1 than that of the row means that the flexspline is fixed.
+    """
+    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": drive_name}
+    if ratio is not None:
+        is_flexspline_fixed = abs(ratio) == find_drive(drive_name).numbers["ratio"].value + 1.0
+        options |= {"fixed": "flexspline"} if is_flexspline_fixed else {"ratio": f"{abs(ratio):g}"}
+    return NEW_JOINT_COMMAND.make_joint(options).file
 
 
 def _check_speeds(file_label: str, samples: Samples) -> None:
@@ -253,12 +460,15 @@ def fit_facts(
     """Facts about the fit: inertia, offset, gravity, residual, prediction error of held-out samples."""
     ratio = abs(fitted_log.drive.ratio)
     terms = LinearTerms.at_samples(samples, ratio)
-    units = {"inertia": "kg.m2", "offset": "N.m", "gravity_cos": "N.m", "gravity_sin": "N.m"}
-    texts = {"inertia": "of arm and rotor at the joint", "offset": "of the motor's torque"}
     facts = {
-        name: (float(value), units[name], texts.get(name, f"{name[8:]}(q) part of gravity at the joint"))
+        name: (float(value), _LOAD_UNITS[name], _LOAD_TEXTS[name])
         for name, value in zip(terms.unknown_names, fitted_log.linear_unknowns, strict=True)
+        if name in _LOAD_UNITS
     }
+    if samples.has_sensor and "inertia" in facts:
+        rotor = facts.pop("inertia")[0] / ratio**2
+        facts["motor_inertia"] = rotor, "kg.m2", "of the rotor, from motor torque and link_torque"
+        facts |= load_facts(samples)
     if fitted_log.rotor_deviation:
         text = f"of the rotor, from the wind-up; standard deviation {fitted_log.rotor_deviation:.2g}"
         facts["motor_inertia"] = fitted_log.rotor_inertia, "kg.m2", text
@@ -281,6 +491,55 @@ def fit_facts(
     return facts
 
 
+_LOAD_UNITS = {
+    "inertia": "kg.m2",
+    "offset": "N.m",
+    "gravity_cos": "N.m",
+    "gravity_sin": "N.m",
+    "arm_inertia": "kg.m2",
+}
+_LOAD_TEXTS = {
+    "inertia": "of arm and rotor at the joint",
+    "offset": "of the motor's torque",
+    "gravity_cos": "cos(q) part of gravity at the joint",
+    "gravity_sin": "sin(q) part of gravity at the joint",
+    "arm_inertia": "of the arm, from link_torque",
+}
+"""Units and meanings of the unknowns of the load."""
+
+
+def load_facts(samples: Samples) -> Facts:
+    """Facts about the load that a torque sensor at the joint measures: inertia of the arm, gravity."""
+    rows = np.flatnonzero(samples.is_dynamic)
+    if not rows.size:
+        return {}
+    columns = {"arm_inertia": samples.ddq[rows], "sensor_offset": np.ones(rows.size)}
+    if np.all(np.isfinite(angle := samples.q[rows])):
+        columns |= {"gravity_cos": np.cos(angle), "gravity_sin": np.sin(angle)}
+    values = np.linalg.lstsq(np.stack([*columns.values()], axis=1), samples.sensor_torque[rows])[0]
+    return {
+        name: (float(value), _LOAD_UNITS[name], _LOAD_TEXTS[name])
+        for name, value in zip(columns, values, strict=True)
+        if name in _LOAD_UNITS
+    }
+
+
+def _load_picture(samples: Samples) -> Picture:
+    """Picture of the torque at the joint over the speed of the joint, and of the fitted load."""
+    facts = load_facts(samples)
+    angle = np.where(np.isfinite(samples.q), samples.q, 0.0)
+    parts = {"arm_inertia": samples.ddq, "gravity_cos": np.cos(angle), "gravity_sin": np.sin(angle)}
+    load = sum((facts[name][0] * parts[name] for name in facts), np.zeros(angle.size))
+    load += np.mean(samples.sensor_torque - load)
+    return Picture(
+        samples.dq,
+        samples.sensor_torque,
+        samples.sensor_torque - load,
+        (samples.dq, load),
+        ("speed of the joint [rad/s]", "torque at the joint [N.m]", "log - inertia and gravity [N.m]"),
+    )
+
+
 def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, ratio: float) -> Array:
     """Motor torque (n) [N.m] of later samples, by a model with constant friction fitted to earlier ones."""
     models = []
@@ -289,7 +548,7 @@ def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, 
         models.append(
             (
                 np.concatenate([np.ones((samples.dq.size, 1)), terms.design_matrix], axis=1),
-                terms.measured_gravity,
+                terms.measured_load,
             )
         )
     (early_matrix, early_known), (late_matrix, late_known) = models

@@ -2,11 +2,13 @@
 
     torque = friction(|ratio| dq, load, temperature) + inertia ddq/|ratio| + gravity/|ratio| + offset
 
-All torques are positive in the direction of the joint angle q, so that the ratio has no sign. Three terms are
-linear in their unknowns and are eliminated: the inertia at the joint, an offset of the current, and gravity =
-a cos(q) + b sin(q) if it is not measured. The load of the teeth is gravity plus the inertia torque of the
-arm, that is of the total inertia without the rotor. The other unknowns are fitted over their logarithms. The
-load depends on them: it is fixed during each fit, and updated for the next of LOAD_ITERATIONS fits.
+All torques are positive in the direction of the joint angle q, so that the ratio has no sign. With a torque
+sensor at the joint, the measured torque over the ratio takes the place of gravity and of the inertia torque
+of the arm; the inertia is then that of the rotor. Three terms are linear in their unknowns and are
+eliminated: the inertia, an offset of the current, and gravity = a cos(q) + b sin(q) if it is not measured.
+The load of the teeth is gravity plus the inertia torque of the arm, that is of the total inertia without the
+rotor; or the torque of the sensor. The other unknowns are fitted over their logarithms. The load depends on
+them: it is fixed during each fit, and updated for the next of LOAD_ITERATIONS fits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +21,7 @@ from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, frict
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....inputs.fitting.least_squares import Solution, solve
+from ....inputs.fitting.least_squares import Solution, covariance, solve
 from ....inputs.fitting.outcome import make_unknowns
 from .log_reading import Samples
 
@@ -29,12 +31,13 @@ class LinearTerms:
     """Terms of the motor torque that are linear in their unknowns: inertia, offset, gravity.
 
     design_matrix    : (n, k) motor torque at the samples per unit of each unknown
-    measured_gravity : (n) [N.m] motor torque for the measured gravity; 0 if it is not measured
+    measured_load    : (n) [N.m] motor torque for the torque sensor, or else for the measured gravity; 0 if
+                       neither is measured
     unknown_names    : names (k) of the unknowns
     """
 
     design_matrix: Array
-    measured_gravity: Array
+    measured_load: Array
     unknown_names: tuple[str, ...]
 
     @classmethod
@@ -42,7 +45,8 @@ class LinearTerms:
         """Evaluate the linear terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.is_dynamic.astype(float)
-        measured = np.isfinite(samples.gravity_torque)
+        measured_load = samples.sensor_torque if samples.has_sensor else samples.gravity_torque
+        measured = np.isfinite(measured_load)
         if dynamic.any():
             columns = {"inertia": samples.ddq / ratio, "offset": dynamic}
             swung = dynamic * np.isfinite(samples.q) * ~measured
@@ -52,8 +56,9 @@ class LinearTerms:
                     "gravity_cos": swung * np.cos(angle) / ratio,
                     "gravity_sin": swung * np.sin(angle) / ratio,
                 }
+        columns |= {f"ripple_{number}": column for number, column in enumerate(samples.ripple_terms.T.copy())}
         matrix = np.stack([*columns.values()], axis=1) if columns else np.zeros((samples.dq.size, 0))
-        known = np.where(measured, samples.gravity_torque, 0.0) / ratio
+        known = np.where(measured, measured_load, 0.0) / ratio
         return cls(matrix, known, tuple(columns))
 
     def solve_unknowns(self, torque: Array) -> Array:
@@ -69,11 +74,13 @@ class LinearTerms:
 
         rotor_inertia : [kg.m2]
         """
+        if samples.has_sensor:
+            return samples.sensor_torque
         values = dict(zip(self.unknown_names, linear_unknowns.tolist(), strict=True))
         arm = max(values.get("inertia", 0.0) - rotor_inertia * ratio**2, 0.0)
         gravity = [n for n, name in enumerate(self.unknown_names) if name.startswith("gravity")]
         fitted_gravity = ratio * self.design_matrix[:, gravity] @ linear_unknowns[gravity]
-        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_gravity)
+        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_load)
 
 
 def motor_friction(drive: Drive, joint_speed: Array, temperature: Array, load: Array) -> Array:
@@ -112,8 +119,14 @@ FITTED_PARAMETERS = (
     *TEMPERATURE_COEFFICIENTS,
 )
 """Parameters of the friction that can be fitted."""
-LOAD_ITERATIONS = 4
-"""Number of fits, each with the load that follows from the fit before."""
+LOAD_ITERATIONS, LOAD_TOLERANCE = 4, 1e-4
+"""Largest number of fits, each with the load that follows from the fit before; and change of the load over
+its size [1] at which the fits end."""
+FIT_TOLERANCE = 1e-6
+"""Relative change of cost or parameters at which a fit ends [1]; far below the deviations of a log."""
+FIRST_FIT_SAMPLES = 1000
+"""Approximate number of samples of a long log for a first fit, whose result is the start of the fit to all
+samples."""
 MIN_TEMPERATURE_RANGE = 5.0
 """Range of temperatures [K] that a log needs for a fit of the temperature coefficients."""
 MIN_LOAD_RATIO = 0.02
@@ -131,6 +144,11 @@ UNDETERMINED_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
 well."""
+VANISHING_PARAMETERS = (STRIBECK_FRICTION, VISCOUS_FRICTION)
+"""Parameters that a log may show to be 0: the fit ends on their lower bound."""
+MIN_FRICTION_DEVIATIONS, MIN_FRICTION_SHARE = 5.0, 0.02
+"""Friction over its standard deviation [1], and over the root mean square of the torque [1], from which a
+torque at the joint has the friction of the drive."""
 DIFFERENCE_STEP = 1e-4
 """Step of the logarithms of the parameters [1] for finite differences."""
 
@@ -156,7 +174,10 @@ class FittedLog:
 
     @property
     def inertia(self) -> float:
-        """Inertia [kg.m2] of arm and rotor at the joint. Only fits to logs with the column time have it."""
+        """Inertia [kg.m2] of arm and rotor at the joint, or of the rotor if a sensor measures the load.
+
+        Only fits to logs with the column time have it.
+        """
         return float(self.linear_unknowns[0])
 
     def evaluate_torque(self, samples: Samples) -> tuple[Array, Array]:
@@ -167,7 +188,7 @@ class FittedLog:
         friction_torque = filtered_motor_friction(self.drive, samples, load)
         return (
             friction_torque,
-            friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_gravity,
+            friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_load,
         )
 
     def evaluate_load(self, samples: Samples) -> tuple[Array, Array]:
@@ -247,7 +268,7 @@ def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Arra
     terms = LinearTerms.at_samples(samples, ratio)
     friction_terms = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
     matrix = np.concatenate([friction_terms, terms.design_matrix], axis=1)
-    return terms, np.linalg.lstsq(matrix, samples.motor_torque - terms.measured_gravity)[0]
+    return terms, np.linalg.lstsq(matrix, samples.motor_torque - terms.measured_load)[0]
 
 
 def fit_samples(
@@ -258,21 +279,49 @@ def fit_samples(
     fitted_names  : of the friction parameters to fit
     rotor_inertia : [kg.m2]
     """
-    ratio = abs(parameter_file.values.ratio)
-    terms, linear = _fit_linear_model(samples, parameter_file.values)
+    linear = _fit_linear_model(samples, parameter_file.values)[1]
     start_values, linear = _start_values(parameter_file, samples, linear), linear[2:]
     changed = parameter_file.with_values(
         {n: v for n, v in start_values.items() if n in fitted_names}, "calibration", "start"
     )
     bounds = {name: (LOWER_BOUND_RATIO * value, np.inf) for name, value in start_values.items()}
+    noise = None
+    step = samples.dq.size // FIRST_FIT_SAMPLES
+    if step > 1:
+        few = samples.select(np.arange(0, samples.dq.size, step))
+        first = _iterate_load(parameter_file, changed, few, fitted_names, bounds, linear, rotor_inertia)
+        linear, noise = first.linear_unknowns, first.solution.noise
+        changed = parameter_file.with_values(first.solution.values, "calibration", "start")
+    return _iterate_load(parameter_file, changed, samples, fitted_names, bounds, linear, rotor_inertia, noise)
+
+
+def _iterate_load(
+    parameter_file: ParameterFile,
+    start_file: ParameterFile,
+    samples: Samples,
+    fitted_names: Sequence[str],
+    bounds: Mapping[str, tuple[float, float]],
+    linear_unknowns: Array,
+    rotor_inertia: float,
+    noise: float | None = None,
+) -> FittedLog:
+    """Fit friction parameters and linear terms to samples, with the load of each fit from the fit before.
+
+    start_file      : parameter file with the start values
+    bounds          : {name: lower and upper bound}
+    linear_unknowns : start values (k) of the linear terms
+    noise           : start value of the standard deviation of a residual [N.m]; None: unknown
+    """
+    ratio, linear, changed = abs(parameter_file.values.ratio), linear_unknowns, start_file
+    terms = LinearTerms.at_samples(samples, ratio)
+    load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
     for _ in range(LOAD_ITERATIONS):
-        load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
 
         def net_torque(parameter_values: Mapping[str, float], load: Array = load) -> Array:
             """Motor torque (n) [N.m] without friction and measured gravity."""
             drive = parameter_file.with_values(parameter_values, "calibration", "fit").values
             return np.asarray(
-                samples.motor_torque - terms.measured_gravity - filtered_motor_friction(drive, samples, load)
+                samples.motor_torque - terms.measured_load - filtered_motor_friction(drive, samples, load)
             )
 
         def residuals(parameter_values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]
@@ -280,10 +329,21 @@ def fit_samples(
             return np.asarray(remaining - terms.design_matrix @ terms.solve_unknowns(remaining))
 
         solution = solve(
-            make_unknowns(changed, fitted_names, bounds), residuals, nuisance_count=len(terms.unknown_names)
+            make_unknowns(changed, fitted_names, bounds),
+            residuals,
+            noise=noise,
+            nuisance_count=len(terms.unknown_names),
+            tolerance=FIT_TOLERANCE,
         )
+        degrees_of_freedom = max(samples.dq.size - len(fitted_names) - len(terms.unknown_names), 1)
+        noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
         linear = terms.solve_unknowns(net_torque(solution.values))
         changed = parameter_file.with_values(solution.values, "calibration", "fit")
+        previous, load = load, terms.tooth_load(samples, linear, ratio, rotor_inertia)
+        if np.max(np.abs(load - previous)) <= LOAD_TOLERANCE * np.max(np.abs(load)):
+            break
+    assert noise is not None
+    solution = replace(solution, noise=noise, covariance=covariance(solution.jacobian, noise))
     direct = solution.noise**2 * np.linalg.pinv(terms.design_matrix.T @ terms.design_matrix)
     indirect = _propagate_deviations(solution, lambda values: terms.solve_unknowns(net_torque(values)))
     return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0)
@@ -313,14 +373,41 @@ def drop_undetermined(
     return fitted_log, list(fitted_names), []
 
 
+def accept_vanishing(fitted_log: FittedLog) -> tuple[FittedLog, list[str]]:
+    """Accept friction that vanishes: VANISHING_PARAMETERS on their lower bound, which stands for 0.
+
+    Returns the fit, with these parameters no longer on a bound, and notes about them.
+    """
+    solution = fitted_log.solution
+    vanishing = [name for name in solution.names_at_bound if name in VANISHING_PARAMETERS]
+    others = tuple(name for name in solution.names_at_bound if name not in vanishing)
+    notes = [f"the log shows no {name}: its smallest value fits best" for name in vanishing]
+    return replace(fitted_log, solution=replace(solution, names_at_bound=others)), notes
+
+
+def has_friction(samples: Samples, drive: Drive) -> bool:
+    """Whether the torque has a friction part, that is more than chance and MIN_FRICTION_SHARE."""
+    ratio = abs(drive.ratio)
+    terms, linear = _fit_linear_model(samples, drive)
+    sense, speed = np.sign(samples.dq), ratio * samples.dq
+    matrix = np.concatenate([np.stack([sense, speed], axis=1), terms.design_matrix], axis=1)
+    torque = samples.motor_torque - terms.measured_load
+    residual = torque - matrix @ linear
+    noise = np.linalg.norm(residual) / np.sqrt(max(residual.size - linear.size, 1))
+    covariance = noise**2 * np.linalg.pinv(matrix.T @ matrix)[:2, :2]
+    mean = np.array([1.0, float(np.mean(np.abs(speed)))])  # friction at the mean speed
+    size, deviation = float(mean @ linear[:2]), float(np.sqrt(mean @ covariance @ mean))
+    return size > max(
+        MIN_FRICTION_DEVIATIONS * deviation, MIN_FRICTION_SHARE * float(np.sqrt(np.mean(torque**2)))
+    )
+
+
 def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
     """Whether the fitted friction drives the motion: then the torque has the wrong sign in the log."""
     terms, linear = _fit_linear_model(samples, drive)
     w1 = abs(drive.ratio) * samples.dq
     friction_torque = linear[0] * np.sign(w1) + linear[1] * w1
-    residual = (
-        samples.motor_torque - terms.measured_gravity - friction_torque - terms.design_matrix @ linear[2:]
-    )
+    residual = samples.motor_torque - terms.measured_load - friction_torque - terms.design_matrix @ linear[2:]
     return bool(friction_torque @ w1 < 0.0 and np.sum(friction_torque**2) > np.sum(residual**2))
 
 

@@ -42,6 +42,9 @@ class Samples:
     q, dq, ddq     : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
     window_speeds  : (n, FILTER_NODES) [rad/s] of the joint, within the window of the filter
     window_weights : (n, FILTER_NODES) [1] of the filter at these speeds
+    window_angles  : (n, FILTER_NODES) [rad] of the motor at these speeds; NaN if unknown
+    ripple_terms   : (n, 2 k) [1] filtered sense of rotation times sine and cosine of k harmonics of the motor
+                     angle; k = 0 until friction ripple is found
     motor_torque   : [N.m] of the motor
     gravity_torque : [N.m] torque at the joint that balances gravity
     temperature    : [K]
@@ -58,6 +61,8 @@ class Samples:
     ddq: Array
     window_speeds: Array
     window_weights: Array
+    window_angles: Array
+    ripple_terms: Array
     motor_torque: Array
     gravity_torque: Array
     temperature: Array
@@ -66,6 +71,11 @@ class Samples:
     is_held_out: NDArray[np.bool_]
     is_dynamic: NDArray[np.bool_]
     is_developed: NDArray[np.bool_]
+
+    @property
+    def has_sensor(self) -> bool:
+        """Whether the torque at the joint is measured for all samples."""
+        return bool(np.all(np.isfinite(self.sensor_torque)))
 
     def select(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
         """Select samples, by a mask or by indices."""
@@ -87,11 +97,13 @@ def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Sampl
         ddq=np.zeros(torque.size),
         window_speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODES, axis=1),
         window_weights=np.repeat(np.eye(1, FILTER_NODES), torque.size, axis=0),
+        window_angles=np.repeat(columns_by_name.get("q_motor", none)[:, None], FILTER_NODES, axis=1),
+        ripple_terms=np.zeros((torque.size, 0)),
         motor_torque=torque,
         gravity_torque=columns_by_name.get("gravity", none),
         temperature=columns_by_name.get("temperature", none),
         motor_angle=none,
-        sensor_torque=none,
+        sensor_torque=columns_by_name.get("link_torque", none),
         is_held_out=np.arange(torque.size) % 3 == 1,
         is_dynamic=np.zeros(torque.size, dtype=bool),
         is_developed=columns_by_name["dq"] != 0.0,
@@ -124,19 +136,24 @@ def dynamic_samples(
     without_dq = "dq" not in columns_by_name
     dq = filter_values(columns_by_name["q"], time_step, 1) if without_dq else filter_column("dq")
     nodes, weights = _filter_nodes(window_size(time_step))
+    window = np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)
+    joint_angle, motor_angle = filter_column("q"), filter_column("q_motor")
+    rotation = motor_angle if "q_motor" in columns_by_name else drive.ratio * joint_angle
     return Samples(
         time=time,
-        q=filter_column("q"),
+        q=joint_angle,
         dq=dq,
         ddq=filter_values(columns_by_name["q"], time_step, 2)
         if without_dq
         else filter_values(columns_by_name["dq"], time_step, 1),
-        window_speeds=dq[np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)],
+        window_speeds=dq[window],
         window_weights=np.repeat(weights[None, :], time.size, axis=0),
+        window_angles=rotation[window],
+        ripple_terms=np.zeros((time.size, 0)),
         motor_torque=filter_column("tau"),
         gravity_torque=filter_column("gravity"),
         temperature=columns_by_name.get("temperature", none),
-        motor_angle=filter_column("q_motor"),
+        motor_angle=motor_angle,
         sensor_torque=filter_column("link_torque"),
         is_held_out=time > time[0] + 0.7 * (time[-1] - time[0]),
         is_dynamic=np.ones(time.size, dtype=bool),
@@ -190,14 +207,24 @@ gravity torque at the joint that balances gravity; q_motor motor angle; link_tor
 joint."""
 COLUMN_SYNONYMS: Mapping[str, Sequence[str]] = {
     "time": ("t", "timestamp", "zeit"),
-    "q": ("position", "angle", "actual_q", "joint_position"),
-    "dq": ("qd", "speed", "velocity", "actual_qd", "joint_speed", "joint_velocity"),
-    "i": ("current", "actual_current", "motor_current"),
-    "tau": ("torque", "motor_torque"),
+    "q": ("position", "angle", "actual_q", "joint_position", "winkel", "gelenkwinkel"),
+    "dq": (
+        "qd",
+        "speed",
+        "velocity",
+        "actual_qd",
+        "joint_speed",
+        "joint_velocity",
+        "geschwindigkeit",
+        "drehzahl",
+        "winkelgeschwindigkeit",
+    ),
+    "i": ("current", "actual_current", "motor_current", "strom", "motorstrom", "iststrom"),
+    "tau": ("torque", "motor_torque", "moment", "drehmoment", "motormoment"),
     "gravity": ("tau_g", "gravity_torque"),
-    "q_motor": ("motor_angle", "motor_position", "theta"),
-    "link_torque": ("joint_torque", "torque_sensor"),
-    "temperature": ("temp", "motor_temperature", "joint_temperature"),
+    "q_motor": ("motor_angle", "motor_position", "theta", "motorwinkel"),
+    "link_torque": ("joint_torque", "torque_sensor", "gelenkmoment", "abtriebsmoment"),
+    "temperature": ("temp", "motor_temperature", "joint_temperature", "temperatur"),
 }
 """{column: other headings that are accepted}."""
 MIN_ROWS = 6
@@ -233,41 +260,72 @@ def parse_columns(column_texts: Sequence[str]) -> dict[str, tuple[str, str | Non
     return found
 
 
-def read_log(
-    path: Path,
-    renamed_columns: Mapping[str, tuple[str, str | None]],
-    torque_constant: float | None,
-    drive: Drive,
-) -> Samples:
-    """Read the samples of a log.
+@dataclass(frozen=True, slots=True)
+class MeasuredLog:
+    """Log that is read from a file.
+
+    has_motor_torque : whether torque or current of the motor is measured; if not, `motor_torque` of the
+                       samples is the torque at the joint over the ratio
+    """
+
+    path: Path
+    samples: Samples
+    has_motor_torque: bool
+
+
+def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]) -> columns.Columns:
+    """Read the columns of a log.
 
     renamed_columns : {column: (heading, unit or None)} for other headings
-    torque_constant : motor torque over motor current [N.m/A]
-    drive           : for plausibility checks of speed and torque
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    table = columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, renamed_columns)
-    have = dict(table.columns)
-    torque = _motor_torque(table, torque_constant)
+    return columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, renamed_columns)
+
+
+def make_log(
+    table: columns.Columns, torque_constant: float | None, drive: Drive, torque_at: str = "motor"
+) -> MeasuredLog:
+    """Make the samples of a log from its columns.
+
+    torque_constant : motor torque over motor current [N.m/A]
+    drive           : for plausibility checks of speed and torque
+    torque_at       : place of the torque in the column tau, "motor" or "joint"
+
+    Raises ValueError with a one-line message that begins with the path.
+    """
+    path, have = table.path, dict(table.columns)
+    if torque_at == "joint" and "tau" in have:
+        if "link_torque" in have:
+            raise ValueError(
+                f"{path}: has tau and link_torque, with --torque-at joint both at the joint; "
+                "expected one of them"
+            )
+        have["link_torque"] = have.pop("tau")
+    torque = _motor_torque(table, have, torque_constant)
+    has_motor_torque = torque is not None
+    if torque is None:
+        torque = _joint_torque(table, have, torque_at) / abs(drive.ratio)
     if "temperature" in have and table.units["temperature"] != "K":
         have["temperature"] = have["temperature"] + CELSIUS_ZERO_IN_KELVIN
     if "time" in have:
-        return _read_dynamic(table, have, torque, drive)
-    table.require_column("dq", COLUMN_UNITS)
-    samples = steady_samples(have, torque)
-    _check_samples(path, samples, drive)
-    return samples
+        samples = _read_dynamic(table, have, torque, drive)
+    else:
+        table.require_column("dq", COLUMN_UNITS)
+        samples = steady_samples(have, torque)
+        _check_samples(path, samples, drive)
+    return MeasuredLog(path, samples, has_motor_torque)
 
 
-def _motor_torque(log_columns: columns.Columns, torque_constant: float | None) -> Array:
-    """Motor torque (n) [N.m], from the column of the torque or of the current."""
-    if "tau" in log_columns.columns:
-        return log_columns.columns["tau"]
-    if "i" not in log_columns.columns:
-        wanted = columns.format_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
-        raise ValueError(f"{log_columns.path}: has no torque and no current of the motor; expected {wanted}")
-    current = log_columns.columns["i"]
+def _motor_torque(
+    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque_constant: float | None
+) -> Array | None:
+    """Motor torque (n) [N.m], from the column of the torque or of the current; None if there is neither."""
+    if "tau" in columns_by_name:
+        return columns_by_name["tau"]
+    if "i" not in columns_by_name:
+        return None
+    current = columns_by_name["i"]
     if np.max(np.abs(current)) > MAX_CURRENT:
         raise ValueError(
             f"{log_columns.path}: a current of {np.max(np.abs(current)):.4g} A is outside "
@@ -278,6 +336,28 @@ def _motor_torque(log_columns: columns.Columns, torque_constant: float | None) -
             f"{log_columns.path}: has a current alone; expected --torque-constant [N.m/A] beside it"
         )
     return torque_constant * current
+
+
+def _joint_torque(
+    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque_at: str
+) -> Array:
+    """Torque (n) [N.m] at the joint of a log without a torque of the motor.
+
+    Raises ValueError if there is none, or if the user has not stated that the torque is that at the joint.
+    """
+    wanted = columns.format_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
+    if "link_torque" in columns_by_name:
+        if torque_at == "joint":
+            return columns_by_name["link_torque"]
+        raise ValueError(
+            f"{log_columns.path}: has the torque at the joint, link_torque, and no torque and no current of "
+            f"the motor; expected {wanted}, or --torque-at joint"
+        )
+    names = ", ".join(columns.read_names(log_columns.path))
+    raise ValueError(
+        f"{log_columns.path}: has no torque and no current of the motor; expected {wanted}; the file has "
+        f"{names}; a heading needs a unit, --columns 'i=HEADING [A]' states another heading"
+    )
 
 
 def _read_dynamic(
@@ -366,5 +446,5 @@ def _check_samples(path: Path, samples: Samples, drive: Drive) -> None:
     if largest > limit:
         raise ValueError(
             f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "
-            "expected that of the motor, not of the joint, of a drive as stated"
+            "expected that of the motor, not of the joint (--torque-at joint), of a drive as stated"
         )

@@ -35,6 +35,11 @@ class Path {
     this.now = element("div", { class: "now" });
     places.append(this.now);
     this.loop();
+    if (this.trace.force.every((force) => force === 0)) { // inside the backlash
+      this.size = 1;
+      this.amplitude.value = 100;
+      this.loop();
+    }
   }
 
   /** The path is gone again once for all that shows it. */
@@ -109,8 +114,10 @@ class Path {
   loop() {
     const [low, high] = this.inputs[0].span.map((end) => this.size * end), turn = (i) => (i <= 40 ? i / 40 : i <= 120 ? 2 - i / 40 : i / 40 - 4);
     const place = (t) => (low < 0 ? high * t : 0.5 * high * (1 + t));
+    const others = this.inputs.slice(1).map(() => 0);
     this.clear();
-    this.add(Array.from({ length: 200 }, (_, i) => [place(turn(i + 1)), ...this.inputs.slice(1).map(() => 0)]));
+    if (low >= 0) this.add(Array.from({ length: 20 }, (_, i) => [(place(0) * (i + 1)) / 20, ...others])); // no jump
+    this.add(Array.from({ length: 200 }, (_, i) => [place(turn(i + 1)), ...others]));
   }
 
   circle() {

@@ -2,6 +2,9 @@
 
 const [TURN_STEPS, LOADS, RUN_IN, LONG] = [180, 24, 20, 0.5];
 
+/** What to press where the parameters have no loss. */
+const EXAMPLE = "The button \"Example with losses\" sets values that show it.";
+
 class Turn {
   constructor(place, joint, lab) {
     [this.joint, this.lab, this.about] = [joint, lab, joint.about.turn];
@@ -70,6 +73,7 @@ class Turn {
     if (!this.found) this.turned();
     const [x, error] = this.found;
     this.found = null;
+    this.wave.note.textContent = error.every((e) => e === 0) ? `The parameters state no kinematic error. ${EXAMPLE}` : this.error.doc;
     this.wave.draw([{ name: this.error.name, x, y: shown(this.error, error) }], { label: `${this.driven.name} [deg]` }, { label: label(this.error) });
   }
 
@@ -80,6 +84,8 @@ class Turn {
       if (!torques.length) break;
       rows.push([load * this.load.factor, (100 * load * torques.length) / (Math.abs(this.ratio) * torques.reduce((sum, t) => sum + t, 0))]);
     }
+    const lossless = rows.every((r) => r[1] > 99.99);
+    this.gain.note.textContent = lossless ? `The parameters state no friction, so the efficiency is 100 %; that of a real drive is lower. ${EXAMPLE}` : `Load divided by ratio times mean torque on ${this.driven.name}, at this speed.`;
     this.gain.draw([{ name: "efficiency", x: rows.map((r) => r[0]), y: rows.map((r) => r[1]) }], { label: withUnit("load", this.load.shown) }, { label: "efficiency [%]", range: [0, 105] });
   }
 }

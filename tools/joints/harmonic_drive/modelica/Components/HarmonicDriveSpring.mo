@@ -20,6 +20,14 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Real load_loss_back(unit="1") = data.load_loss_back "<< meta.load_loss_back >>"
     annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Torque friction_1(min=0) = data.friction_1 "<< meta.friction_1 >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Angle friction_1_phase = data.friction_1_phase "<< meta.friction_1_phase >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Torque friction_2(min=0) = data.friction_2 "<< meta.friction_2 >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Angle friction_2_phase = data.friction_2_phase "<< meta.friction_2_phase >>"
+    annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "<< meta.presliding >>"
     annotation (Dialog(tab="Friction"));
   parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "<< meta.temperature_factor >>"
@@ -109,6 +117,7 @@ initial equation
   end for;
 equation
   assert(ratio < 0 or ratio > 0, "ratio = 0 is outside (-inf, 0) and (0, inf)");
+  assert(friction_1 + friction_2 <= friction_coulomb, "friction_1 + friction_2 must not exceed friction_coulomb");
   phi_error = error_1*sin(flange_a.phi + error_1_phase) + error_2*sin(2*flange_a.phi + error_2_phase) + error_4*sin(4*flange_a.phi + error_4_phase);
   errorSlope = error_1*cos(flange_a.phi + error_1_phase) + 2*error_2*cos(2*flange_a.phi + error_2_phase) + 4*error_4*cos(4*flange_a.phi + error_4_phase);
   phi_rel = flange_b.phi - flange_a.phi/ratio - phi_error;
@@ -140,7 +149,7 @@ equation
   end if;
   f_dry = temperature_factor*exp(-dry_temperature_coefficient*(temperature - reference));
   f_viscous = temperature_factor*exp(-viscous_temperature_coefficient*(temperature - reference));
-  unloaded = friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2);
+  unloaded = friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + friction_1*sin(flange_a.phi + friction_1_phase) + friction_2*sin(2*flange_a.phi + friction_2_phase);
   M_p = f_dry*JointStiffness.Functions.frictionLimit(unloaded, load_loss, loss_back, tau, width*data.rated_torque, ratio);
   M_n = f_dry*JointStiffness.Functions.frictionLimit(unloaded, load_loss, loss_back, tau, width*data.rated_torque, -ratio);
   // sliders of the friction: a spring each, that follows the motion until its friction holds no more

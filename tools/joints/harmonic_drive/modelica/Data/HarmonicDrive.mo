@@ -13,6 +13,10 @@ record HarmonicDrive "A harmonic drive"
   parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0)=0 "<< meta.friction_viscous >>";
   parameter Real load_loss(min=0, unit="1")=0 "<< meta.load_loss >>";
   parameter Real load_loss_back(unit="1")=-1 "<< meta.load_loss_back >>";
+  parameter Modelica.Units.SI.Torque friction_1(min=0)=0 "<< meta.friction_1 >>";
+  parameter Modelica.Units.SI.Angle friction_1_phase=0 "<< meta.friction_1_phase >>";
+  parameter Modelica.Units.SI.Torque friction_2(min=0)=0 "<< meta.friction_2 >>";
+  parameter Modelica.Units.SI.Angle friction_2_phase=0 "<< meta.friction_2_phase >>";
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small)=0.01 "<< meta.presliding >>";
   parameter Real temperature_factor(min=0, unit="1")=1 "<< meta.temperature_factor >>";
   parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient=0 "<< meta.viscous_temperature_coefficient.split(";")[0] >>";

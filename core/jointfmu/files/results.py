@@ -1,0 +1,39 @@
+"""Computed results that a program keeps between its processes, for example on the disk.
+
+The kernel keeps none itself. The tools set a store when they are imported; a python FMU has none.
+"""
+
+from collections.abc import Callable, Sequence
+from hashlib import sha256
+
+import numpy as np
+
+from ..quantity import Array
+
+ResultStore = Callable[[str, Callable[[], bytes]], bytes]
+"""Function (key, function that computes the bytes) -> bytes, kept or computed."""
+_stores: list[ResultStore] = []
+
+
+def set_result_store(store: ResultStore | None) -> None:
+    """Set the store of this process; None: every result is computed."""
+    _stores[:] = [] if store is None else [store]
+
+
+def compute_once(name: str, arguments: Sequence[Array], compute: Callable[[], Array]) -> Array:
+    """Result (...) of float64 that depends on the arguments alone, from the store if it is there.
+
+    name : of the computation, and of numbers on which it depends besides the arguments
+    """
+    if not _stores:
+        return compute()
+    digest = sha256(name.encode())
+    for argument in arguments:
+        digest.update(f"\0{argument.shape} ".encode() + np.ascontiguousarray(argument, "<f8").tobytes())
+
+    def compute_bytes() -> bytes:
+        result = compute()
+        return f"{' '.join(map(str, result.shape))}\n".encode() + result.astype("<f8").tobytes()
+
+    head, _, content = _stores[0](digest.hexdigest(), compute_bytes).partition(b"\n")
+    return np.frombuffer(content, "<f8").reshape(tuple(map(int, head.split()))).astype(np.float64)

@@ -1,0 +1,110 @@
+"""Build backend of the distribution: setuptools, with the packages of all folders. pyproject.toml names it.
+
+All packages below the root folders are included, so a new joint needs new folders only. The environment
+variable JOINTFMU_URL is the address of the repository; the release workflow sets it. If it is set, the
+distribution has project URLs, and relative links of the README become links to the repository.
+
+Builders and commands do not use this module.
+"""
+
+import base64
+import hashlib
+import os
+import re
+import zipfile
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import setuptools
+from setuptools import build_meta
+from setuptools.build_meta import (
+    build_sdist,
+    build_wheel,
+    get_requires_for_build_editable,
+    get_requires_for_build_sdist,
+    get_requires_for_build_wheel,
+    prepare_metadata_for_build_editable,
+    prepare_metadata_for_build_wheel,
+)
+
+__all__ = [
+    "build_editable",
+    "build_sdist",
+    "build_wheel",
+    "get_requires_for_build_editable",
+    "get_requires_for_build_sdist",
+    "get_requires_for_build_wheel",
+    "prepare_metadata_for_build_editable",
+    "prepare_metadata_for_build_wheel",
+]
+
+ROOTS = {
+    "jointfmu": "core/jointfmu",
+    "jointfmu_fmu_src": "fmu_src",
+    "jointfmu_tools": "tools",
+    "jointfmu_models": "models",
+}
+"""{import name: folder}."""
+KERNEL_FOLDER = "core"
+"""Folder in which the kernel lies under its import name."""
+PAGES = {"Documentation": "/tree/HEAD/docs", "Changelog": "/blob/HEAD/CHANGELOG.md", "Issues": "/issues"}
+"""{label of a project URL: path below the address of the repository}."""
+
+
+def make_description(readme: str, url: str) -> str:
+    """Long description: the README, with links to the repository at `url` if there is one."""
+    if not url:
+        return readme
+    readme = re.sub(r"(!\[[^\]]*\]\()(?!https?:)", rf"\g<1>{url}/raw/HEAD/", readme)
+    return re.sub(r"((?<!!)\[[^\]]*\]\()(?!https?:|#)", rf"\g<1>{url}/blob/HEAD/", readme)
+
+
+def setup_arguments() -> dict[str, Any]:
+    """Arguments of `setuptools.setup` that pyproject.toml does not have. Call it in the root folder."""
+    url = os.environ.get("JOINTFMU_URL", "").rstrip("/")
+    return {
+        "packages": [
+            name
+            for root, folder in ROOTS.items()
+            for name in (root, *(f"{root}.{inner}" for inner in setuptools.find_packages(folder)))
+        ],
+        "package_dir": ROOTS,
+        "long_description": make_description(Path("README.md").read_text(encoding="utf-8"), url),
+        "long_description_content_type": "text/markdown",
+        "project_urls": {"Repository": url, **{n: url + path for n, path in PAGES.items()}} if url else {},
+    }
+
+
+def build_editable(
+    wheel_directory: str, config_settings: Any = None, metadata_directory: str | None = None
+) -> str:
+    """Build the editable wheel of setuptools, with the folder of the kernel on the module search path.
+
+    Setuptools finds the packages by an import hook, which comes after the search path. There a clone of the
+    repository in a folder `jointfmu` would be taken for the package, as a namespace package.
+    """
+    name: str = build_meta.build_editable(wheel_directory, config_settings, metadata_directory)
+    _append_search_path(Path(wheel_directory, name), Path(KERNEL_FOLDER).resolve())
+    return name
+
+
+def _append_search_path(wheel: Path, folder: Path) -> None:
+    """Append a folder to the path configuration file (.pth) of an editable wheel."""
+    with zipfile.ZipFile(wheel) as archive:
+        contents = {item: archive.read(item) for item in archive.infolist()}
+    (search_path,) = (item for item in contents if item.filename.endswith(".pth"))
+    (record,) = (item for item in contents if item.filename.endswith(".dist-info/RECORD"))
+    text = contents[search_path].rstrip() + f"\n{folder}\n".encode()
+    digest = base64.urlsafe_b64encode(hashlib.sha256(text).digest()).rstrip(b"=").decode()
+    rows = contents[record].decode().splitlines()
+    rows = [row for row in rows if not row.startswith(f"{search_path.filename},")]
+    rows.append(f"{search_path.filename},sha256={digest},{len(text)}")
+    contents |= {search_path: text, record: "".join(f"{row}\n" for row in rows).encode()}
+    with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
+        for item, content in contents.items():
+            archive.writestr(item, content)
+
+
+# the hooks of setuptools call `setup()` of a project without setup.py
+setuptools.setup = partial(setuptools.setup, **setup_arguments())

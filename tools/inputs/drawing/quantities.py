@@ -1,0 +1,339 @@
+"""Numbers of `jointfmu new`: quantity, unit and plausible range of every option, in one table; their parser.
+
+A number without a unit has the unit of its option. If it is outside the plausible range, the user probably
+means another unit (metres instead of millimetres): the number is refused, and the message says what to write.
+A number with its unit is refused only outside the limits of its quantity.
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from typing import NamedTuple
+
+from jointfmu.quantity.units import conversion_factor
+
+from ...common.options import option_flag
+from .reading import NUMBER_PATTERN, check_separators
+
+_RANGE_PATTERN = re.compile(r"(.+?)\s*\.\.\s*(.+)")
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingQuantity:
+    """Quantity of an option.
+
+    meaning      : the quantity in words
+    unit         : unit of a number that the user states without one
+    si_unit      : SI unit
+    plausible    : plausible magnitude of a number without a unit [unit]
+    limits       : allowed values with any unit [unit]; the lower one is excluded unless `allows_zero`
+    other_units  : units that users mistake for `unit`
+    extra_units  : {unit that only this quantity has: its size [si_unit]}
+    allows_zero  : whether 0 is a value
+    has_sign     : whether negative numbers are values
+    allows_range : whether LOW..HIGH is a value
+    """
+
+    meaning: str
+    unit: str
+    si_unit: str
+    plausible: tuple[float, float] = (0.0, math.inf)
+    _: KW_ONLY
+    limits: tuple[float, float] = (0.0, math.inf)
+    other_units: tuple[str, ...] = ()
+    extra_units: Mapping[str, float] = field(default_factory=dict)
+    allows_zero: bool = False
+    has_sign: bool = False
+    allows_range: bool = False
+
+
+class StatedNumber(NamedTuple):
+    """Number of an option with its range, in SI units; low = value = high if the user states no range."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def is_range(self) -> bool:
+        """Whether the user states a range."""
+        return self.high > self.low
+
+
+MIN_HEIGHT = 1e-4
+"""Least height of a surface [um]: polished silicon wafers have twice as much."""
+KGF_PER_MM2 = 9.80665e6
+"""Unit of Brinell and Vickers hardness [Pa]: kgf/mm2."""
+BRINELL_AND_VICKERS = dict.fromkeys(("HB", "HBW", "HV"), KGF_PER_MM2)
+
+
+def _length(
+    meaning: str,
+    low: float,
+    high: float,
+    *,
+    limit: float = math.inf,
+    allows_zero: bool = False,
+    has_sign: bool = False,
+) -> DrawingQuantity:
+    """Length in mm with a plausible range [mm], and a limit [mm]."""
+    return DrawingQuantity(
+        meaning,
+        "mm",
+        "m",
+        (low, high),
+        limits=(0.0, limit),
+        other_units=("m", "um"),
+        allows_zero=allows_zero,
+        has_sign=has_sign,
+    )
+
+
+def _height(name: str, high: float) -> DrawingQuantity:
+    """Height of a rough surface in um, up to a plausible limit [um]."""
+    return DrawingQuantity(
+        f"{name} of machined surfaces",
+        "um",
+        "m",
+        (0.005, high),
+        limits=(MIN_HEIGHT, high),
+        other_units=("m", "mm", "nm"),
+        allows_range=True,
+    )
+
+
+def _friction(meaning: str) -> DrawingQuantity:
+    """Coefficient of friction; clean pairs of the same metal in air have 0.8 to 1.5."""
+    return DrawingQuantity(meaning, "1", "1", limits=(0.0, 2.0), allows_range=True)
+
+
+def _torque(
+    meaning: str, low: float, high: float, *, allows_zero: bool = False, allows_range: bool = False
+) -> DrawingQuantity:
+    """Torque in N.m with a plausible range [N.m]."""
+    return DrawingQuantity(
+        meaning,
+        "N.m",
+        "N.m",
+        (low, high),
+        other_units=("kN.m", "mN.m"),
+        allows_zero=allows_zero,
+        allows_range=allows_range,
+    )
+
+
+QUANTITIES: Mapping[str, DrawingQuantity] = {
+    # bolted joint
+    "plate": _length("length or width of a plate", 4.0, 2e4),
+    "at": _length("position of a bolt", 1.0, 2e4, allows_zero=True, has_sign=True),
+    "circle": _length("diameter of a pitch circle", 4.0, 2e4),
+    "grip": _length("clamped length", 0.5, 5e3),
+    "thickness": _length("thickness of a plate", 0.5, 3e3),
+    "hole": _length("diameter of a hole", 2.0, 150.0, limit=150.0),
+    "bearing": _length("diameter of a bearing surface", 3.0, 400.0, limit=400.0),
+    "preload": DrawingQuantity(
+        "preload of a bolt", "N", "N", (100.0, 3e6), other_units=("kN",), allows_range=True
+    ),
+    "embedding": DrawingQuantity(
+        "preload loss of a bolt",
+        "N",
+        "N",
+        (5.0, 1e6),
+        other_units=("kN",),
+        allows_zero=True,
+        allows_range=True,
+    ),
+    "thread_friction": _friction("coefficient of friction in the thread"),
+    "head_friction": _friction("coefficient of friction under the head"),
+    # faces
+    "Ra": _height("Ra", 100.0),
+    "Rq": _height("Rq", 100.0),
+    "Rz": _height("Rz", 600.0),
+    "longest_wave": DrawingQuantity(
+        "longest wavelength of a roughness",
+        "mm",
+        "m",
+        (0.02, 25.0),
+        limits=(0.0, 1e3),
+        other_units=("m", "um"),
+        allows_range=True,
+    ),
+    "hardness": DrawingQuantity(
+        "hardness",
+        "MPa",
+        "Pa",
+        (300.0, 15e3),
+        limits=(0.0, 1e5),
+        other_units=("Pa", "GPa"),
+        extra_units=BRINELL_AND_VICKERS,
+        allows_range=True,
+    ),
+    "mu": _friction("coefficient of friction of metals"),
+    # gears
+    "module": _length("normal module", 0.1, 60.0),
+    "teeth": DrawingQuantity("number of teeth", "1", "1"),
+    "width": _length("width of a face", 0.5, 3e3),
+    "radii": _length("radius of curvature of a flank", 0.5, 1e5, has_sign=True),
+    "load": DrawingQuantity("normal load", "N", "N", (0.5, 1e8), other_units=("kN", "mN")),
+    "pressure_angle": DrawingQuantity(
+        "pressure angle", "deg", "rad", (1.0, math.inf), other_units=("rad",), has_sign=True
+    ),
+    "helix_angle": DrawingQuantity(
+        "helix angle", "deg", "rad", (1.0, math.inf), other_units=("rad",), allows_zero=True, has_sign=True
+    ),
+    "backlash": DrawingQuantity(
+        "backlash", "um", "m", (0.5, 2e4), limits=(0.0, 1e5), other_units=("m", "mm", "nm"), allows_range=True
+    ),
+    # bolts and gears
+    "torque": _torque("torque", 0.01, 1e7, allows_range=True),
+    # harmonic drives
+    "ratio": DrawingQuantity("ratio of a drive", "1", "1", has_sign=True),
+    "K1": DrawingQuantity("stiffness up to T1", "N.m/rad", "N.m/rad"),
+    "K2": DrawingQuantity("stiffness from T1 to T2", "N.m/rad", "N.m/rad"),
+    "K3": DrawingQuantity("stiffness above T2", "N.m/rad", "N.m/rad"),
+    "T1": _torque("torque T1", 0.01, 1e5),
+    "T2": _torque("torque T2", 0.01, 1e5),
+    "rated_torque": _torque("rated torque", 0.01, 1e5),
+    "hysteresis": DrawingQuantity(
+        "hysteresis loss", "arcmin", "rad", (0.01, 60.0), other_units=("rad", "deg", "arcsec")
+    ),
+    "starting_torque": _torque("starting torque", 1e-4, 100.0),
+    "running_torque": _torque("running torque", 1e-4, 100.0),
+    "back_driving_torque": _torque("back-driving torque", 1e-3, 1e4),
+    "efficiency": DrawingQuantity("efficiency", "1", "1"),
+    "motor_drag": _torque("motor drag", 1e-5, 100.0, allows_zero=True),
+    "corner": DrawingQuantity("relative width of a corner", "1", "1", has_sign=True),
+}
+"""{option of `jointfmu new`: quantity}: the same option has the same quantity in all joints."""
+
+
+def parse_quantity(option: str, text: str, default_unit: str | None = None) -> StatedNumber:
+    """Parse the number of an option, or its range LOW..HIGH; the value of a range is its middle.
+
+    option       : name of the option, a key of QUANTITIES
+    default_unit : unit of a number without one, if it differs from that of the quantity; such a number is
+                   not compared with the plausible range
+
+    Raises ValueError, one line, for text that is not a number, a wrong unit, or a value that is not allowed
+    or not plausible.
+    """
+    quantity = QUANTITIES[option]
+    match = _RANGE_PATTERN.fullmatch(text.strip())
+    if not match:
+        value = _parse_value(option, text, default_unit)
+        return StatedNumber(value, value, value)
+    if not quantity.allows_range:
+        raise ValueError(f"{option_flag(option)} = {text!r} is a range; expected one number")
+    unit = number[2] if (number := NUMBER_PATTERN.fullmatch(match[2])) else ""
+    has_unit = (first := NUMBER_PATTERN.fullmatch(match[1])) is None or first[2]
+    low, high = (
+        _parse_value(option, end, default_unit)
+        for end in (match[1] if has_unit else match[1] + unit, match[2])
+    )
+    if not low < high:
+        raise ValueError(f"{option_flag(option)} = {text!r} is not a range; expected LOW..HIGH")
+    return StatedNumber(0.5 * (low + high), low, high)
+
+
+def parse_value(option: str, text: str, default_unit: str | None = None) -> float:
+    """Parse the number of an option in its SI unit. Raises ValueError as `parse_quantity`, or for a range."""
+    number = parse_quantity(option, text, default_unit)
+    if number.is_range:
+        raise ValueError(f"{option_flag(option)} = {text!r} is a range; expected one number")
+    return number.value
+
+
+def parse_values(option: str, text: str, *, separator: str, count: int) -> list[float]:
+    """Parse `count` numbers with a separator between them, as in 200x100.
+
+    Raises ValueError for another count, and as `parse_value`.
+    """
+    words = text.split(separator)
+    if len(words) != count:
+        example = separator.join(["200", "100"][:count])
+        raise ValueError(
+            f"{option_flag(option)} = {text!r} has {len(words)} numbers, expected {count}, as in {example}"
+        )
+    return [parse_value(option, word) for word in words]
+
+
+def _parse_value(option: str, text: str, default_unit: str | None) -> float:
+    """Parse one number in the SI unit of its option."""
+    quantity, flag = QUANTITIES[option], option_flag(option)
+    unit = default_unit or quantity.unit
+    example = f"expected a number in {unit}, or with its unit as in 1{unit}"
+    if unit == "1":
+        example = "expected a number without a unit"
+    check_separators(option, text)
+    match = NUMBER_PATTERN.fullmatch(text.strip())
+    if not match:
+        raise ValueError(f"{flag} = {text!r} is not a number; {example}")
+    number, stated_unit = float(match[1]), match[2]
+    try:
+        value = number * _unit_size(quantity, stated_unit or unit)
+    except ValueError as error:
+        others = ", ".join(quantity.extra_units)
+        raise ValueError(
+            f"{flag} = {text!r}: {error}; {example}{f', or in {others}' if others else ''}"
+        ) from None
+    magnitude = value / _unit_size(quantity, quantity.unit)
+    low, high = quantity.plausible
+    if (
+        not (stated_unit or default_unit)
+        and math.isfinite(magnitude)
+        and (magnitude > 0.0 or (quantity.has_sign and magnitude != 0.0))
+        and not low <= abs(magnitude) <= high
+        and (advice := _advise_unit(quantity, match[1], abs(magnitude)))
+    ):
+        raise ValueError(
+            f"{flag} = {text!r} is read as {magnitude:g} {quantity.unit}, plausible are {low:g} to {high:g} "
+            f"{quantity.unit}; {advice}"
+        )
+    _check_limits(option, text, magnitude)
+    return value
+
+
+def _check_limits(option: str, text: str, magnitude: float) -> None:
+    """Raise ValueError if a number [unit of the option] is outside the limits of its quantity."""
+    quantity = QUANTITIES[option]
+    low, high = quantity.limits
+    if quantity.has_sign:
+        inside, lower = abs(magnitude) <= high, f"[{-high:g}" if high < math.inf else "(-inf"
+    elif quantity.allows_zero:
+        inside, lower = low <= magnitude <= high, f"[{low:g}"
+    else:
+        inside, lower = low < magnitude <= high, f"({low:g}"
+    if inside and math.isfinite(magnitude):
+        return
+    interval = f"{lower}, {high:g}]" if high < math.inf else f"{lower}, inf)"
+    unit = "" if quantity.unit == "1" else f" {quantity.unit}"
+    raise ValueError(f"{option_flag(option)} = {text!r} is outside {interval}{unit}: {quantity.meaning}")
+
+
+def _unit_size(quantity: DrawingQuantity, unit: str) -> float:
+    """Size of a unit in the SI unit of a quantity. Raises ValueError if the unit measures something else."""
+    if unit in quantity.extra_units:
+        return quantity.extra_units[unit]
+    return conversion_factor(unit, quantity.si_unit)
+
+
+def _advise_unit(quantity: DrawingQuantity, number_text: str, magnitude: float) -> str:
+    """Advice what to write instead of a number that is not plausible in the unit of its option.
+
+    magnitude : absolute value of the number [quantity.unit]
+
+    Empty for a number without a unit that no other unit makes plausible, if it is also outside the limits.
+    """
+    low, high = quantity.plausible
+    size = _unit_size(quantity, quantity.unit)
+    candidates = {_unit_size(quantity, unit): unit for unit in reversed((*quantity.extra_units,))}
+    candidates |= {_unit_size(quantity, unit): unit for unit in quantity.other_units}
+    advice = [
+        f"if it is in {unit}, write {number_text}{unit} ({magnitude * unit_size / size:.4g} {quantity.unit})"
+        for unit_size, unit in candidates.items()
+        if low <= magnitude * unit_size / size <= high
+    ]
+    if not advice and quantity.limits[0] <= magnitude <= quantity.limits[1] and quantity.unit != "1":
+        advice.append(f"if {quantity.unit} is right, write {number_text}{quantity.unit}")
+    return "; ".join(advice)

@@ -1,0 +1,120 @@
+"""Gross slip, loss factor and opening load of a bolted joint, over the ranges of its friction and preload."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.law import (
+    slip_force,
+    superposed_pressure,
+    with_rigid_members,
+    working_preload,
+)
+from jointfmu.parameters import ParameterFile
+
+PRELOAD_ENTRY = "inputs.preload"
+"""Entry of the preload in a parameter file."""
+REPORTED_SHEAR_RATIO = 0.1
+"""Shear force over the gross-slip force [1] at which the loss factor is reported."""
+
+
+class FrictionResult(NamedTuple):
+    """Gross-slip force and loss factor for one friction coefficient.
+
+    mu          : friction coefficient [1]
+    slip_force  : shear force [N] of gross slip
+    loss_factor : [1] of a loop with a given amplitude of the shear force
+    """
+
+    mu: float
+    slip_force: float
+    loss_factor: float
+
+
+def friction_results(parameter_file: ParameterFile, preload: float) -> tuple[float, list[FrictionResult]]:
+    """Gross-slip force and loss factor for mu of the file and both ends of its range, at a preload [N].
+
+    Returns the amplitude [N] of the shear force, then one FrictionResult per mu. The loss factors are those
+    of the interface between rigid sides, all at this amplitude.
+    """
+    joint = with_rigid_members(parameter_file.values)
+    remaining_preload = float(working_preload(joint, preload))
+    shear = REPORTED_SHEAR_RATIO * float(slip_force(joint, remaining_preload))
+    rows = []
+    for mu in (joint.mu, *parameter_file.ranges.get("mu", ())):
+        other = replace(joint, mu=mu)
+        loss = loss_factor(BoltedJointSpring.for_joint(other), remaining_preload, shear)
+        rows.append(FrictionResult(mu, float(slip_force(other, remaining_preload)), loss))
+    return shear, rows
+
+
+def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear_amplitude: float) -> float:
+    """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
+
+    remaining_preload : [N] of each bolt after embedding; without a moment
+    shear_amplitude   : amplitude [N] of the shear force
+    """
+    joint, shape = spring.joint, spring.patches
+    law, mean = spring.friction_law.foundation(), remaining_preload * joint.n_bolts / joint.A_0
+    approach = spring.curve.inverse(
+        superposed_pressure(shape.preload_pressure_ratio, shape.moment_pressure_ratio, mean, 0.0)
+    )
+    low = 0.0
+    size = (
+        law.friction_coefficient
+        / law.stiffness_ratio
+        * float(np.max(approach - spring.curve.displacement[0]))
+    )
+    for _ in range(60):
+        middle = 0.5 * (low + size)
+        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.area_share)
+        low, size = (middle, size) if carried < shear_amplitude else (low, middle)
+    lost, stored = (
+        float(shape.area_share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
+    )
+    return lost / (2.0 * np.pi * stored)
+
+
+class PreloadResult(NamedTuple):
+    """Results of the tightened joint at one preload.
+
+    preload      : of each bolt at tightening [N]
+    K_zz, K_xx   : stiffness of the joint along z and x [N/m]
+    slip_force   : shear force [N] of gross slip
+    opening_load : force [N] along z that opens the interface around the most loaded bolt, linear estimate
+    """
+
+    preload: float
+    K_zz: float
+    K_xx: float
+    slip_force: float
+    opening_load: float
+
+
+def preload_results(parameter_file: ParameterFile) -> list[PreloadResult]:
+    """Results at the start value of the preload, and at both ends of its range.
+
+    A preload that embedding takes completely is left out.
+    """
+    joint = parameter_file.values
+    spring = BoltedJointSpring.for_joint(joint)
+    rows = []
+    preloads = (parameter_file.start_value("preload"), *parameter_file.ranges.get(PRELOAD_ENTRY, ()))
+    for preload in preloads:
+        remaining_preload = float(working_preload(joint, preload))
+        if remaining_preload <= 0.0:
+            continue
+        compliances = spring.compliances(preload)
+        stiffness = 1.0 / compliances.total_compliance
+        rows.append(
+            PreloadResult(
+                preload,
+                float(stiffness[2]),
+                float(stiffness[0]),
+                float(slip_force(joint, remaining_preload)),
+                compliances.opening_load(remaining_preload),
+            )
+        )
+    return rows

@@ -1,0 +1,123 @@
+"""Checks of a robot's logs that need the columns together: torque scale, repeated logs, gravity column."""
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+
+from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE
+from jointfmu.quantity import Array
+
+from .log_friction import FittedLog, motor_friction
+from .log_reading import MeasuredLog, Samples
+
+TORQUE_SCALE_RANGE = (1.0 / 3.0, 3.0)
+"""Allowed range of the motor torque times ratio over the torque at the joint [1]."""
+MIN_SCALE_CORRELATION = 0.7
+"""Correlation of motor torque and torque at the joint [1], above which their ratio is judged."""
+MAX_FRICTION_FACTOR = 5.0
+"""Factor [1] between fitted friction and friction of the start file, above which the fit is doubtful."""
+GRAVITY_HARMONICS = 3
+"""Harmonics of the joint angle in gravity: an arm has one, springs and cables add some."""
+MAX_MOTION_SHARE, MIN_GRAVITY_RESIDUAL = 0.5, 0.02
+"""Share of the variance of the gravity column, beyond its function of the angle, that acceleration and sense
+of the motion explain [1], and its standard deviation over that of the column [1]: from both on the column is
+no gravity."""
+
+
+def check_repeated_logs(logs: Sequence[MeasuredLog]) -> None:
+    """Raise ValueError if two logs have the same samples: the intervals would be too narrow."""
+    for first, second in combinations(logs, 2):
+        if all(
+            np.array_equal(getattr(first.samples, name), getattr(second.samples, name), equal_nan=True)
+            for name in ("time", "dq", "motor_torque")
+        ):
+            raise ValueError(f"{second.path}: has the samples of {first.path}; expected each log once")
+
+
+def check_torque_scale(log: MeasuredLog, drive: Drive, torque_constant: float | None) -> None:
+    """Check the scale of the motor torque against the measured torque at the joint, or measured gravity.
+
+    Raises ValueError if their ratio is outside TORQUE_SCALE_RANGE.
+    """
+    samples = log.samples
+    column = "link_torque" if samples.has_sensor else "gravity"
+    load = samples.sensor_torque if samples.has_sensor else samples.gravity_torque
+    if not (log.has_motor_torque and np.all(np.isfinite(load)) and np.any(load)):
+        return
+    at_joint = abs(drive.ratio) * samples.motor_torque
+    product = float(at_joint @ load)
+    correlation = product / float(np.linalg.norm(at_joint) * np.linalg.norm(load) or 1.0)
+    if abs(correlation) < MIN_SCALE_CORRELATION:
+        return
+    scale = product / float(load @ load)
+    low, high = TORQUE_SCALE_RANGE
+    if low <= scale <= high:
+        return
+    if scale < 0.0:
+        hint = f"reverse the sign of {column}, or of the motor's torque"
+    elif torque_constant is None:
+        hint = f"check the units of tau and {column}, and the ratio {abs(drive.ratio):g}"
+    else:
+        hint = (
+            f"check --torque-constant, with {torque_constant / scale:.3g} N.m/A they agree, and the ratio "
+            f"{abs(drive.ratio):g}"
+        )
+    raise ValueError(
+        f"{log.path}: motor torque times ratio is {scale:.3g} times {column}, allowed are {low:.2g} to "
+        f"{high:g}; {hint}"
+    )
+
+
+def doubt_about_friction(
+    samples: Samples, fitted_log: FittedLog, start_drive: Drive, torque_constant: float | None
+) -> str | None:
+    """Doubt about the scale of the motor torque, as text; None if the friction is near the start file.
+
+    Compares the friction without load, at the median speed and REFERENCE_TEMPERATURE.
+    """
+    speed = np.array([float(np.median(np.abs(samples.dq)))])
+    nothing = np.zeros(1)
+    fitted, expected = (
+        float(motor_friction(drive, speed, np.full(1, REFERENCE_TEMPERATURE), nothing)[0])
+        for drive in (fitted_log.drive, start_drive)
+    )
+    if not expected > 0.0 or 1.0 / MAX_FRICTION_FACTOR < fitted / expected < MAX_FRICTION_FACTOR:
+        return None
+    check = "the unit of tau" if torque_constant is None else f"--torque-constant = {torque_constant:g} N.m/A"
+    return (
+        f"the friction without load is {1e3 * fitted:.3g} mN.m at {speed[0]:.3g} rad/s of the joint, "
+        f"{fitted / expected:.2g} times that of the start file; check {check}, and the drive"
+    )
+
+
+def doubt_about_gravity(samples: Samples) -> str | None:
+    """Doubt that the column gravity is gravity, as text; None if it is a function of the angle.
+
+    A torque that depends on acceleration or on the sense of the motion is a measured torque.
+    """
+    rows = np.flatnonzero(samples.is_dynamic & np.isfinite(samples.gravity_torque) & np.isfinite(samples.q))
+    if samples.has_sensor or rows.size < 10 * (2 * GRAVITY_HARMONICS + 3):
+        return None
+    angle, gravity = samples.q[rows], samples.gravity_torque[rows]
+    waves = [f(n * angle) for n in range(1, GRAVITY_HARMONICS + 1) for f in (np.cos, np.sin)]
+    of_angle = np.stack([np.ones(rows.size), *waves], axis=1)
+    motion = np.stack([samples.ddq[rows], np.sign(samples.dq[rows])], axis=1)
+    without, remaining = (
+        _residual(np.concatenate(terms, axis=1), gravity) for terms in ([of_angle], [of_angle, motion])
+    )
+    size, left = float(np.linalg.norm(without)), float(np.linalg.norm(remaining))
+    if size <= MIN_GRAVITY_RESIDUAL * float(np.linalg.norm(gravity - gravity.mean())):
+        return None
+    if size**2 - left**2 < MAX_MOTION_SHARE * size**2:
+        return None
+    return (
+        "the column gravity depends on acceleration or sense of the motion, as a measured torque does; "
+        "expected the torque that holds the arm still; a measured torque at the joint is link_torque"
+    )
+
+
+def _residual(design_matrix: Array, values: Array) -> Array:
+    """Residual (n) of a linear least-squares fit."""
+    return np.asarray(values - design_matrix @ np.linalg.lstsq(design_matrix, values)[0])
