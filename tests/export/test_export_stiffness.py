@@ -282,6 +282,7 @@ def test_comment_states_frame_point_and_state(tmp_path, capsys, monkeypatch):
             "--node-1 has no effect for springs of the interface",
         ),
         ("nastran springs --preload 9e3 --node-2 0 0", "argument --node-2: expected 3 arguments"),
+        ("nastran springs --node-2 0 nan 0", "--node-2 = [0.0, nan, 0.0]: expected three finite numbers"),
         ("nastran springs --preload -5", "preload = -5 N per bolt with moment = 0 N.m is outside the law"),
         ("nastran springs --preload 9e3 --error 0.1", "--error has no effect for springs"),
         ("nastran contact", "nastran contact cannot be written; nastran has springs"),
@@ -317,6 +318,22 @@ class TestElasticJoint:
         size = np.sqrt(np.diag(matrix))
         # microslip: the secant of a step of 0.1 nm is a share of less than 1e-4 below the stick stiffness
         np.testing.assert_allclose(slope / np.outer(size, size), matrix / np.outer(size, size), atol=2e-4)
+
+    @needs("CalculiX")
+    def test_calculix_moves_by_the_compliance_of_the_joint(self, elastic_joint, tmp_path):
+        positions = np.array([[0.0, 0.0, -0.01], [0.0, 0.0, 0.01]])  # on the outer faces of the plates
+        words = ["export", "calculix", "springs", "--params", str(elastic_joint / "joint.toml")]
+        words += ["--node-1", "0", "0", "-10", "--node-2", "0", "0", "10", "--units", "mm-N-MPa-t"]
+        out = tmp_path / "joint.inp"
+        assert cli.main([*words, "--first", str(FIRST), "--out", str(out)]) == 0
+        (tmp_path / "loaded.inp").write_text(DECK.format(*range(FIRST, FIRST + 4), LOAD))
+        moved = calculix.run_deck(tmp_path / "loaded.inp")
+        file = load_parameter_file(elastic_joint / "joint.toml")
+        H = BoltedJointSpring.for_joint(file.values).tangent_stiffness(15e3)
+        compliance = np.linalg.inv(H)[:6, :6]  # of the motion, with the modes in equilibrium
+        expected = expected_motion(np.linalg.inv(compliance), positions, "z")
+        found = np.concatenate([moved[FIRST + 1], moved[FIRST + 3]])
+        np.testing.assert_allclose(found, expected, rtol=5e-6)
 
     def test_interface_only_on_request(self, elastic_joint, tmp_path, capsys):
         words = ["export", "abaqus", "springs", "--params", str(elastic_joint / "joint.toml")]

@@ -99,6 +99,34 @@ def test_command_reads_a_matrix(capsys):
     assert 1e-6 < found["roughness"]["h"] < 3e-6
 
 
+def new_joint(*words):
+    """Words of a bolted joint whose faces are the scan VR."""
+    plate = "--plate 80x40 --bolts 2xM10 --at 40x0 --grip 25 --sides rigid --material steel --preload 20e3"
+    return ("new", "bolted-joint", *plate.split(), "--surface", str(VR), *words)
+
+
+@pytest.mark.slow
+def test_new_reads_a_matrix(tmp_path, capsys):
+    out = tmp_path / "joint.toml"
+    assert cli.main([*new_joint(*VR_OPTIONS), "--out", str(out), "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert cli.main(["surface", str(VR), *VR_OPTIONS, "--side", "both", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert made["parameters"]["h"] == pytest.approx(found["roughness"]["h"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("--unit", "mm"), "states no spacing of its points; state it, e.g. 5um (--spacing)"),
+        (VR_OPTIONS[:4], "state the number that marks a missing point (--missing)"),
+        ((*VR_OPTIONS[:4], "--missing", "none"), "--missing = 'none' is not a number; expected a number"),
+    ],
+)
+def test_refusals_of_new(tmp_path, capsys, words, says):
+    assert says in refused_line(capsys, *new_joint(*words), "--out", tmp_path / "joint.toml")
+
+
 @pytest.mark.parametrize(
     ("file", "options", "says"),
     [

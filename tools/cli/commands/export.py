@@ -66,14 +66,22 @@ def add_command(command_parsers: SubParsers) -> None:
         default=with_springs[0],
         help=f"joint with its default parameters (default: {with_springs[0]})",
     )
+    complete = {
+        name
+        for joint in exports.find_joints_with_export("stiffness")
+        for name in exports.load_exports(joint).working_point
+    }
     for name, texts in _working_point_meanings().items():
-        declare_argument(export, format_option_flag(name), float, "; ".join(texts))
+        if name in complete:
+            texts = [*texts, "default of a complete joint: that of --params"]
+        text = "; ".join(texts)
+        declare_argument(export, format_option_flag(name), float, text)
     text = "springs: the interface alone between node pairs, for your own model of members and bolts"
     export.add_argument("--interface", action="store_true", default=None, help=text)
     for side in (1, 2):
         text = f"springs of the complete joint: position of the node of side {side} from the centroid of the "
         text += "contact, along the axes and in the units of your model (default: 0 0 0)"
-        declare_argument(export, f"--node-{side}", float, text, "V", nargs=3)
+        export.add_argument(f"--node-{side}", type=float, nargs=3, metavar=("X", "Y", "Z"), help=text)
     text = "springs: your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a column "
     declare_argument(export, "--nodes", Path, text + "pressure [MPa] replaces the working point", "CSV")
     declare_argument(export, "--first", int, "springs: first free number for elements and nodes (default: 1)")
@@ -213,6 +221,11 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
             assert available.working_point_class is not None
             values = {name: parameter_file.start_value(name) for name in available.working_point}
             state = available.working_point_class(**values)
+        for name in ("node_1", "node_2"):
+            if not np.all(np.isfinite(getattr(args, name) or _MODEL_ORIGIN)):
+                raise ValueError(
+                    f"{format_option_flag(name)} = {getattr(args, name)}: expected three finite numbers"
+                )
         nodes = np.array([args.node_1 or _MODEL_ORIGIN, args.node_2 or _MODEL_ORIGIN])
         placing = Placement(units, args.normal or "z", args.first or 1, args.first_set or 1)
         return writing.export_stiffness(args.form, parameter_file, state, nodes, placing)

@@ -15,9 +15,10 @@ from ...common.options import Option, format_option_flag
 from .. import fractal
 from ..catalogue import SourcedNumber
 from ..surfaces import form, reading
+from ..surfaces.scan_text import parse_spacing
 from .part import DrawingOptions, ParameterSheet
 from .quantities import StatedNumber, parse_quantity
-from .reading import expand_to_sides
+from .reading import expand_to_sides, parse_number
 from .tables import TableRow, find_row
 
 FACE_OPTIONS = (
@@ -45,6 +46,13 @@ FACE_OPTIONS = (
     ),
     Option("surface", "scan of both sides, or of each side", "SCAN", is_list=True),
     Option("unit", "length unit of scans that state none: m, mm, um, nm", "UNIT"),
+    Option(
+        "spacing",
+        "spacing of the points of scans that state none, e.g. 5um; or two, along x and y",
+        "LENGTH",
+        is_list=True,
+    ),
+    Option("missing", "number that marks a missing point of scans, in the unit of their heights"),
     Option("longest_wave", "longest wavelength of the roughness [mm] (default: the cut-off of its Ra)"),
     Option("hardness", "hardness of the softer side [MPa], or as in 160HB, 180HV (default: of the material)"),
     Option("mu", "coefficient of friction [1], or its range as in 0.1..0.3 (default: 0.15, 0.1 to 0.3)"),
@@ -220,8 +228,8 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
     texts = expand_to_sides(name, options[name])
     assert texts is not None  # `heights` has set options only
     if name == "surface":
-        first = _face_from_scan(texts[0], options["unit"])
-        return first, first if texts[1] == texts[0] else _face_from_scan(texts[1], options["unit"])
+        first = _face_from_scan(texts[0], options)
+        return first, first if texts[1] == texts[0] else _face_from_scan(texts[1], options)
     rows = (
         (find_row("finishes", finishes[0]), find_row("finishes", finishes[1])) if finishes else (None, None)
     )
@@ -272,8 +280,16 @@ def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | 
     return Face(Rq, Rq_low, Rq_high, Rz, slope, hurst, _cut_off_wavelength(Ra), text, {key: height.value})
 
 
-def _face_from_scan(path: str, unit: str | None) -> Face:
-    prepared = form.prepare_scan(reading.read_heights(Path(path), unit))
+def _face_from_scan(path: str, options: DrawingOptions) -> Face:
+    """Roughness of a scan; options: unit, spacing and missing value of files that do not state them."""
+    spacing, missing = options["spacing"], options["missing"]
+    heights = reading.read_heights(
+        Path(path),
+        options["unit"],
+        spacing=parse_spacing(spacing) if spacing else None,
+        missing_value=None if missing is None else parse_number("missing", missing, "1", "1", None),
+    )
+    prepared = form.prepare_scan(heights)
     longest = form.default_longest_wave(prepared.filled_heights)
     scan = form.scan_roughness(prepared.heights_with_gaps, prepared.filled_heights, longest)
     source = f"scan {Path(path).name}"
