@@ -146,7 +146,7 @@ def default_joint(law: str) -> str:
 
 
 def load_law_file(path: Path, law: str) -> ParameterFile:
-    """Load a parameter file of a joint that has the law.
+    """Load a parameter file of a joint whose surfaces have the interface law `law`.
 
     Raises ValueError for a file of another joint, or if the law of the file is not an interface law.
     """

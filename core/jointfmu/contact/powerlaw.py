@@ -240,7 +240,7 @@ class SpotDistribution:
 
     @property
     def stiffness_onset_log_area(self) -> Number:
-        """Log-area [1] of the largest spot up to which all spots are plastic and the stiffness is zero."""
+        """Log-area [1] of the largest spot at which stiffness begins: below, all spots are plastic."""
         if self.onset_log_area is not None:
             return self.onset_log_area
         return reduce(np.minimum, (term.lower_log_area for term in self.regime_terms["normal"]))

@@ -181,7 +181,7 @@ def _select_section(sections: Iterable[str], prefix: str, parameter_names: Colle
 
 
 def _section_name(group_field: Field[object], group_value: object) -> str:
-    """Section name of the alternative of a group that a value belongs to, by the class of the value."""
+    """Name of the file section of a value: its class says which alternative of the group it is."""
     alternatives = group_field.metadata["alternatives"].items()
     return next(
         (name for name, cls in alternatives if isinstance(group_value, cls)), name_in_file(group_field)

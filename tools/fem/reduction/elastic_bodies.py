@@ -213,32 +213,35 @@ def _rigid_opening(position: Array) -> Array:
 
 
 def _match_stiffness(
-    reduced_displacement: Array,
+    reduced_modal_displacement: Array,
     reduced_rigid_displacement: Array,
     reduced_stiffness: Array,
     full_rigid_displacement: Array,
-    full_displacement: Array,
+    full_modal_displacement: Array,
     full_stiffness: Array,
 ) -> Array:
-    """Correct the displacements (n, k) of n springs by k modes: same stiffness as the full set of q springs.
+    """Corrected modal displacements (n, k) of a reduced set of n springs, for k modes.
 
-    reduced_displacement : (n, k) mean displacement of each spring of the reduced set by the modes
+    With them, the reduced set has the same modal stiffness, and the same coupling of modes and rigid-body
+    motions, as the full set of q springs.
+
+    reduced_modal_displacement : (n, k) mean displacement of each spring of the reduced set by the modes
     reduced_rigid_displacement : (n, 3) displacement of the reduced set by rigid-body motions
     reduced_stiffness : (n) [N/m] of the reduced set
     full_rigid_displacement : (q, 3) displacement of all springs by rigid-body motions
-    full_displacement : (q, k) displacement of all springs by the modes
+    full_modal_displacement : (q, k) displacement of all springs by the modes
     full_stiffness : (q) [N/m] of all springs
     """
     few_rigid_part = np.linalg.solve(
         reduced_rigid_displacement.T @ (reduced_stiffness[:, None] * reduced_rigid_displacement),
-        reduced_rigid_displacement.T @ (reduced_stiffness[:, None] * reduced_displacement),
+        reduced_rigid_displacement.T @ (reduced_stiffness[:, None] * reduced_modal_displacement),
     )
     all_rigid_part = np.linalg.solve(
         full_rigid_displacement.T @ (full_stiffness[:, None] * full_rigid_displacement),
-        full_rigid_displacement.T @ (full_stiffness[:, None] * full_displacement),
+        full_rigid_displacement.T @ (full_stiffness[:, None] * full_modal_displacement),
     )
-    few_bending = reduced_displacement - reduced_rigid_displacement @ few_rigid_part
-    all_bending = full_displacement - full_rigid_displacement @ all_rigid_part
+    few_bending = reduced_modal_displacement - reduced_rigid_displacement @ few_rigid_part
+    all_bending = full_modal_displacement - full_rigid_displacement @ all_rigid_part
     target = all_bending.T @ (full_stiffness[:, None] * all_bending)
     target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
     ratio, vectors = la.eigh(few_bending.T @ (reduced_stiffness[:, None] * few_bending), target)

@@ -258,9 +258,9 @@ class PatchFit:
         return patch_displacement
 
     def _stiffness_errors(self, patch_displacement: Array) -> tuple[Array, MonotonicFriction]:
-        """Weighted relative errors (w (w + 1) / 2) [1] of the stick stiffness of the patches.
+        """Weighted relative errors [1] of the stick stiffness of the patches: upper triangle (3, 3), flat.
 
-        Returns the errors, and the friction of the sliders in the linear joint.
+        Returns the errors, and the friction of the sliders for unit motions of the joint in full stick.
         """
         _, friction = self.evaluate_sliders(
             self.stick_contact_stiffness.unit_motion_states, patch_displacement
@@ -274,7 +274,7 @@ class PatchFit:
     def _stiffness_jacobian(self, patch_displacement: Array, friction: MonotonicFriction) -> Array:
         """Derivative of the stiffness errors with respect to the patch displacements.
 
-        friction : of the sliders in the linear joint
+        friction : of the sliders for unit motions of the joint in full stick
         """
         force = (
             self.sliders.point_area

@@ -150,7 +150,7 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
     scatter = series.covariance(0.5)
 
     def log_law(law_parameters: Array) -> Array:
-        """ln(value) of the law at all scales, for the parameters (H, log_power, offset)."""
+        """Logarithm of the self-affine law at all scales; parameters (Hurst exponent, log_power, offset)."""
         expected = series.expected_value(law_parameters[0]) * reference ** (-2.0 * law_parameters[0])
         return np.asarray(
             np.log(expected + (law_parameters[2] * expected[0] if offset else 0.0)) + law_parameters[1]

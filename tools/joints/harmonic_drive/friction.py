@@ -336,7 +336,7 @@ def add_friction_estimates(
     text += ", scaled by size and ratio"
 
     def add_estimate(column: str, value: float, *interval_ends: float) -> None:
-        """Add the estimate of a column, unless the drive has this column."""
+        """Add an estimate for a column of the catalogue, unless the catalogue has a value for the drive."""
         interval = min(interval_ends), max(interval_ends)
         numbers.setdefault(column, SourcedNumber(value, "estimate", text, interval=interval))
 

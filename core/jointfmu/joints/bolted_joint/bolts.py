@@ -44,7 +44,7 @@ class BoltSprings:
 
     @classmethod
     def for_joint(cls, joint: AnyBoltedJoint, closure_pressure: float) -> "BoltSprings":
-        """Bolt springs of a joint whose contact closes at the pressure closure_pressure [Pa]."""
+        """Make the bolt springs of a joint; closure_pressure: [Pa] at which its contact touches."""
         position = bolt_positions(joint)
         count = float(joint.n_bolts) / len(position)
         return cls(

@@ -139,7 +139,7 @@ class JointAssembly:
         )
 
     def tangential_displacement(self, relative_displacement: Array, modal_coordinates: Array) -> Array:
-        """Displacement (m, 3) [m] of the patches along x, along y and around their centres."""
+        """Displacement (m, 3) [m] of the patches: along x, along y, and rotation times the patch radius."""
         elastic = (self.modes.patch_displacement @ modal_coordinates).T
         return np.asarray(tangential_displacement(self.contact.patches, relative_displacement) + elastic)
 
@@ -389,9 +389,10 @@ def search_line(
 ) -> tuple[TrialState, bool]:
     """State after a correction (k) [m] of the modal coordinates, and whether it is the full correction.
 
-    If the energy slope r . correction [J] at the end exceeds MAX_ENERGY_SLOPE_RATIO, the correction is
-    shortened by regula falsi, or dropped if J is that of an earlier state. If the initial slope is
-    positive, too, regula falsi has no zero: the correction is shortened to MIN_LENGTH_RATIO.
+    The energy slope [J] is residual . correction. If it exceeds MAX_ENERGY_SLOPE_RATIO times its first value
+    at the end, the correction is shortened by regula falsi, or dropped if the Jacobian was computed at an
+    earlier state. If the first value is positive, too, regula falsi has no zero: the correction is shortened
+    to MIN_LENGTH_RATIO.
     """
     length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
     for shortenings in range(MAX_LINE_SEARCH):

@@ -158,7 +158,7 @@ class FrictionSliders(Sliders):
     def pack_history(
         self, slider_update: SliderUpdate, phi1: ArrayLike, end_friction_limits: Sequence[ArrayLike]
     ) -> Array:
-        """New history variables (..., n) after the path; all zero without dry friction."""
+        """New history variables (..., n) after the rotation of this step; all zero without dry friction."""
         shape = slider_update.dissipated_energy.shape
         if not self.is_active:
             return np.zeros((*shape, HISTORY_LAYOUT.size))

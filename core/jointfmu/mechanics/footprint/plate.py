@@ -105,7 +105,7 @@ class BoltedPlate:
     def equivalent_bolt_rows(self) -> tuple[float, float]:
         """Bolts per row N_b [1] and distance L_a [m] of two rows that are equivalent for a moment about x.
 
-        See `equivalent_bolt_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
+        If all bolts are in one row, N_b is 1 whatever their number, and L_a times the force of a bolt is the
         moment at which the contact starts to open at its edge.
         """
         if has_one_bolt_row(self):
