@@ -244,7 +244,7 @@ def print_over_preload(assembly: Assembly, plot: Path | None) -> None:
     joint = load_default("bolted_joint").values
     states = [(float(p), 0.0) for p in PRELOADS]
     found, even = (
-        box.frequencies(assembly, joint, states, mode_count=1, uniform_pressure=e) for e in (False, True)
+        box.frequencies(assembly, joint, states, mode_count=1, is_pressure_uniform=e) for e in (False, True)
     )
     for preload, f, g in zip(PRELOADS, found[:, 0], even[:, 0], strict=True):
         print(f"{preload / 1e3:5.0f} kN: f1 {f:8.2f} Hz, with uniform pressure {g:8.2f} Hz")
@@ -276,7 +276,7 @@ def identify_lengths(assembly: Assembly) -> Assembly:
 def print_frequencies(assembly: Assembly, plot: Path | None) -> None:
     """Frequencies of an assembly, beside the measured ones."""
     joint = load_default("bolted_joint").values
-    found, even = (box.frequencies(assembly, joint, STATES, uniform_pressure=e) for e in (False, True))
+    found, even = (box.frequencies(assembly, joint, STATES, is_pressure_uniform=e) for e in (False, True))
     print_errors(found, even)
     fine = box.frequencies(assembly, joint, STATES[:1], refinement=1.0)
     print_numbers("9 kN on elements half as long, change [%]", 100 * (fine[0] / found[0] - 1), "8.2f")

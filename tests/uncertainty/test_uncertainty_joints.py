@@ -29,7 +29,7 @@ def sample_of(task, points, i):
     """Columns of sample i, and the parameter set and factor of the load, built with all checks."""
     settings = dict(task.list_runs(points)[i])
     columns = task.evaluator.evaluate(settings)
-    settings.pop(task.load.name, None)
+    settings.pop(task.ramped_input.name, None)
     file = task.evaluator.file
     joint = build_parameter_set(type(file.values), {**file.values_by_name, **settings})
     return columns, joint

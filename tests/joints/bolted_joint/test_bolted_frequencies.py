@@ -343,7 +343,7 @@ def test_identification_finds_the_lengths_of_a_known_box(monkeypatch):
     One step of the least squares must do it: the slopes of all five lengths decide its direction. An even
     pressure of the contact is enough.
     """
-    known_ones, solve = {}, partial(box.frequencies, uniform_pressure=True)
+    known_ones, solve = {}, partial(box.frequencies, is_pressure_uniform=True)
 
     def frequencies(assembly, *arguments, **options):  # the first lengths are asked for twice
         key = repr(assembly)

@@ -10,8 +10,6 @@ from jointfmu.quantity import CheckedParameters, Number, quantity_field
 
 @dataclass(frozen=True, kw_only=True)
 class LinearSpring(CheckedParameters):
-    """A spring that obeys Hooke's law."""
-
     c: float = quantity_field("N/m", "stiffness", gt=0.0)
 
     def motion(self, v: Mapping[str, Number]) -> dict[str, Number]:

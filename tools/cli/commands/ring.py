@@ -85,7 +85,7 @@ def _run_decays(args: argparse.Namespace, joint: Any) -> CommandResult:
     points = decays.simulate_decays(
         joint, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings)
     )
-    body = joint.test
+    body = joint.vibration_test
     for message in dict.fromkeys(text for point in points for text in point.messages):
         print(message, file=sys.stderr)
     heads = {

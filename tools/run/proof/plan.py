@@ -67,7 +67,7 @@ class ExperimentPlan:
                 "variable_kinds": {n: variable_kind(variables[n]) for n in (*inputs, *outputs)},
             }
             if stimuli:
-                for key, left_limit in (("inputs", False), ("inputs_before", True)):
+                for key, left_limit in (("inputs", False), ("inputs_before_jump", True)):
                     values[key] = {n: input_values(variables[n], stimuli, times, left_limit) for n in inputs}
         except ValueError as error:
             return cls(experiment, interface, {}, {}, str(error))

@@ -20,7 +20,7 @@ class ExperimentTask:
     settings  : {variable: start value}
     times     : communication points (n) [s]
     inputs    : {input: values (n)}; at a jump the value after it
-    inputs_before : {input: values (n)}; at a jump the value before it
+    inputs_before_jump : {input: values (n)}; at a jump the value before it
     outputs   : names of the variables to be read
     variable_kinds     : {variable: kind} of inputs and outputs: "real", "integer" or "boolean"
     tolerance : relative tolerance of the solver [1]
