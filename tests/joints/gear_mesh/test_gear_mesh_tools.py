@@ -2,18 +2,20 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.export.exports import require_export
-from jointfmu_tools.joints.gear_mesh.new import InvoluteGearPair
+from jointfmu_tools.joints.gear_mesh.involute import InvoluteGearPair
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import state_problem
 from jointfmu_tools.studies.uncertainty.runs import evaluate_runs
 from test_modelica import EXACT, move, simulate, top
 
+import jointfmu
 from jointfmu.joints.gear_mesh.spring import GearMeshParameters, GearMeshSpring, base_pitch, pairs_in_contact
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
@@ -118,6 +120,107 @@ def test_the_tooth_knows_its_rack_and_its_load():
     assert spur.tooth_stiffness(STEEL, full / 16.0) == pytest.approx(0.5 * loaded)
 
 
+PRINTED = ["--module", "14", "--teeth", "24", "95", "--width", "360", "--torque", "40961"]
+PRINTED += ["--helix-angle", "10", "--dedendum", "1.45"]
+"""Pair of a printed report of a commercial program; the torque is a line load of 667 N/mm."""
+
+
+def test_a_pair_with_profile_shift_is_that_of_a_printed_report(capsys):
+    """Report: contact ratio 1.463, c' 13.83, c_gamma_alpha 18.63 N/(mm um). C_B = 0.875 is assumed."""
+    words = [*PRINTED, "--profile-shift", "0.48", "0.6691", "--centre-distance", "861", *FACES]
+    found = made(capsys, *words)
+    facts = {name: fact["value"] for name, fact in found["facts"].items()}
+    assert facts["contact_ratio"] == pytest.approx(1.463, abs=5e-4)
+    assert facts["c_prime"] / 1e9 == pytest.approx(13.83, abs=5e-3)
+    assert facts["c_gamma_alpha"] / 1e9 == pytest.approx(18.63, abs=5e-3)
+    assert facts["centre_distance"] == pytest.approx(0.861, abs=1e-6)
+    assert facts["c_gamma"] == pytest.approx(0.36 * facts["c_gamma_alpha"])
+    (warning,) = found["warnings"]
+    assert "ISO 6336-1 states the tooth stiffness for x1 >= x2" in warning
+
+
+def test_the_mesh_prints_its_stiffness_in_python():
+    mesh = jointfmu.gear_mesh(
+        module=4, teeth=[29, 45], width=10, torque=150, material="steel", Ra=0.4, profile_shift=[0.5, 0.3]
+    )
+    c_prime = mesh.facts["c_prime"][0] * 1e-9
+    assert f"c_prime = {c_prime:.4g} GPa: " in repr(mesh)
+    assert f"{c_prime:.4g} N/(mm um)" in repr(mesh)
+
+
+def test_the_tooth_stiffness_is_within_the_spread_of_published_formulas(capsys):
+    """Spur pair of an open rotor-dynamics code: mean mesh stiffness 4.10e8 N/m."""
+    words = ["--module", "2", "--teeth", "62", "62", "--width", "20", "--torque", "200", *FACES]
+    assert made(capsys, *words)["facts"]["c_gamma"]["value"] == pytest.approx(4.10e8, rel=0.2)
+
+
+@pytest.mark.parametrize("helix", [0.0, 20.0])
+@pytest.mark.parametrize("shifts", [(0.5, 0.3), (0.4, -0.4), (-0.1, -0.2)])
+def test_wheels_with_profile_shift_mesh_without_backlash(helix, shifts):
+    """At the working pitch circles, the tooth thicknesses of both wheels fill the pitch."""
+    mesh = replace(wheels(helix), profile_shifts=shifts)
+    thickness = 0.0
+    for r, r_b, r_w, z, x in zip(
+        mesh.reference_radii, mesh.base_radii, mesh.working_radii, mesh.tooth_counts, shifts, strict=True
+    ):
+        reference = (0.5 * math.pi + 2.0 * x * math.tan(mesh.pressure_angle)) * 2.0 * r / z
+        angles = math.acos(r_b / r), math.acos(r_b / r_w)
+        thickness += r_w * (reference / r + 2.0 * (math.tan(angles[0]) - angles[0]))
+        thickness -= r_w * 2.0 * (math.tan(angles[1]) - angles[1])
+    assert thickness == pytest.approx(2.0 * math.pi * mesh.working_radii[0] / 29)
+    assert mesh.tip_clearances == pytest.approx((0.2 * 4e-3, 0.2 * 4e-3))
+
+
+def test_the_path_of_contact_lies_between_the_tip_circles():
+    """Points on the common tangent of the base circles, which are inside both tip circles."""
+    mesh = replace(wheels(), profile_shifts=(0.5, 0.3), stated_tip_radii=(0.0635, 0.0948))
+    tangent = mesh.centre_distance * math.sin(mesh.working_angle)
+    along = (np.arange(1_000_000) + 0.5) / 1_000_000 * tangent
+    inside = np.hypot(along, mesh.base_radii[0]) < 0.0635
+    inside &= np.hypot(tangent - along, mesh.base_radii[1]) < 0.0948
+    pitch = 2.0 * math.pi * mesh.base_radii[0] / 29
+    assert mesh.contact_ratio == pytest.approx(np.count_nonzero(inside) * tangent * 1e-6 / pitch, abs=1e-5)
+
+
+def test_a_tooth_is_as_thick_at_its_tip_as_its_flanks_are_apart():
+    """The polar angle of the involute between reference and tip circle is that of points on the curve."""
+    mesh = replace(wheels(), profile_shifts=(0.8, 0.0))
+    r, r_b, r_a = mesh.reference_radii[0], mesh.base_radii[0], mesh.tip_radii[0]
+    roll = np.linspace(0.0, 1.0, 400_001)
+    x, y = r_b * (np.cos(roll) + roll * np.sin(roll)), r_b * (np.sin(roll) - roll * np.cos(roll))
+    polar = np.interp([r, r_a], np.hypot(x, y), np.arctan2(y, x))
+    half = (0.5 * math.pi + 1.6 * math.tan(mesh.pressure_angle)) / 29 - (polar[1] - polar[0])
+    assert mesh.tip_thicknesses[0] == pytest.approx(2.0 * r_a * half, rel=1e-6)
+
+
+def test_profile_shift_of_zero_changes_nothing(capsys):
+    base = made(capsys, *DRAWING, *FACES)
+    words = ["--profile-shift", "0", "0", "--centre-distance", "148", "--tip-diameter", "124", "188"]
+    stated = made(capsys, *DRAWING, *FACES, *words, "--dedendum", "1.2")
+    assert stated["parameters"] == pytest.approx(base["parameters"], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("words", "warning"),
+    [
+        (["--profile-shift", "0.5", "0.3"], None),
+        (["--teeth", "12", "45"], "wheel 1 are undercut: their profile shift 0 is below 0.298"),
+        (["--teeth", "12", "45", "--profile-shift", "0.5", "0"], None),
+        (["--teeth", "16", "45", "--profile-shift", "1.03", "0"], "at the tip; usual are at least 0.2"),
+        (
+            ["--teeth", "20", "200", "--tip-diameter", "88", "814", "--dedendum", "2"],
+            "touch wheel 1 below its base",
+        ),
+        (["--profile-shift", "0.1", "0.2"], "for x1 >= x2 and -0.5 <= x1 + x2 <= 2; here x1 = 0.1, x2 = 0.2"),
+        (["--profile-shift", "-0.3", "-0.3"], "for x1 >= x2 and -0.5 <= x1 + x2 <= 2"),
+    ],
+)
+def test_doubtful_teeth_are_warned_of(capsys, words, warning):
+    found = made(capsys, *DRAWING, *FACES, *words)["warnings"]
+    assert len(found) == (warning is not None)
+    assert all(warning in line for line in found)
+
+
 @pytest.mark.parametrize("helix", ["0", "20"])
 def test_a_mesh_from_a_drawing_returns_the_energy_of_a_cycle(capsys, tmp_path, helix):
     """Work of a closed path of both wheels by the trapezoidal rule, whose error is below 1e-6 here."""
@@ -154,6 +257,25 @@ def test_options(capsys):
         (["--pressure-angle", "50"], "--pressure-angle = 50 deg is outside (0, 45)"),
         (["--helix-angle", "-5"], "--helix-angle = -5 deg is outside [0, 60)"),
         (["--helix-angle", "55"], "contact_ratio"),
+        (["--profile-shift", "0.3"], "--profile-shift has 1 values, expected one of each wheel"),
+        (["--profile-shift", "2.4", "0"], "--profile-shift = '2.4' is outside [-2, 2]"),
+        (["--profile-shift", "-2", "-2", "--teeth", "9", "9"], "the wheels mesh at no centre distance"),
+        (
+            ["--teeth", "20", "45", "--profile-shift", "1.9", "0"],
+            "of wheel 1: the teeth end in a point",
+        ),
+        (
+            ["--profile-shift", "0.3", "0.2", "--centre-distance", "149"],
+            "--centre-distance = 149 mm, but --profile-shift 0.3 0.2 gives 149.9108 mm; the stated distance "
+            "needs shifts with the sum 0.2562",
+        ),
+        (["--centre-distance", "130"], "--profile-shift 0 0 gives 148 mm"),
+        (["--tip-diameter", "124"], "--tip-diameter has 1 values, expected one of each wheel"),
+        (["--tip-diameter", "105", "188"], "105 mm of wheel 1 is not above the base diameter 109.004 mm"),
+        (["--tip-diameter", "124", "169"], "169 mm of wheel 2 is not above the base diameter 169.145 mm"),
+        (["--tip-diameter", "126", "188"], "126 mm of wheel 1 reaches 0.2 mm into the root of wheel 2"),
+        (["--tip-diameter", "118", "182"], "below 1: the teeth lose contact"),
+        (["--dedendum", "5"], "--dedendum = '5' is outside (1, 2]"),
         (["--torque", "nan"], "--torque = 'nan' is not a number"),
     ],
 )

@@ -182,6 +182,12 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "helix_angle": DrawingQuantity(
         "helix angle", "deg", "rad", (1.0, math.inf), other_units=("rad",), allows_zero=True, has_sign=True
     ),
+    "profile_shift": DrawingQuantity(
+        "profile shift coefficient", "1", "1", limits=(0.0, 2.0), allows_zero=True, has_sign=True
+    ),
+    "centre_distance": _length("centre distance", 1.0, 2e4),
+    "tip_diameter": _length("tip diameter of a wheel", 0.5, 2e4),
+    "dedendum": DrawingQuantity("dedendum over the module", "1", "1", limits=(1.0, 2.0)),
     "backlash": DrawingQuantity(
         "backlash", "um", "m", (0.5, 2e4), limits=(0.0, 1e5), other_units=("m", "mm", "nm"), allows_range=True
     ),
