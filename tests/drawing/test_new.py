@@ -17,6 +17,7 @@ from jointfmu_tools.inputs.drawing.tables import (
     read_property_classes,
     read_table,
     read_threads,
+    read_washers,
 )
 
 from jointfmu.joints import KINDS
@@ -144,6 +145,12 @@ def test_bolts_grow():
     for thread in sizes:
         assert thread.pitch < thread.nominal_diameter < thread.hole < thread.hexagon < thread.socket
         assert thread.nominal_diameter == pytest.approx(float(thread.name[1:]) * 1e-3)
+    washers = [read_washers()[thread.name] for thread in sizes]
+    for column in ("hole_diameter", "outer_diameter", "thickness"):
+        values = [getattr(washer, column) for washer in washers]
+        assert values == sorted(values)
+    for thread, washer in zip(sizes, washers, strict=True):
+        assert thread.nominal_diameter < washer.hole_diameter < thread.socket < washer.outer_diameter
     for strength in read_property_classes().values():
         assert all(p < y for p, y in zip(strength["proof"], strength["yield"], strict=True))
 

@@ -117,8 +117,10 @@ def _to_command_line_value(option: Option, option_value: Any) -> object:
     """
     if option.is_flag:
         return bool(option_value)
-    if option_value is None:
+    if option_value is None or (option.lone_value and option_value is False):
         return None
+    if option.lone_value and option_value is True:
+        return option.lone_value
     values = option_value.tolist() if isinstance(option_value, np.ndarray) else option_value
     texts = [_format_value(v) for v in (values if isinstance(values, list | tuple) else [values])]
     if option.separator and not (

@@ -17,6 +17,7 @@ class Option:
     is_list      : takes several values
     separator    : character between the numbers of one value, for example the x of 200x100
     is_flag      : takes no value
+    lone_value   : value if the user states the option without a value; empty: the value is required
     is_required  : the user must set the option
     is_number    : the value is a number in the unit of `help_text`
     default_unit : unit of a number that the user states without a unit
@@ -33,6 +34,7 @@ class Option:
     is_list: bool = False
     separator: str = ""
     is_flag: bool = False
+    lone_value: str = ""
     is_required: bool = False
     is_number: bool = False
     default_unit: str = ""

@@ -19,6 +19,7 @@ from jointfmu_tools.inputs.drawing.tables import (
     read_property_classes,
     read_threads,
     read_tightening_methods,
+    read_washers,
 )
 from jointfmu_tools.joints.bolted_joint.gross_slip import friction_results, preload_results
 from jointfmu_tools.joints.bolted_joint.new import TIGHTENING_METHODS, layout, plate_finite_elements
@@ -323,6 +324,123 @@ def test_a_preload_range_reaches_report_and_study(capsys, tmp_path):
         state_problem(bare, {}, None, 3)
 
 
+# Washers
+
+
+ANALYSED = ["--plate", "30x30", "--bolts", "M8", "--grip", "3", "10", "--hole", "8.4", "--preload", "13e3"]
+ANALYSED += ["--material", "titanium", "steel", "--Ra", "0.8"]
+"""An M8 bolt through 3 mm of titanium and 10 mm of steel, in a solid of 30 mm."""
+
+
+def test_load_factor_of_a_published_analysis(capsys):
+    """Analysis after ECSS-E-HB-32-23A with a washer 1.5 mm thick under the head: load factor 0.181."""
+    assert facts_of(capsys, *ANALYSED)["load_factor"] > 1.05 * 0.181
+    found = facts_of(capsys, *ANALYSED, "--washers", "16x1.5")
+    assert found["load_factor"] == pytest.approx(0.181, rel=0.01)
+    thread = read_threads()["M8"]
+    shank = vdi2230.shank_length(thread, 14.5e-3, "hexagon", is_tapped=False)
+    bolt = 1.0 / vdi2230.bolt_compliance(thread, 14.5e-3, shank, "hexagon")
+    assert bolt == pytest.approx(3.001e8, rel=0.02)  # with one washer, as in the analysis
+
+
+@pytest.mark.parametrize("stated", ["24x2.5", "24mmx2500um", "ISO 7089", "iso7089"])
+def test_washers_of_the_standard_are_those_of_stated_size(capsys, stated):
+    alone = facts_of(capsys, *PLATE, *FACES, *LOAD, "--washers", "--sides", "rigid")
+    found = facts_of(capsys, *PLATE, *FACES, *LOAD, "--sides", "rigid", "--washers", stated)
+    for name in ("bolt_stiffness", "member_stiffness", "washer_stiffness", "embedding", "slip_force"):
+        assert found[name] == pytest.approx(alone[name], rel=1e-12), name
+
+
+def test_washers_are_clamped_parts_with_the_cone_of_the_head(capsys):
+    """The cone of VDI 2230 from the head, through a washer, both plates and a washer; the hole of the washers
+    is made that of the plates here."""
+    words = [*PLATE, *FACES, *LOAD, "--hole", "13"]
+    found, base = facts_of(capsys, *words, "--washers"), facts_of(capsys, *words)
+    layers = [vdi2230.ClampedPart(t, E) for t, E in ((2.5e-3, 205e9), (0.04, 210e9), (2.5e-3, 205e9))]
+    slope = vdi2230.cone_slope(0.045, 16.63e-3, 0.04, is_tapped=False)
+    delta_P = vdi2230.members_compliance(layers, 16.63e-3, 0.013, 0.04, slope, is_tapped=False)
+    assert 1.0 / found["member_stiffness"] == pytest.approx(delta_P, rel=1e-9)
+    thread = read_threads()["M12"]
+    shank = vdi2230.shank_length(thread, 0.045, "hexagon", is_tapped=False)
+    delta_S = vdi2230.bolt_compliance(thread, 0.045, shank, "hexagon")
+    assert found["load_factor"] == pytest.approx(delta_P / (delta_S + delta_P), rel=1e-9)
+    series = delta_S + 1.0 / found["washer_stiffness"]
+    assert found["bolt_stiffness"] == pytest.approx(1.0 / series, rel=1e-9)
+    assert found["embedding"] == pytest.approx(12.5e-6 / (delta_S + delta_P), rel=1e-9)  # 9.5 um + 2 x 1.5 um
+    assert found["plate.cone_diameter"] > base["plate.cone_diameter"]
+    assert found["interface_K_zz"] == pytest.approx(base["interface_K_zz"], rel=0.05)
+
+
+def test_a_washer_limits_the_cone(capsys):
+    """A washer 6 mm thick: the cone from the head reaches its outer diameter of 18 mm before the plate."""
+    narrow = vdi2230.washer_compliance(16.63e-3, replace(read_washers()["M12"], outer_diameter=18e-3,
+                                                         thickness=6e-3), 0.5)  # fmt: skip
+    z = (np.arange(100_000) + 0.5) * 6e-3 / 100_000
+    area = 0.25 * np.pi * (np.minimum(16.63e-3 + z, 18e-3) ** 2 - 13e-3**2)
+    assert narrow == pytest.approx(np.mean(6e-3 / (205e9 * area)), rel=1e-6)
+    found = facts_of(capsys, *PLATE, *FACES, *LOAD, "--washers", "18x6")
+    slope = vdi2230.cone_slope(0.052, 16.63e-3, 0.04, is_tapped=False)
+    assert found["plate.cone_diameter"] == pytest.approx(18e-3 + 2.0 * 20e-3 * slope)
+
+
+def test_finite_elements_and_file_have_the_washers(capsys, tmp_path, monkeypatch):
+    """The bearing face is the cone below the washer, at most D; the washers are in series with the bolt."""
+    seats = []
+
+    def watched(file, plates, *arguments):
+        seats.append(plates.bearing_diameter)
+        return plate_finite_elements.NewJoint(file, {}, [])
+
+    monkeypatch.setattr(plate_finite_elements, "compute_joint_or_warning", watched)
+    path = tmp_path / "plate.toml"
+    for words in ([], ["--washers"], ["--washers", "18x2.5"]):
+        facts = made(capsys, *PLATE, *FACES, *LOAD, *words, path=path)["facts"]
+    slope = vdi2230.cone_slope(0.045, 16.63e-3, 0.04, is_tapped=False)
+    assert seats == pytest.approx([16.63e-3, 16.63e-3 + 2.0 * 2.5e-3 * slope, 18e-3])
+    file = load_parameter_file(path)
+    assert file.values.bolt_stiffness == facts["bolt_stiffness"]["value"]
+    assert "5 mm of washers, in series with two washers of 18 x 2.5 mm" in file.sources["bolt_stiffness"]
+    assert "three interfaces (plates, two washers)" in file.sources["embedding"]
+    assert (
+        "cone from d_w = 16.63 mm through 2.5 mm of washer and 20 mm" in file.sources["plate.cone_diameter"]
+    )
+    assert "# washer_stiffness = " in path.read_text()
+
+
+def test_a_tapped_thread_has_one_washer(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    both = facts_of(capsys, *PLATE, *FACES, *LOAD, "--washers")
+    one = facts_of(capsys, *PLATE, *FACES, *LOAD, "--tapped", "--washers")
+    assert one["washer_stiffness"] == pytest.approx(2.0 * both["washer_stiffness"], rel=0.1)
+    made(capsys, *PLATE, *FACES, *LOAD, "--tapped", "--washers", path=path)
+    source = load_parameter_file(path).sources["embedding"]
+    assert "8.5 um (Table 5: thread, head, two interfaces (plates, washer)" in source
+
+
+def test_the_torque_turns_the_head_on_the_washer(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, "--washers", "30x4", path=path)
+    assert "D_Km = 14.81 mm" in load_parameter_file(path).sources["inputs.preload"]  # (16.63 + 13)/2
+
+
+def test_python_takes_washers(capsys):
+    sizes = {
+        "plate": (200, 100),
+        "bolts": "4xM12",
+        "at": (160, 60),
+        "grip": 40,
+        "material": "steel",
+        "Ra": 0.8,
+    }
+    sizes |= {"preload": 30e3, "sides": "rigid"}
+    none = jointfmu.bolted_joint(**sizes)
+    standard = jointfmu.bolted_joint(**sizes, washers=True)
+    stated = jointfmu.bolted_joint(**sizes, washers=(24, 2.5))
+    assert standard.file.values == stated.file.values
+    assert jointfmu.bolted_joint(**sizes, washers=False).file == none.file
+    assert standard.file.values.bolt_stiffness < none.file.values.bolt_stiffness
+
+
 # Layouts
 
 
@@ -542,6 +660,15 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--plate", "0.2x0.15", "--at", "0.16x0.11"], "if it is in m, write 0.2m (200 mm)"),
         (["--at", "160,5x60"], "has x and comma; write LxW with decimal points"),
         (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, 96] mm of M12"),
+        (["--washers", "16x2.5"], "--washers: outer diameter = 16 mm is outside (16.63, 96] mm of M12"),
+        (["--washers", "24x13"], "--washers: thickness = 13 mm is outside (0, 12] mm of M12"),
+        (
+            ["--washers", "62x4"],
+            "outer diameter = 62 mm is outside (0, 60] mm: washers of neighbouring bolts",
+        ),
+        (["--washers", "24"], "--washers = '24' has 1 numbers, expected 2"),
+        (["--washers", "0.03x0.004"], "if it is in m, write 0.03m (30 mm)"),
+        (["--washers", "--hole", "20"], "--hole = 20 mm is outside (12, 19."),
         (["--preload", "-1"], "--preload = '-1' is outside (0, inf)"),
         (["--torque", "84", "--preload", "43e3"], "--torque beside --preload: state one of them"),
         (["--head-friction", "0.1"], "--head-friction has no effect without --torque"),

@@ -15,6 +15,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.cli.commands.assembly import replace_assembly_parameters
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.inputs.drawing import vdi2230
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
@@ -342,6 +343,23 @@ def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine_elements):
     assert facts["joint_load_factor"] == pytest.approx(facts["load_factor"], rel=0.15)
     assert facts["opening_load"] == pytest.approx(60e3 / (1.0 - facts["joint_load_factor"]))
     assert facts["interface_share"] < 0.05
+
+
+@needs("gmsh")
+@pytest.mark.slow
+def test_washers_widen_the_bearing_face_of_the_finite_elements(capsys):
+    """Members between wider faces are stiffer, and a longer bolt in series with washers is less stiff."""
+    bare, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
+    washers, found = made(capsys, *M16, *LOAD, "--attached", "heads", "--washers")
+    slope = vdi2230.cone_slope(0.046, 22.49e-3, 0.08, is_tapped=False)
+    assert found["parameters"]["bodies.head_diameter"] == pytest.approx(22.49e-3 + 2.0 * 3e-3 * slope)
+    assert washers["bolt_stiffness"] < bare["bolt_stiffness"]
+    assert washers["members_K_zz"] > 1.05 * bare["members_K_zz"]
+    assert washers["joint_load_factor"] < 0.9 * bare["joint_load_factor"]
+    # the load of the finite elements enters below the washers, that of VDI 2230 above them
+    below = washers["joint_load_factor"]
+    washer_share = washers["bolt_stiffness"] / washers["washer_stiffness"]
+    assert below + (1.0 - below) * washer_share == pytest.approx(washers["load_factor"], rel=0.15)
 
 
 @needs("gmsh")

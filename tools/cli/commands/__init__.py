@@ -22,7 +22,8 @@ def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
         return
     parser.add_argument(
         format_option_flag(option.name),
-        nargs="+" if option.is_list else None,
+        nargs="+" if option.is_list else "?" if option.lone_value else None,
+        const=option.lone_value or None,
         type=float if option.is_number else str,
         default=option.default,
         choices=option.choices or None,

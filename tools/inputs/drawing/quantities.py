@@ -132,6 +132,7 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "thickness": _length("thickness of a plate", 0.5, 3e3),
     "hole": _length("diameter of a hole", 2.0, 150.0, limit=150.0),
     "bearing": _length("diameter of a bearing surface", 3.0, 400.0, limit=400.0),
+    "washers": _length("diameter or thickness of a washer", 0.2, 400.0, limit=400.0),
     "preload": DrawingQuantity(
         "preload of a bolt", "N", "N", (100.0, 3e6), other_units=("kN",), allows_range=True
     ),

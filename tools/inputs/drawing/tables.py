@@ -136,6 +136,29 @@ def find_thread(name: str, pitch: float | None = None) -> Thread:
 
 
 @dataclass(frozen=True, slots=True)
+class Washer:
+    """Sizes of a plain washer [m]: diameter of its hole, outer diameter, thickness."""
+
+    hole_diameter: float
+    outer_diameter: float
+    thickness: float
+
+
+@cache
+def read_washers() -> dict[str, Washer]:
+    """Read the washers of ISO 7089: {name of the coarse thread: washer}."""
+    stated = dict(_read_document("bolts")[1]["washers"])
+    size = conversion_factor(stated.pop("unit"), "m")
+    stated.pop("source")
+    return {name: Washer(*(value * size for value in row)) for name, row in stated.items()}
+
+
+def find_washer(thread: Thread) -> Washer:
+    """Find the washer of ISO 7089 for a thread, of coarse or fine pitch."""
+    return read_washers()[thread.name.split("x")[0]]
+
+
+@dataclass(frozen=True, slots=True)
 class TighteningMethod:
     """Method of tightening a bolt.
 

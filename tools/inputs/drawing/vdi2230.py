@@ -11,10 +11,12 @@ from itertools import pairwise
 import numpy as np
 
 from . import tables
-from .tables import Thread, property_class_strength, read_threads
+from .tables import Thread, Washer, property_class_strength, read_threads
 
 E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
+E_WASHER = E_BOLT
+"""Young's modulus [Pa] of a steel washer."""
 YIELD_UTILISATION = 0.9
 """Share of the yield strength that is used during tightening [1]."""
 DEFAULT_FRICTION, FRICTION_INTERVAL = 0.12, (0.08, 0.16)
@@ -81,6 +83,14 @@ def cone_diameter(depth_below_head: float, bearing_diameter: float, tan_phi: flo
     return bearing_diameter + 2.0 * depth_below_head * tan_phi
 
 
+def washer_cone_diameter(bearing_diameter: float, washer: Washer, tan_phi: float) -> float:
+    """Diameter [m] of the deformation cone below a washer, at most the outer diameter of the washer.
+
+    bearing_diameter : outer diameter d_w of the bearing face under the head [m]
+    """
+    return min(cone_diameter(washer.thickness, bearing_diameter, tan_phi), washer.outer_diameter)
+
+
 @dataclass(frozen=True, slots=True)
 class ClampedPart:
     """A clamped part: thickness [m] and Young's modulus [Pa]."""
@@ -131,6 +141,16 @@ def members_compliance(
             )
             total += float(term) / (np.pi * E * hole_diameter * tan_phi)
     return total
+
+
+def washer_compliance(bearing_diameter: float, washer: Washer, tan_phi: float) -> float:
+    """Compliance [m/N] of a steel washer: deformation cone from the head, cut off at the washer's diameter.
+
+    bearing_diameter : outer diameter d_w of the bearing face under the head [m]
+    """
+    layers = [ClampedPart(washer.thickness, E_WASHER)]
+    sizes = (bearing_diameter, washer.hole_diameter, washer.outer_diameter)
+    return members_compliance(layers, *sizes, tan_phi, is_tapped=True)
 
 
 def comparative_stress(thread: Thread, preload: float, thread_friction: float = DEFAULT_FRICTION) -> float:

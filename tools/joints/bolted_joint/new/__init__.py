@@ -11,6 +11,9 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     return plate.make_joint(options)
 
 
+STANDARD_WASHERS = "ISO 7089"
+"""Value of the option `washers` for the washers of this standard."""
+
 ATTACHMENTS = {
     "faces": "the outer faces",
     "edge": "the edges at -x (side 1) and +x (side 2)",
@@ -55,6 +58,14 @@ NEW_JOINT_COMMAND = NewJointCommand(
         Option("head", "head of the bolts (default: hexagon)", choices=("hexagon", "socket")),
         Option("hole", "diameter of the clearance holes [mm] (default: ISO 273, medium)", "D"),
         Option("bearing", "outer diameter of the bearing surface [mm] (default: of the head)", "D"),
+        Option(
+            "washers",
+            "steel washers under heads and nuts: outer diameter and thickness [mm]; without a value those of "
+            f"{STANDARD_WASHERS} (default: none)",
+            "DxT",
+            separator="x",
+            lone_value=STANDARD_WASHERS,
+        ),
         Option("preload", "preload of each bolt [N] (default: VDI 2230, or from --torque)", "F"),
         Option(
             "torque",

@@ -18,6 +18,13 @@ from ..gross_slip import PRELOAD_ENTRY, friction_results, preload_results
 from . import ATTACHMENTS, layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
 from .tightening import find_preload
+from .washers import (
+    MAX_BEARING_RATIO,
+    BoltWashers,
+    bolt_distances,
+    check_washers,
+    find_washers,
+)
 
 ZERO_MOTION = (0.0, 0.0, 0.0)
 """Zero displacement [m] or rotation [rad] along x, y, z."""
@@ -25,8 +32,8 @@ THICKNESS_TOLERANCE = 1e-6
 """Relative difference [1] allowed between the grip and the sum of the thicknesses."""
 MAX_GRIP_RATIO = 50
 """Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
-MAX_HOLE_RATIO, MAX_BEARING_RATIO = 3.0, 8.0
-"""Largest diameter of hole and of bearing surface over that of the thread [1]; washers of ISO 7094 have 4."""
+MAX_HOLE_RATIO = 3.0
+"""Largest diameter of the hole over that of the thread [1]."""
 THREAD_DEPTH_RATIO = 1.0
 """Depth of a tapped thread over its diameter [1]: a usual value in steel."""
 
@@ -35,26 +42,39 @@ THREAD_DEPTH_RATIO = 1.0
 class ClampedBolt:
     """One bolt with the parts that it clamps, by VDI 2230.
 
-    grip             : [m] clamped length between head and nut, or between head and tapped thread
-    clamped_parts    : clamped parts, thickness and modulus
-    hole_diameter    : [m]
-    bearing_diameter : [m] of the surface under head or nut
-    outer_diameter   : [m] D_A of the clamped parts
-    cone_slope       : tan(phi) of the deformation cone [1]
-    cone_diameter    : [m] of the deformation cone at the interface
-    bolt_stiffness   : [N/m] 1/delta_S
-    member_stiffness : [N/m] 1/delta_P
+    grip              : [m] thickness of the plates between head and nut, or between head and tapped thread
+    clamped_parts     : plates, thickness and modulus
+    washers           : None if there are none
+    hole_diameter     : [m] of the clearance hole
+    head_diameter     : [m] outer diameter d_w of the bearing face of the head
+    bearing_diameter  : [m] of the bearing face on the plates: d_w, or the deformation cone below the washers
+    outer_diameter    : [m] D_A of the clamped parts
+    cone_slope        : tan(phi) of the deformation cone [1]
+    cone_diameter     : [m] of the deformation cone at the interface
+    bolt_stiffness    : [N/m] 1/delta_S of the bolt alone
+    washer_compliance : [m/N] delta_W of all washers; 0 without washers
+    spring_stiffness  : [N/m] 1/(delta_S + delta_W) of the bolt in series with its washers
+    member_stiffness  : [N/m] 1/delta_P of plates and washers
     """
 
     grip: float
     clamped_parts: tuple[vdi2230.ClampedPart, ...]
+    washers: BoltWashers | None
     hole_diameter: float
+    head_diameter: float
     bearing_diameter: float
     outer_diameter: float
     cone_slope: float
     cone_diameter: float
     bolt_stiffness: float
+    washer_compliance: float
+    spring_stiffness: float
     member_stiffness: float
+
+    @property
+    def head_hole_diameter(self) -> float:
+        """Diameter of the hole under the head [m]: of the washer, or of the plate."""
+        return self.washers.washer.hole_diameter if self.washers else self.hole_diameter
 
 
 def make_joint(options: DrawingOptions) -> NewJoint:
@@ -91,7 +111,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         * faces.read_materials(options)[0].numbers["density"].value
     )
     sheet.add_parameter("mass", mass, "estimate", "mass of the plate of side 1, assumed to vibrate")
-    tightening = find_preload(options, thread, bolt.bearing_diameter, hole)
+    tightening = find_preload(options, thread, bolt.head_diameter, bolt.head_hole_diameter)
     tightening.add_to(sheet)
     preload, warnings = tightening.force, [*tightening.warnings]
     if not loss < preload:
@@ -162,9 +182,11 @@ def clamp_bolt(
     bearing = getattr(thread, head)
     if options["bearing"] is not None:
         bearing = parse_value("bearing", options["bearing"])
+    washers = find_washers(options, thread)
+    head_hole = washers.washer.hole_diameter if washers else hole_diameter
     for name, value, low, ratio in (
         ("hole", hole_diameter, thread.nominal_diameter, MAX_HOLE_RATIO),
-        ("bearing", bearing, hole_diameter, MAX_BEARING_RATIO),
+        ("bearing", bearing, head_hole, MAX_BEARING_RATIO),
     ):
         high = ratio * thread.nominal_diameter
         if not low < value <= high:
@@ -189,14 +211,38 @@ def clamp_bolt(
             f"times {thread.name}"
         )
     outer = outer_diameter(plate_size, bolt_positions)
-    slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
+    length = grip + washers.length if washers else grip
+    slope = vdi2230.cone_slope(length, bearing, outer, tapped)
     if not slope > 0.0:
         raise ValueError(f"--grip = {grip * 1e3:g} mm is too short for a deformation cone of VDI 2230")
-    shank = vdi2230.shank_length(thread, grip, head, tapped)
-    delta_S = vdi2230.bolt_compliance(thread, grip, shank, head, young_moduli[1] if tapped else None)
-    delta_P = vdi2230.members_compliance(layers, bearing, hole_diameter, outer, slope, tapped)
-    cone = vdi2230.cone_diameter(min(layer.thickness for layer in layers), bearing, slope)
-    return ClampedBolt(grip, layers, hole_diameter, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
+    seat, delta_W = bearing, 0.0
+    if washers:
+        check_washers(washers, thread, bearing, bolt_positions)
+        seat = vdi2230.washer_cone_diameter(bearing, washers.washer, slope)
+        delta_W = washers.count * vdi2230.washer_compliance(bearing, washers.washer, slope)
+        if not seat > hole_diameter:
+            raise ValueError(
+                f"--hole = {hole_diameter * 1e3:g} mm is outside ({thread.nominal_diameter * 1e3:g}, "
+                f"{seat * 1e3:.4g}) mm: the deformation cone under {washers.describe()} must be wider"
+            )
+    shank = vdi2230.shank_length(thread, length, head, tapped)
+    delta_S = vdi2230.bolt_compliance(thread, length, shank, head, young_moduli[1] if tapped else None)
+    delta_P = delta_W + vdi2230.members_compliance(layers, seat, hole_diameter, outer, slope, tapped)
+    return ClampedBolt(
+        grip,
+        layers,
+        washers,
+        hole_diameter,
+        bearing,
+        seat,
+        outer,
+        slope,
+        cone_diameter=vdi2230.cone_diameter(min(layer.thickness for layer in layers), seat, slope),
+        bolt_stiffness=1.0 / delta_S,
+        washer_compliance=delta_W,
+        spring_stiffness=1.0 / (delta_S + delta_W),
+        member_stiffness=1.0 / delta_P,
+    )
 
 
 def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
@@ -240,10 +286,7 @@ def outer_diameter(plate_size: tuple[float, float], bolt_positions: Array) -> fl
         i = int(np.argmin(edge))
         x, y = bolt_positions[i] * 1e3
         raise ValueError(f"bolt {i + 1} at ({x:g}, {y:g}) mm is not inside the plate")
-    distance = np.hypot(*np.moveaxis(bolt_positions[:, None, :] - bolt_positions, -1, 0)) + np.diag(
-        np.full(len(bolt_positions), np.inf)
-    )
-    return float(np.mean(np.minimum(edge, np.min(distance, axis=1))))
+    return float(np.mean(np.minimum(edge, bolt_distances(bolt_positions))))
 
 
 def _add_plate(
@@ -255,8 +298,10 @@ def _add_plate(
     for name in ("length", "width", "x", "y"):
         parameter_sheet.add_drawing_value(f"plate.{name}", getattr(bolted_plate, name))
     parameter_sheet.add_parameter("plate.hole_diameter", bolted_plate.hole_diameter, *hole_diameter_source)
+    washers = clamped_bolt.washers
+    through = f"through {washers.washer.thickness * 1e3:g} mm of washer and " if washers else "over "
     cone = (
-        f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
+        f"VDI 2230, cone from d_w = {clamped_bolt.head_diameter * 1e3:g} mm {through}"
         f"{min(layer.thickness for layer in clamped_bolt.clamped_parts) * 1e3:g} mm with tan(phi) = "
         f"{clamped_bolt.cone_slope:.4g}"
     )
@@ -273,7 +318,12 @@ def _add_bolts(
     parameter_sheet.add_parameter("row_bolts", row_bolts, "derived", rows)
     parameter_sheet.add_parameter("row_distance", row_distance, "derived", rows)
     text = f"VDI 2230, 1/delta_S of {thread.name} over {clamped_bolt.grip * 1e3:g} mm of grip"
-    parameter_sheet.add_parameter("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
+    if washers := clamped_bolt.washers:
+        text = (
+            f"VDI 2230, 1/(delta_S + delta_W): {thread.name} over {clamped_bolt.grip * 1e3:g} mm of grip and "
+            f"{washers.length * 1e3:g} mm of washers, in series with {washers.describe()}"
+        )
+    parameter_sheet.add_parameter("bolt_stiffness", clamped_bolt.spring_stiffness, "derived", text)
 
 
 def _add_embedding_loss(
@@ -287,12 +337,19 @@ def _add_embedding_loss(
         stated = parse_quantity("embedding", options["embedding"])
         parameter_sheet.add_drawing_number("embedding", stated)
         return stated.value
-    depth = vdi2230.embedding_depth(rms_height_range.Rz, 1, bool(options["tapped"]))
+    interfaces = 1 + (clamped_bolt.washers.count if clamped_bolt.washers else 0)
+    depth = vdi2230.embedding_depth(rms_height_range.Rz, interfaces, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
+    interface_text = {
+        1: "one interface",
+        2: "two interfaces (plates, washer)",
+        3: "three interfaces (plates, two washers)",
+    }[interfaces]
     text = (
         f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, "
         f"{'head' if options['tapped'] else 'head and nut'}, "
-        f"one interface, Rz {rms_height_range.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
+        f"{interface_text}, Rz {rms_height_range.Rz * 1e6:.2g} um, load along the bolt) "
+        "over delta_S + delta_P"
     )
     parameter_sheet.add_parameter("embedding", loss, "estimate", text)
     return loss
@@ -349,6 +406,30 @@ def _interface_share_facts(
     return {"interface_share": (share, "1", text)}
 
 
+def _washer_facts(clamped_bolt: ClampedBolt) -> dict[str, tuple[float, str, str]]:
+    """Facts about a bolt with washers: they replace the facts of a bolt without washers."""
+    assert clamped_bolt.washers
+    sizes = clamped_bolt.washers.describe()
+    return {
+        "bolt_stiffness": (
+            clamped_bolt.spring_stiffness,
+            "N/m",
+            f"stiffness of one bolt in series with {sizes}: 1/(delta_S + delta_W); 1/delta_S of VDI 2230 is "
+            f"{clamped_bolt.bolt_stiffness:.4g} N/m",
+        ),
+        "washer_stiffness": (
+            1.0 / clamped_bolt.washer_compliance,
+            "N/m",
+            f"stiffness of {sizes}, 1/delta_W",
+        ),
+        "member_stiffness": (
+            clamped_bolt.member_stiffness,
+            "N/m",
+            "stiffness of the members and washers that one bolt clamps, 1/delta_P of VDI 2230 with delta_W",
+        ),
+    }
+
+
 def _design_facts(
     parameter_file: ParameterFile,
     clamped_bolt: ClampedBolt,
@@ -358,7 +439,7 @@ def _design_facts(
     """Facts for the designer: preload, pressures, stiffnesses, load factor, friction."""
     values = parameter_file.values
     state = BoltedJointSpring.for_joint(values).evaluate(preload, 0.0, ZERO_MOTION, ZERO_MOTION)
-    bolts = values.n_bolts * clamped_bolt.bolt_stiffness
+    bolts = values.n_bolts * values.bolt_stiffness
     K = float(state["K_zz"]) - bolts
     facts = {
         "preload": (preload, "N", "force of each bolt at tightening"),
@@ -397,6 +478,8 @@ def _design_facts(
             "Phi_K = delta_P/(delta_S + delta_P): share of an external force that the bolts carry",
         ),
     }
+    if clamped_bolt.washers:
+        facts |= _washer_facts(clamped_bolt)
     facts |= _friction_facts(parameter_file, preload)
     if rms_height_range.h_max > rms_height_range.h_min and parameter_file.law == "roughness":
         h = float(parameter_file.values_by_name["h"])
