@@ -418,7 +418,8 @@ def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypat
     """The file would be of another joint than asked: nothing is written, unless that is asked for."""
     monkeypatch.setitem(sys.modules, package, None)
     path = tmp_path / "joint.toml"
-    line = refused_line(capsys, "new", "bolted-joint", *M16, *LOAD, "--out", path)
+    other_plate = ["--plate", "80x81"]  # not solved before by this process
+    line = refused_line(capsys, "new", "bolted-joint", *M16, *other_plate, *LOAD, "--out", path)
     assert "the complete joint needs the finite elements (extra fem), which are not installed" in line
     assert "pip install 'jointfmu[fem]'; or state --sides rigid for the interface alone" in line
     assert "No module named" not in line

@@ -77,7 +77,7 @@ partial block BoltedJoint "Bolted joint under uneven pressure: motion in, force 
     annotation (Placement(transformation(extent={{100,-82},{120,-62}})));
   Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step for a sequential (Gauss-Seidel) master, which passes the new force on before the body steps: smallest of x, y and z, with `mass` on the joint"
     annotation (Placement(transformation(extent={{100,-89},{120,-69}})));
-  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step: smallest of x, y and z, with `mass` on the joint"
+  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step: smallest of x, y and z, with `mass` on the joint; 0 at the defaults, because C_zz = 0: then use model exchange, a sequential master or one FMU of the system (jointfmu system), or damp the body along z by a part of your own"
     annotation (Placement(transformation(extent={{100,-96},{120,-76}})));
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),
