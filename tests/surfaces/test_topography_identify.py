@@ -273,9 +273,8 @@ def test_joint_gets_its_own_dimension(joint, tmp_path):
         assert again.origins[name] == "measured"
         assert again.sources[name].startswith("identified from synthetic surface by ")
     assert again.roughness["Rq1"] == found.h
-    untouched = {name for name in again.origins if not name.startswith(("roughness.", "comparison."))} - set(
-        values
-    )
+    kept = {n for n in again.origins if not n.startswith(("roughness.", "comparison."))}
+    untouched = kept - set(values)
     kinds = load_default(joint).origins
     assert {n: again.origins[n] for n in untouched} == {n: kinds.get(n, "default") for n in untouched}
 

@@ -194,7 +194,7 @@ def compute_frequencies(
     joint : gives the interface law; its contact area is replaced by that of the assembly
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
     load_states : preload [N] per bolt and moment [N.m] about x of each load state
-    is_pressure_uniform : distribute the bolt force uniformly over the contact, instead of computing the pressure
+    is_pressure_uniform : distribute the bolt force uniformly over the contact, and compute no pressure
     """
     law = tabulate_approach(replace(joint, A_0=assembly.contact_area))
     contact = BoltedContact.from_assembly(assembly, refinement)
