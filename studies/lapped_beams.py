@@ -123,7 +123,7 @@ def print_scanned_form():
     friction, small = data()["published"]["friction"], published("curved").frequency[0]
     heading("With the scanned form", "interface", "f1", "miss [%]", "share of the lap that carries 90 %")
     for name, joint in found.items():
-        pressure = joint.sliders.curve.derivatives(joint.beam.approach, 0)[0]
+        pressure = joint.sliders.pressure_curve.derivatives(joint.beam.approach, 0)[0]
         order = np.argsort(-pressure)
         force, area = (np.cumsum(each[order]) for each in (joint.beam.area * pressure, joint.beam.area))
         carries = area[np.searchsorted(force, 0.9 * force[-1])] / area[-1]

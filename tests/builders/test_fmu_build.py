@@ -467,7 +467,7 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert [name for name in NAMES if name not in page] == []
     # the command, the job and the page count alike
     counted = validation.format_summary(validation.validate())
-    assert f"compared: {counted}; " in out
+    assert f"; {counted}; " in out
     assert f"<p>{counted}.</p>" in page
 
 

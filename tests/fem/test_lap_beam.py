@@ -42,7 +42,7 @@ def joint():
 
 @needs("gmsh")
 def test_the_bolts_press_with_their_preload(joint):
-    pressure = joint.sliders.curve.derivatives(joint.beam.approach, 0)[0]
+    pressure = joint.sliders.pressure_curve.derivatives(joint.beam.approach, 0)[0]
     force = 2.0 * joint.beam.area @ pressure
     assert force == pytest.approx(3.0 * cases.data()["beam"]["preload"], rel=1e-8)
 

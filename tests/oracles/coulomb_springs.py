@@ -25,10 +25,10 @@ WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.04
 class Springs:
     """Springs of a curve: one for each interval between edges (n + 1) [m], at its mean height.
 
-    curve : pressure [Pa] over approach [m]; `ratio` K_T/K_N [1], `friction` mu [1]
+    pressure_curve : pressure [Pa] over approach [m]; `ratio` K_T/K_N [1], `friction` mu [1]
     """
 
-    curve: Curve
+    pressure_curve: Curve
     ratio: float
     friction: float
     edges: Array
@@ -43,12 +43,12 @@ class Springs:
     @cached_property
     def stiffness(self) -> Array:
         """Normal stiffness (n) [Pa/m] of the springs."""
-        return np.diff(self.curve.derivatives(self.edges, 1)[1])
+        return np.diff(self.pressure_curve.derivatives(self.edges, 1)[1])
 
     @cached_property
     def heights(self) -> Array:
         """Heights (n) [m] at which the springs touch; the pressure is exact at the edges."""
-        load, slope = self.curve.derivatives(self.edges, 1)
+        load, slope = self.pressure_curve.derivatives(self.edges, 1)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
         moment, carries = np.diff(self.edges * slope - load), self.stiffness > 1e-12 * slope[-1]
         return np.divide(moment, self.stiffness, out=middle, where=carries)

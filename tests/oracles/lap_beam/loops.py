@@ -98,8 +98,8 @@ class Joint:
         before, after = (self.beam.approach + w[:, 2] for w in (state.displacement, moved))
         shift = (moved - state.displacement)[:, :2]
         sliders = self.sliders.advance(state.force, before, after, shift)
-        pressure, normal = self.sliders.curve.derivatives(after, 1)
-        first = self.sliders.curve.derivatives(self.beam.approach, 0)[0]
+        pressure, normal = self.sliders.pressure_curve.derivatives(after, 1)
+        first = self.sliders.pressure_curve.derivatives(self.beam.approach, 0)[0]
         tangent = np.zeros((len(moved), 3, 3))
         tangent[:, 0, 0], tangent[:, 0, 1], tangent[:, 1, 1] = sliders.tangent.T[:3]
         tangent[:, 1, 0], tangent[:, 2, 2] = tangent[:, 0, 1], normal

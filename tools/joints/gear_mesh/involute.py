@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 E_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
@@ -78,6 +77,8 @@ class InvoluteGearPair:
         target = float(involute(self.transverse_angle) + shift)
         if not 0.0 < target < involute(_MAX_WORKING_ANGLE):
             raise ValueError(f"profile shifts with the sum {total:g}: the wheels mesh at no centre distance")
+        from scipy.optimize import brentq  # here: the commands start without scipy
+
         return float(brentq(lambda angle: involute(angle) - target, 0.0, _MAX_WORKING_ANGLE, xtol=1e-15))
 
     @property
