@@ -13,11 +13,11 @@ from dataclasses import replace
 from fnmatch import fnmatch
 from pathlib import Path
 
+import dying_run
 import numpy as np
 import pytest
 from clients import needs
-from conftest import refused_line
-from dying_run import DiesAtFive
+from conftest import refused_line, run_host
 from jointfmu_tools import cli
 from jointfmu_tools.run.ramps import ramp
 from jointfmu_tools.studies.uncertainty import journal
@@ -27,7 +27,6 @@ from jointfmu_tools.studies.uncertainty.study import unit_cube_points
 from jointfmu_tools.studies.uncertainty.sweep import state_fmu_problem
 from jointfmu_tools.studies.uncertainty.worker import LoadRamp
 
-from jointfmu import progress
 from jointfmu.parameters import format_parameter_file, load_default
 
 pytestmark = pytest.mark.slow
@@ -317,15 +316,27 @@ def test_every_run_fails(fmu, cluster, tmp_path, capsys):
     assert not (tmp_path / "out" / journal.BANDS_FILE).exists()
 
 
-@pytest.mark.parametrize("where", ["here", "on a cluster"])
-def test_a_run_that_kills_its_process(where, fmu, request, tmp_path, monkeypatch):
+LOCAL = """
+import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[3])
+import dying_run
+if __name__ == "__main__":
+    print(*dying_run.run_until_five_dies(*map(Path, sys.argv[1:3]), workers=2))
+"""
+DIED = {5: "the process of the run died"}
+
+
+def test_a_local_run_that_kills_its_process(fmu, tmp_path):
+    """It is recorded with its parameters. In a process of its own, so that no worker of the tests can die."""
+    done = run_host(LOCAL, fmu, tmp_path, Path(dying_run.__file__).parent)
+    assert done.stdout == f"24 24 {DIED}\n", done.stderr
+    assert sorted(indices(tmp_path)) == list(range(24))
+
+
+def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path):
     """It is recorded with its parameters; those whose results went down with it are done again."""
-    monkeypatch.setattr(progress, "MAX_JOB_ATTEMPTS", 2)  # each attempt starts a process
-    execution = {"workers": 2} if where == "here" else {"scheduler": request.getfixturevalue("cluster")}
-    runs = [{"surface.D": 2.5}] * 24
-    done = evaluate_runs(DiesAtFive(fmu, DRIVE), runs, ["K_WTS"], 2, Execution(tmp_path, **execution))
-    assert (done.accepted.size, done.new_run_count) == (24, 24)
-    assert done.errors == {5: "the process of the run died"}
+    assert dying_run.run_until_five_dies(fmu, tmp_path, scheduler=cluster) == (24, 24, DIED)
     assert sorted(indices(tmp_path)) == list(range(24))
 
 
