@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import skfem
 from jointfmu_tools.inputs.drawing import vdi2230
 from jointfmu_tools.inputs.drawing.tables import find_washer, read_threads
 
@@ -15,7 +16,6 @@ def compliance(load_diameter, washer=None):
     """Compliance [m/N] of a plate, with a bonded washer on it, under an even pressure from the hole to a
     diameter [m], against a frictionless rigid plane that it may leave. The deflection is the mean over the
     load."""
-    skfem = pytest.importorskip("skfem")
     outer, height = (0.5 * washer.outer_diameter, washer.thickness) if washer else (0.0, 0.0)
     r = [np.linspace(0.5 * HOLE, 20e-3, 45), np.linspace(20e-3, RADIUS, 12), [0.5 * load_diameter, outer]]
     z = [np.linspace(0.0, THICKNESS, 24), np.linspace(THICKNESS - 4e-3, THICKNESS, 13)]
