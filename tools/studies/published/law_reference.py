@@ -56,7 +56,7 @@ class LawComparison:
 
 
 def read_reference_cases() -> list[dict[str, Any]]:
-    """Cases of the table: `law`, `parameters` by structured name, `values` as columns (n) [SI]."""
+    """Read the reference values of all laws: `law`, `parameters` by name, columns `values` (n) [SI]."""
     text = (files("jointfmu_models") / "reference" / "laws.toml").read_text(encoding="utf-8")
     cases: list[dict[str, Any]] = tomllib.loads(text)["case"]
     return cases

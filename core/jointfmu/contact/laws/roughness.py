@@ -72,7 +72,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         return self.H
 
     def spot_distribution(self) -> SpotDistribution:
-        """Quantities of the nominal area A_0 as sums of powers of the pressure p; exp(u) = p/p_1.
+        """Load, stiffness and energies of the area A_0, as powers of the pressure p; u is ln(p/p_1).
 
         load       : [N] p A_0
         normal     : [N/m] p A_0/h (1/gamma + C x^(-hurst/(1 + hurst))), x = p A_0/(E* h longest_wave)

@@ -126,12 +126,16 @@ def successive_powers(base: float, count: int) -> Array:
 
 
 def take_power_of_two_root(values: Array, exponent: Array) -> Array:
-    """Roots values^(1/exponent) (m, n) of values >= 0 (m, n) or (m, 1); exponent (m, 1) of 2, 4, ... 64."""
+    """Roots values^(1/exponent) (m, n) by repeated square roots, of values >= 0; exponents are 2, 4, ... 64.
+
+    values   : (m, n) or (m, 1)
+    exponent : (m, 1)
+    """
     return _apply_repeatedly(np.sqrt, values, exponent)
 
 
 def raise_to_power_of_two(values: Array, exponent: Array) -> Array:
-    """Powers values^exponent (m, n) of values (m, n); exponent (m, 1) of 2, 4, 8, ... 64."""
+    """Raise values (m, n) to the exponents (m, 1) by repeated squaring; exponents are 2, 4, 8, ... 64."""
     return _apply_repeatedly(np.square, values, exponent)
 
 
