@@ -6,6 +6,7 @@ import re
 import shlex
 
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.common.joint_parts import load_tool_module
@@ -40,7 +41,9 @@ def test_there_are_some():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NEW)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=needs("gmsh") if name == "bolted-joint" else ()) for name in NEW]
+)
 def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
     path = tmp_path / "joint.toml"
     words = ["new", name, *shlex.split(NEW[name].example), "--out", path]

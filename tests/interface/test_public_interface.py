@@ -8,6 +8,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import here_alone
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
@@ -74,7 +75,13 @@ def test_examples(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["drive", pytest.param("bolted_joint", marks=pytest.mark.slow), "gear_contact", "gear_mesh"]
+    "name",
+    [
+        "drive",
+        pytest.param("bolted_joint", marks=[pytest.mark.slow, needs("gmsh")]),
+        "gear_contact",
+        "gear_mesh",
+    ],
 )
 def test_examples_of_what_makes_joints(name):
     finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner()

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.inputs.fields.nodal_result import ContactField, csv_text
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
@@ -114,7 +115,10 @@ def test_all_extras_are_looked_at():
     assert set(FIRST_COMMANDS) | NO_COMMAND == set(PROJECT["optional-dependencies"])
 
 
-@pytest.mark.parametrize("extra", FIRST_COMMANDS)
+@pytest.mark.parametrize(
+    "extra",
+    [pytest.param(extra, marks=needs("gmsh") if extra == "fem" else ()) for extra in FIRST_COMMANDS],
+)
 def test_the_first_command_of_a_page_needs_its_extra_alone(extra, tmp_path):
     blocker = tmp_path / "blocker"
     blocker.mkdir()

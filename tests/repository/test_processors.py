@@ -84,7 +84,7 @@ def here(paths) -> dict[str, str]:
     return texts(paths) | components(COMMITTED)
 
 
-newer = needs("AVX2")
+newer = needs("AVX2", "gmsh")
 
 
 @newer

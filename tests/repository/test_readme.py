@@ -40,7 +40,7 @@ def test_the_readme_is_short():
 
 
 @pytest.mark.slow
-@needs("git and a checkout")
+@needs("git and a checkout", "gmsh")
 def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monkeypatch):
     """In a clone; what installs and builds all is run by `.ci/run` in an environment of its own."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -95,6 +95,7 @@ def folder(tmp_path_factory, native):
     return place
 
 
+@needs("gmsh")
 def test_python_blocks_run(folder, few_points, monkeypatch):
     monkeypatch.chdir(folder)
     names = {}
@@ -119,7 +120,7 @@ commands = [
 ELSEWHERE = ("jointfmu build --systems ", "jointfmu system six_axis_robot ", "jointfmu report ")
 """Commands that make what tests/systems/test_systems.py looks at, that examples/robot.py runs, and that stand
 in the README as well, above."""
-MESHED = ("jointfmu footprint compute ", "jointfmu modes ")
+MESHED = ("jointfmu footprint compute ", "jointfmu modes ", "jointfmu new bolted-joint ")
 """Commands that mesh bodies."""
 
 
