@@ -65,7 +65,7 @@ def _format_number(value: float | str) -> str:
 
 
 def law_variables(parameters: ParameterFile) -> dict[str, object]:
-    """Template variables of the contact law: its name, whether it is `roughness`, and FEW_SPOTS_FACTOR."""
+    """Variables of the contact law for page templates: {name: value}."""
     return {
         "law": parameters.law,
         "rough": parameters.law == ROUGHNESS_LAW,

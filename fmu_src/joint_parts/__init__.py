@@ -31,13 +31,13 @@ class RampPanel(NamedTuple):
 class FmuParts:
     """Builder data of one joint; fields that differ between its FMUs are {FMU: ...}.
 
-    folder    : folder with page, icons and C sources of the joint
-    native    : function that loads the definition of the C code; it needs CasADi, so it is called only for
-        native FMUs. None: native flavours cannot be built
-    data      : which hidden parameters are stored as data
-    terminals : flanges of each FMU; none: signals are connected one by one
-    panels    : charts of the load ramp on the page; none: the first output against the ramped input
-    drawings  : {FMU: {name: function that draws further charts of the page}}
+    folder          : folder with page, icons and C sources of the joint
+    native          : function that loads the definition of the C code; it needs CasADi, so it is called only
+        for native FMUs. None: native flavours cannot be built
+    data_conversion : which hidden parameters are stored as data
+    terminals       : flanges of each FMU; none: signals are connected one by one
+    ramp_panels     : charts of the load ramp on the page; none: the first output against the ramped input
+    chart_drawings  : {FMU: {name: function that draws further charts of the page}}
     """
 
     folder: Path

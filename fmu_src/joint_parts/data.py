@@ -25,14 +25,14 @@ EMPTY_TABLES: Tables = {}
 
 @dataclass(frozen=True, slots=True)
 class DataConversion:
-    """Conversion of parameters that are not FMU variables into data: `FmuParts.data`.
+    """Conversion of parameters that are not FMU variables into data: `FmuParts.data_conversion`.
 
     By default every real number is data. All other values (choices, series, integers) select the C code.
 
-    convert_parameters : (parameter set) -> {structured name: value} of the parameter set that replaces it in
-        the C code
-    find_class         : (parameter set) -> class of the replacing parameter set
-    make_tables        : (parameter set) -> {name: table} that the C code reads as `data.NAME` with
+    convert_parameters   : (parameter set) -> {structured name: value} of the parameter set that replaces it
+        in the C code
+    find_parameter_class : (parameter set) -> class of the replacing parameter set
+    make_tables          : (parameter set) -> {name: table} that the C code reads as `data.NAME` with
         `data.n_NAME` rows
     """
 

@@ -76,7 +76,7 @@ class FunctionGraph:
         result_expressions: Symbols,
         constant_count: int = 0,
     ) -> None:
-        """Add a C function, and its directional derivative along a seed as `name_seed`.
+        """Add a C function, and its directional derivative along a seed as `NAME_seed`.
 
         constant_count : number of leading arguments that are constant in the derivative
         """
@@ -91,7 +91,7 @@ class FunctionGraph:
         result_expressions: Symbols,
         constant_count: int,
     ) -> None:
-        """Add the directional derivative of a C function along a seed, as `name_seed`.
+        """Add the directional derivative of a C function along a seed, as `NAME_seed`.
 
         constant_count : number of leading arguments that are constant in the derivative
         """
@@ -246,8 +246,9 @@ def add_law_functions(
 ) -> None:
     """Add the functions of an interface law that its inversion, its tables and the outputs need.
 
-    table_names     : names of the sums over contact spots, besides the load, that are tabulated
-    state_functions : (law in one range of log-areas, log-area) -> quantities, first and second derivatives
+    tabulated_sum_names : names of the sums over contact spots, besides the load, that are tabulated
+    evaluate_law_state  : (law in one range of log-areas, log-area) -> quantities, first and second
+                          derivatives
     """
     spots, u = law.spot_distribution(), ca.SX.sym("u")
     switches, regimes = _split_regimes(spots)

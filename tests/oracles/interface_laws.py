@@ -20,10 +20,12 @@ POINTS, FINEST = 256, 8
 
 @dataclass(frozen=True)
 class Case:
-    """Interface law with its surface and material, for boundary elements.
+    """Interface law and the surface on which boundary elements check it.
 
-    modulus, hardness : [Pa]; D, G : of the isotropic surface [1, m]; sides : [m], of the squares pressed;
-    pressures : [Pa]
+    modulus   : contact modulus E* [Pa]
+    D, G      : fractal dimension [1] and roughness [m] of the isotropic surface
+    sides     : [m] side lengths of the computed squares
+    pressures : [Pa] nominal
     """
 
     law: object
@@ -95,10 +97,10 @@ def exponent(x, y):
 
 
 def boundary_element_results(case, side, seeds=SEEDS, **grid):
-    """Boundary elements on the surface of a case, elastic up to the hardness: {quantity: (seeds, pressures)},
-    SI.
+    """Results of boundary elements, elastic up to the hardness: {quantity: (seeds, pressures)}.
 
-    k : of small motions [N/m3]; loading : dp/d(approach) [N/m3]; area, plastic : shares [1]; rms : [m]
+    Stiffness of small motions "k" [N/m3], dp/d(approach) "loading" [N/m3], real over nominal area "area" [1],
+    plastic share of the real area "plastic" [1], rms height "rms" [m].
     """
     found = {name: [] for name in ("k", "loading", "area", "plastic", "rms")}
     for seed in seeds:
@@ -135,9 +137,10 @@ def law_state(case, side):
 
 
 def elastic(H, roll_off, loads, seeds=SEEDS, **grid):
-    """Dimensionless elastic contact: {quantity: (seeds, loads)}; loads in E* h'_rms.
+    """Dimensionless results of elastic contact: {quantity: (seeds, loads)}; loads over E* h'_rms.
 
-    alpha : k h_rms/p; kappa : (A_r/A_0) E* h'_rms/p; isolated : stiffness of the spots on their own over k
+    "alpha" is k h_rms/p, "kappa" (A_r/A_0) E* h'_rms/p, "isolated" the stiffness of all spots without their
+    interaction over k.
     """
     found = {"alpha": [], "kappa": [], "isolated": []}
     for seed in seeds:

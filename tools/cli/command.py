@@ -21,10 +21,11 @@ from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
 class CommandResult:
     """Result of a command, to be printed.
 
-    document      : JSON object for `--json`
+    json_document : JSON object for `--json`
     lines         : text for people, on standard output
     notes         : text for people, on standard error
-    judgement     : validity of the stiffness; its lines and warnings are printed too, and join the document
+    stiffness_judgement : plausibility of the stiffness; its lines and warnings are printed too, and are added
+                    to the JSON object
     written_files : paths of the files that the command wrote, printed last; None entries are ignored
     exit_status   : exit status of the process
     """
@@ -72,8 +73,8 @@ def suggest_word(word: str, known_words: Iterable[str]) -> str:
 class Parser(argparse.ArgumentParser):
     """Argument parser with one-line errors, negative numbers in any notation, and an example in the help.
 
-    example : words after `jointfmu`; None: the entry of `EXAMPLES`
-    outputs : {argument: kind of file} of the files that the command writes
+    example           : words after `jointfmu`; None: the entry of `EXAMPLES`
+    output_file_kinds : {argument: kind of file} of the files that the command writes
     """
 
     example: str | None = None

@@ -26,8 +26,8 @@ def declare_output(
 ) -> None:
     """Declare an option that names a file or folder to write, and the option `--force`.
 
-    allow_force : whether to declare `--force`; False: a foreign file is never replaced
-    options     : keyword arguments of `declare_argument`
+    allow_overwrite : whether to declare `--force`; False: a foreign file is never replaced
+    options         : keyword arguments of `declare_argument`
     """
     metavar = "DIR" if file_kind is OUTPUT_FOLDER else "FILE"
     declare_argument(parser, argument_name, Path, help_text, metavar, **options)

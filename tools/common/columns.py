@@ -2,8 +2,8 @@
 
 The heading is the first line that is no comment (#): `torque [N.m], angle [arcmin]`. Semicolons, tabs or
 commas separate the columns. Numbers have a decimal point; they may have a decimal comma if commas do not
-separate the columns. A unit may also be written `Angle (deg)`, `F / N` or `speed_rad_per_s`. Columns that
-the caller does not ask for are ignored. Written files have commas as separators and decimal points.
+separate the columns. A unit may also be written `Angle (deg)`, `F / N` or `joint_speed_rad_per_s`. Columns
+that the caller does not ask for are ignored. Written files have commas as separators and decimal points.
 """
 
 import csv

@@ -1,7 +1,7 @@
 """Plausibility of a stiffness: comparison with the estimate from roughness, validity of the interface law.
 
-Every command that reports a stiffness also reports its plausibility. `assess_law` assesses a law at nominal
-pressures. For a joint under loads, `jointfmu_tools.common.pressure` computes these pressures.
+Every command that reports a stiffness also reports its plausibility. `assess_law_stiffness` assesses a law at
+nominal pressures. For a joint under loads, `jointfmu_tools.common.pressure` computes these pressures.
 """
 
 from collections.abc import Iterator, Sequence
@@ -72,7 +72,7 @@ class StiffnessComparison:
 class Plausibility:
     """Plausibility of a stiffness: comparison with the roughness, and warnings.
 
-    comparison : None if the roughness is unknown
+    stiffness_comparison : None if the roughness is unknown
     """
 
     stiffness_comparison: StiffnessComparison | None
@@ -114,11 +114,12 @@ def assess_law_stiffness(
 ) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa].
 
-    pressures       : (n) [Pa]; pressures of zero or infinity are ignored
-    rms_height      : [m] combined rms height of both surfaces; None: unknown
-    peak_pressure   : [Pa] largest pressure, if `pressures` are mean values
-    stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one per pressure
-    check_limits    : also warn about pressures outside the range of validity
+    pressures             : (n) [Pa]; pressures of zero or infinity are ignored
+    rms_height            : [m] combined rms height of both surfaces; None: unknown
+    peak_pressure         : [Pa] largest pressure, if `pressures` are mean values
+    stiffness_ratio       : stiffness of the joint over that of the interface law [1], one value or one per
+                            pressure
+    warn_outside_validity : also warn about pressures outside the range of validity
     """
     nominal = np.asarray(pressures, dtype=np.float64)
     in_contact = (nominal > 0.0) & (nominal < np.inf)

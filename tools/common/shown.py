@@ -48,8 +48,8 @@ def format_quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str,
 def align_columns(rows: Sequence[Sequence[str]], text_column_count: int | None = None) -> list[str]:
     """Format rows of cells as lines, columns as wide as their widest cell.
 
-    word_columns : number of columns of words at the left, aligned left; the others are aligned right; None:
-                   all columns are words
+    text_column_count : number of columns of words at the left, aligned left; the others are aligned right;
+                        None: all columns are words
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     signs = ["<" if text_column_count is None or i < text_column_count else ">" for i in range(len(widths))]

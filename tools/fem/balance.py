@@ -37,11 +37,11 @@ class RigidBodyBalance:
 
     Shapes: q quadrature points, m motions that only the contact can stop, k motions that no support stops.
 
-    generalised_load     : (m) [N] of the loads on the motions that only the contact can stop
-    rigid_approach       : (q, m) [1] approach at the quadrature points for these motions
-    unsupported_approach : (q, k) [1] approach for the motions that no support stops in the computation
-    total_load           : [N] sum of the loads' magnitudes
-    hull_points          : indices of the quadrature points on the convex hull of the contact
+    generalised_load            : (m) [N] of the loads on the motions that only the contact can stop
+    rigid_motion_approach       : (q, m) [1] approach at the quadrature points for these motions
+    unsupported_motion_approach : (q, k) [1] approach for the motions that no support stops in the computation
+    total_load                  : [N] sum of the loads' magnitudes
+    hull_points                 : indices of the quadrature points on the convex hull of the contact
     """
 
     generalised_load: Array

@@ -173,7 +173,7 @@ def _read_quadrilaterals(gmsh_model: object) -> tuple[Array, IndexArray]:
 def extrude_body_mesh(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
     """Extrude the plan mesh to the mesh of one body: side 1 towards -z, side 2 towards +z.
 
-    Named boundaries: `contact` is the whole face at z = 0; `head1`, `head2`, ... are the faces under the bolt
+    Named boundaries: `contact` is the whole face at z = 0; head1, head2, ... are the faces under the bolt
     heads or, in a tapped plate, the walls of the threaded holes.
     """
     body = assembly.side1 if side == 1 else assembly.side2
@@ -200,7 +200,7 @@ def extrusion_levels(
 
     Returns the distances (k + 1) [m] of the levels from the contact, and for each row the index of its layer.
 
-    max_height : [m] largest height of an element
+    max_element_height : [m] largest height of an element
     """
     heights, owner = [0.0], []
     for layer_index, layer in enumerate(body.layers()):
@@ -219,7 +219,7 @@ def _make_hexahedra(lower_corners: IndexArray, upper_corners: IndexArray) -> Ind
 
 
 def _find_named_boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict[str, IndexArray]:
-    """Named boundaries of a body mesh (see `body_mesh`), each as indices of facets."""
+    """Named boundaries of a body mesh (see `extrude_body_mesh`), each as indices of facets."""
     bolts, body = assembly.bolts, assembly.side1 if side == 1 else assembly.side2
     head_level = body.clamped_thickness if side == 2 else -body.clamped_thickness
     x, y, z = mesh.p[:, mesh.facets].mean(axis=1)

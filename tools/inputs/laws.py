@@ -75,7 +75,7 @@ def roughness_settings(
     settings      : may have Ra1, Ra2, Rq1, Rq2 [m], or surface.D and surface.G of a profile, instead of h
 
     Raises ValueError if one of D and G is missing, if D or G is set together with a height, and for wrong
-    heights as `roughness.check` does.
+    heights as `check_heights` does.
     """
     heights = {name: settings[name] for name in HEIGHT_FIELDS if name in settings}
     fractals = {name: settings[name] for name in FRACTAL_PROFILE_PARAMETERS if name in settings}

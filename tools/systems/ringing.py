@@ -171,7 +171,7 @@ def load_vibration_test(joint: str) -> VibrationTest:
 class VibratingJoint:
     """Joint of a system with the body that vibrates on it; all other bodies are locked.
 
-    test              : vibration test of the joint
+    vibration_test    : vibration test of the joint
     fmu_name          : name of the joint's FMU
     moving_body       : body that vibrates
     inertia_parameter : parameter of this body that is its inertia

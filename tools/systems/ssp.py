@@ -36,10 +36,10 @@ _FMU_TYPE = "application/x-fmu-sharedlibrary"
 class MasterKind(NamedTuple):
     """Kind of co-simulation master for which an archive is made.
 
-    suffix        : suffix of the archive name
-    force_lag     : delay of the force of a joint on a body [communication steps]
-    lag_reason    : reason for this lag
-    is_sequential : whether the master is sequential (Gauss-Seidel), as OMSimulator; otherwise parallel
+    suffix           : suffix of the archive name
+    force_lag        : delay of the force of a joint on a body [communication steps]
+    force_lag_reason : reason for this lag
+    is_sequential    : whether the master is sequential (Gauss-Seidel), as OMSimulator; otherwise parallel
         (Jacobi)
     """
 

@@ -89,7 +89,7 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
 
     Returns
     -------
-    u : (...) [1], minus infinity at zero pressure. The relative residual of the load is at most
+    Array (...) [1], minus infinity at zero pressure. The relative residual of the load is at most
         1e-12; all points are solved at once, in blocks that fit the cache.
 
     Raises

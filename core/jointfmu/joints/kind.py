@@ -38,7 +38,7 @@ class JointKind:
 
     name          : name of its folders, and `joint = NAME` in parameter files
     package       : import name of its subpackage
-    default_stem  : stem of the file name of its default parameter file
+    default_file_stem : stem of the file name of its default parameter file
     laws          : {name of a law: class of the joint's parameter set with this law}, the default law first.
                     Interface laws have their name in contact.laws.LAWS, other laws any name.
     extract_law   : function, parameter set of the joint -> that of its interface law; None if it has none
@@ -98,9 +98,10 @@ class JointKind:
         return self.models[0].tabulate(parameters)
 
     def default_file(self, law_name: str | None = None) -> Path:
-        """Path of the default parameter file: models/NAME/DEFAULT.toml, or DEFAULT_LAW.toml for another law.
+        """Path of the default parameter file of a law; None: of the default law.
 
-        A joint of another package has its files in the folder models/ of that package.
+        The file is models/NAME/`default_file_stem`.toml; the name of another law follows the stem after an
+        underscore. A joint of another package has its files in the folder models/ of that package.
         """
         stem = (
             self.default_file_stem

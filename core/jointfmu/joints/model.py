@@ -126,7 +126,7 @@ class Model:
 
     name     : name of the FMU
     joint    : kind of the joint, `joint = NAME` in parameter files
-    parameters : class of the parameter set with the joint's default law
+    parameter_class : class of the parameter set with the joint's default law
     tabulate : function, parameter set -> tabulated joint
     evaluate : function (tabulated joint, inputs) -> outputs; a model with history starts in the virgin state
     validity_limits : a warning for each variable that leaves its interval

@@ -214,8 +214,8 @@ def assemble_curve(curve_pieces: list[tuple[Array, Array, Array, Array]], data_e
 def refine_curve(tabulate_curve: Callable[[int], Curve], initial_step_count: int) -> Curve:
     """Refine a table until its error is at most MAX_ERROR.
 
-    tabulate_curve : function, number of steps -> table
-    initial_steps  : initial number of steps, doubled up to MAX_REFINEMENT times as many
+    tabulate_curve     : function, number of steps -> table
+    initial_step_count : initial number of steps, doubled up to MAX_REFINEMENT times as many
 
     Raises RuntimeError if the table then is still inaccurate, or has more than MAX_TABLE_NODES nodes.
     """

@@ -62,7 +62,7 @@ def slider_heights(
     They are dense just below the reference approach, where the first springs slip, and near the first
     contact, where the last springs slip.
 
-    curve                     : pressure over approach
+    pressure_curve            : pressure over approach
     stated_reference_approach : (...) [m]; another one is used if its load is too small or too large
     height_offset             : (...) in (0, 1) [1] moves the heights. Parallel foundations with different
                                 offsets slip at different displacements, so the errors of their stepwise slip
@@ -153,7 +153,7 @@ class SliderProperties:
 class Foundation:
     """Winkler foundation of n sliders for an interface, or for several parallel ones.
 
-    curve                : pressure [Pa] over approach [m], convex
+    pressure_curve       : pressure [Pa] over approach [m], convex
     stiffness_ratio      : kappa = K_T/K_N [1]
     friction_coefficient : mu [1]
     heights              : (..., n/2 + 1) [m] increasing heights that separate the ranges of springs; parallel

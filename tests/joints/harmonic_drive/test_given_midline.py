@@ -296,7 +296,7 @@ def test_lost_motion_adds_to_the_lines_and_a_measured_curve_has_it_already():
     play = 1e-4 * np.tanh(T / (0.01 * rated))
     found = loose.evaluate_torque(T)
     before = plain.evaluate_torque(T)
-    # the spline between nodes of the play, as `PLAY_NODES` says
+    # the spline between nodes of the play, as `PLAY_NODE_COUNT` says
     assert found["phi_rel"] - before["phi_rel"] == pytest.approx(play, abs=1e-8 * rated / 1e4)
     slope = 1e-4 * (1.0 - np.tanh(T / (0.01 * rated)) ** 2) / (0.01 * rated)
     assert 1.0 / found["K_WTS"] == pytest.approx(1.0 / before["K_WTS"] + slope, rel=1e-5)

@@ -34,7 +34,7 @@ def add_command(command_parsers: SubParsers) -> None:
 def _declare_procedure(procedure_parsers: SubParsers, procedure_by_joint: Mapping[str, Procedure]) -> None:
     """Declare one procedure with the options of all its joints.
 
-    choices : {joint: its procedure of this name}
+    procedure_by_joint : {joint: its procedure of this name}
     """
     first = next(iter(procedure_by_joint.values()))
     text = "; ".join(procedure.description for procedure in procedure_by_joint.values())

@@ -77,11 +77,11 @@ AXIS_ORDER = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
 class Placement:
     """Placement of the springs in the user's model.
 
-    units            : units of the model
-    normal_axis      : axis of the model along the joint's normal, a key of AXIS_ORDER
-    first_number     : first free number for elements and nodes
-    first_set_number : first free number for element types and sets of real constants (ANSYS)
-    has_own_nodes    : whether the written file defines the nodes, in place of nodes of the model
+    units                 : units of the model
+    normal_axis           : axis of the model along the joint's normal, a key of AXIS_ORDER
+    first_free_number     : first free number for elements and nodes
+    first_free_set_number : first free number for element types and sets of real constants (ANSYS)
+    has_own_nodes         : whether the written file defines the nodes, in place of nodes of the model
     """
 
     units: UnitSet = SI_UNIT_SET

@@ -88,7 +88,7 @@ def write_library(
 
     file           : parameter file of one joint, in place of its default file
     working_points : {joint: working points}, in place of the default working points
-    force          : replace a library of this name that jointfmu did not write
+    overwrite      : replace a library of this name that jointfmu did not write
     """
     check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_FILE, overwrite)
     return write_files(folder / LIBRARY_NAME, render_library(file, working_points))

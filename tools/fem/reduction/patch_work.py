@@ -161,9 +161,9 @@ class MonotonicFriction:
 class StickContactStiffness:
     """Tangential stiffness of the contact in the linear joint, where no point slips.
 
-    unit_states       : w = 3 states of the linear joint, a unit motion along x, along y and about z
-    contact_stiffness : (w, w) [N/m, N, N.m] twice the strain energy of the contact for each pair of states
-    joint_stiffness   : (w) [N/m, N.m] of the joint along each motion
+    unit_motion_states : w = 3 states of the linear joint, a unit motion along x, along y and about z
+    contact_stiffness  : (w, w) [N/m, N, N.m] twice the strain energy of the contact for each pair of states
+    joint_stiffness    : (w) [N/m, N.m] of the joint along each motion
     """
 
     unit_motion_states: ShearStates
@@ -180,13 +180,13 @@ class StickContactStiffness:
 class PatchFit:
     """Least-squares problem: fit the friction of m patches to the friction at all quadrature points.
 
-    friction_law          : friction law of the interface
-    shear_states          : states in shear in which the friction is compared
-    sliders               : c sliders of each patch: the first of all patches, then the second of all patches,
-                            ...
-    rotation_displacement : (2 c m, k) [1] displacement of the sliders by the modal rotation of the patches
-    target_work           : friction at all quadrature points
-    linear_contact        : stick stiffness of the complete contact, which the patches keep
+    friction_law            : friction law of the interface
+    shear_states            : states in shear in which the friction is compared
+    sliders                 : c sliders of each patch: the first of all patches, then the second of all
+                              patches, ...
+    rotation_displacement   : (2 c m, k) [1] displacement of the sliders by the modal rotation of the patches
+    target_work             : friction at all quadrature points
+    stick_contact_stiffness : stick stiffness of the complete contact, which the patches keep
     """
 
     friction_law: Foundation

@@ -264,8 +264,9 @@ class CellwiseJoint:
 class CellTangentStiffness:
     """Symmetric tangent (3 n + b, 3 n + b) [N/m] of the forces on n cells and b bolts.
 
-    diagonal : (3 n + b) [N/m]
-    cross    : (n) [N/m] derivative of the force along x by the displacement along y of the same cell
+    diagonal_stiffness  : (3 n + b) [N/m]
+    tangential_coupling : (n) [N/m] derivative of the force along x by the displacement along y of the same
+                          cell
     """
 
     diagonal_stiffness: Array

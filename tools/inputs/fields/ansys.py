@@ -151,7 +151,7 @@ def _parse_numbers(line: str) -> list[float] | None:
 def _classify_row(
     column_names: list[str], row_numbers: list[float], file_and_line: str, previous_content: str
 ) -> tuple[str, list[float]]:
-    """Content of a row (see `_listing_rows`) and its relevant numbers, from the head of its table.
+    """Content of a row (see `_read_listing_rows`) and its relevant numbers, from the head of its table.
 
     previous_content : content of the row before
     """

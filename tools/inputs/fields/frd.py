@@ -68,7 +68,7 @@ def _block_lines(lines: list[str], start_line: int) -> Iterator[tuple[int, str]]
 def _find_block(path: Path, lines: list[str], block_key: str, block_description: str) -> int:
     """Line number of the last block with this key; ValueError if there is none or if it is binary.
 
-    content_name : name of the content in the message
+    block_description : name of the content in the message
     """
     starts = [i for i, line in enumerate(lines) if line.startswith(block_key)]
     if not starts:
@@ -91,7 +91,7 @@ def _read_nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]
 def _parse_row(path: Path, line_index: int, line: str, min_value_count: int) -> tuple[int, list[float]]:
     """Node number and values of a line -1: I10 after the key, then E12.5 without blanks between.
 
-    Raises ValueError if the line has fewer than `min_count` values.
+    Raises ValueError if the line has fewer than `min_value_count` values.
     """
     try:
         name = int(line[3:13])

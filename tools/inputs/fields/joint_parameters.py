@@ -126,9 +126,10 @@ def normalise_pressure_field(
 ) -> PressureDistribution:
     """Normalise a pressure field for a joint, at all its nodes. Parameters as for `insert_field`.
 
-    With e = `preload_shape` and t = `moment_shape`, the pressure at a node is p_m e + M/(L_a A_0) t: p_m bolt
-    force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =
-    L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p is the centre of pressure.
+    With e = `preload_pressure_ratio` and t = `moment_pressure_ratio`, the pressure at a node is p_m e +
+    M/(L_a A_0) t: p_m bolt force over contact area, M moment, L_a distance of the bolt rows. Equilibrium
+    requires sum(share t y) = L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p
+    is the centre of pressure.
     """
     scale = _bolt_force_ratio(joint, contact_field, preload, "the field", force_tolerance)
     area = float(np.sum(contact_field.area))

@@ -25,7 +25,7 @@ NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 def read_lines(path: Path, file_description: str) -> list[str]:
     """Read the lines of a listing; ValueError (one line) if the file cannot be read.
 
-    content : name of the content in the message
+    file_description : name of the content in the message
     """
     return read_bytes(path, file_description).decode("latin-1").splitlines()
 

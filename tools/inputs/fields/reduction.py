@@ -1,12 +1,12 @@
 """Reduce a pressure field to few nodes, with new area shares that keep its sums at all loads (cubature).
 
 The outputs of a joint are sums over its nodes: area share times a function of the two pressures of the node
-(`preload_shape`, `moment_shape`) and of its position. A finite number of load cases gives a finite number of
-sums, and most of them are linearly dependent. Some nodes with positive shares keep all sums (`recombine`;
-Tchakaloff; Litterer and Lyons 2012). The fewest nodes that keep the sums within the tolerance are selected.
-Load cases in which the points miss the tolerance are added until the points meet it in new load cases. The
-selection uses rounded numbers (`footprint.reproducible`), so that it is the same on all processors; the
-selected nodes are not rounded.
+(`preload_pressure_ratio`, `moment_pressure_ratio`) and of its position. A finite number of load cases gives a
+finite number of sums, and most of them are linearly dependent. Some nodes with positive shares keep all sums
+(`recombine_weights`; Tchakaloff; Litterer and Lyons 2012). The fewest nodes that keep the sums within the
+tolerance are selected. Load cases in which the points miss the tolerance are added until the points meet it
+in new load cases. The selection uses rounded numbers (`footprint.reproducible`), so that it is the same on
+all processors; the selected nodes are not rounded.
 """
 
 from dataclasses import dataclass
@@ -230,7 +230,7 @@ def _deviation_above_tested_moments(
 ) -> float:
     """Largest deviation [1] of the sums at moments up to the one at which a row of bolts loses its force.
 
-    moment_limit : smallest of these moments over the largest one [1]
+    moment_ratio_limit : smallest of these moments over the largest one [1]
     """
     if moment_ratio_limit >= 1.0:
         return 0.0
@@ -253,8 +253,8 @@ class _SumSystem:
     unrounded_distribution : normalised pressure at all nodes
     sample_distribution    : sample (c) of the nodes, for finding the independent sums
     mixing_matrix          : random matrix (SKETCH_ROWS, c)
-    load_sums              : sums in the load cases
-    balance_scale          : divisors of the functions of `balance_functions`
+    load_case_sums         : sums in the load cases
+    equilibrium_scale      : divisors of the functions of `evaluate_equilibrium_functions`
     sketch_matrix          : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
     """
 
@@ -276,7 +276,7 @@ class _SumSystem:
         sample_distribution: PressureDistribution,
         load_case_sums: LoadCaseSums,
     ) -> "_SumSystem":
-        """System of the sums of `balance_functions`, and of the sums in initial load cases."""
+        """System of the sums of `evaluate_equilibrium_functions`, and of the sums in initial load cases."""
         scale = np.maximum(
             np.max(np.abs(evaluate_equilibrium_functions(rounded_distribution)), axis=0), np.finfo(float).tiny
         )

@@ -57,7 +57,7 @@ def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistri
 def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
     """Load cases from which the selection of points starts.
 
-    moment_limit : largest moment over the moment that unloads a row of bolts [1]
+    moment_ratio_limit : largest moment over the moment that unloads a row of bolts [1]
     """
     moments = [moment_ratio_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
     extremes = (-1.0, 1.0) if moment_ratio_limit < 1.0 else ()
@@ -242,7 +242,7 @@ class SumFunctions:
         When the joint is nearly open, few nodes carry the load: the sample needs more of them than their area
         share.
 
-        moment_limit : largest moment over the moment that unloads a row of bolts [1]
+        moment_ratio_limit : largest moment over the moment that unloads a row of bolts [1]
         """
         loads = [
             LoadCase(p, m * moment_ratio_limit, 0.0) for p in PRELOAD_RATIO_RANGE for m in (-1.0, 0.0, 1.0)
@@ -313,8 +313,8 @@ def _divide_into_node_blocks(
 ) -> Iterator[PressureDistribution]:
     """Divide the nodes into blocks whose values in all load cases fit into the processor's cache.
 
-    case_count   : number of load cases
-    whole_groups : divide only between groups
+    case_count        : number of load cases
+    keep_groups_whole : divide only between groups
     """
     unit = nodes_per_group(normalised_pressure.area_share.size) if keep_groups_whole else 1
     count = unit * max(_VALUES_PER_BLOCK // case_count // unit, -(-16 // unit))
@@ -365,7 +365,8 @@ def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
 def evaluate_equilibrium_functions(normalised_pressure: PressureDistribution) -> Array:
     """Functions (n, 9) whose sums over the nodes give area, centroid, force and moments of a field.
 
-    The functions are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.
+    The functions are 1, x, y, `preload_pressure_ratio` and `moment_pressure_ratio`, and both times x and
+    times y.
     """
     pressures = np.column_stack(
         [normalised_pressure.preload_pressure_ratio, normalised_pressure.moment_pressure_ratio]

@@ -421,7 +421,7 @@ def refine_turning_point(motion: Array, sample_index: int, motion_noise: float) 
 
     motion_noise : standard deviation of the noise of the motion
 
-    The parabola uses the samples within TURNING_POINT_WIDTH deviations of the turning point.
+    The parabola uses the samples within TURNING_POINT_NOISE_RATIO deviations of the turning point.
     The extreme sample itself would overestimate the motion, because of its noise.
     """
     distinct = np.abs(motion - motion[sample_index]) > TURNING_POINT_NOISE_RATIO * motion_noise

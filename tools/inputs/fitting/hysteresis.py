@@ -49,7 +49,7 @@ class NonlinearSpring:
 class HysteresisLaw:
     """Force as a function of the motion and its turning points: Masing friction and a parallel spring.
 
-    friction        : B(u), friction force or torque in first loading from rest, for motions u (...) >= 0
+    friction_force  : B(u), friction force or torque in first loading from rest, for motions u (...) >= 0
     friction_work   : integral [J] of B from 0 to u, for motions u (...) >= 0
     elastic_spring  : parallel nonlinear spring; None: no spring
     viscous_damping : viscous damping [N.s/m or N.m.s/rad]; acts in vibrations only
@@ -97,7 +97,7 @@ class HysteresisLaw:
     def loop_area(self, amplitude: Array) -> Array:
         """Dissipated energy (n) [J] of closed loops about rest with amplitudes a (n): 8 (w(a) - B(a) a/2).
 
-        B : friction force in first loading, w : its work
+        B is the friction force in first loading, w its work.
         """
         return np.asarray(
             8.0 * (self.friction_work(amplitude) - 0.5 * amplitude * self.friction_force(amplitude))

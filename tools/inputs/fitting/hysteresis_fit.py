@@ -113,12 +113,13 @@ def fit_measurement(
 ) -> tuple[Solution, Array, Measurement]:
     """Fit the unknowns twice: the first fit estimates the noise of each group of data, the second uses it.
 
-    alternative_starts  : {name: alternative start values} of the search
-    level_exchange      : stiffness at rest, and the unknown that is adjusted at each start to the measured
-                          stiffness
-    is_level_exchanged  : whether the stiffness at rest replaces that unknown during the search
-                          (`UnknownExchange`)
-    correct_measurement : function: values of the first fit -> corrected measurement, used in the second fit
+    alternative_starts     : {name: alternative start values} of the search
+    stiffness_exchange     : stiffness at rest, and the unknown that is adjusted at each start to the measured
+                             stiffness
+    is_stiffness_exchanged : whether the stiffness at rest replaces that unknown during the search
+                             (`UnknownExchange`)
+    correct_measurement    : function: values of the first fit -> corrected measurement, used in the second
+        fit
 
     Returns the solution, the noise (n) of the data, and the measurement of the second fit.
 

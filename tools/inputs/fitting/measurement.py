@@ -84,7 +84,8 @@ class ColumnNames:
         start_file         : parameter file with the start values
         is_force_plausible : whether the force at gross slip shows that the unit of the force is right
 
-        Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
+        Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches
+        WRONG_UNIT_STIFFNESS_RATIO.
         """
         if 1.0 / WRONG_UNIT_STIFFNESS_RATIO < stiffness_ratio < WRONG_UNIT_STIFFNESS_RATIO:
             return

@@ -147,7 +147,7 @@ class FitResult:
     """Result of a fit: fitted parameter file, solution, facts, plots, notes.
 
     facts                : {name: (value, unit, meaning)} of results that are no parameters
-    pictures             : plots, drawn side by side
+    fit_plots            : plots, drawn side by side
     notes                : messages for the user, one line each
     confidence_intervals : {name: ends of the 95 % confidence interval}, if they are known
     doubt                : reason to reject the fit that the procedure found, as text; None: no reason

@@ -47,13 +47,14 @@ class SelfAffineLaw:
     log_power   : ln(Phi) at the wavelength `reference_wavelength`, Phi in m2
     reference_wavelength : [m]
     covariance  : (2, 2) of (H, log_power)
-    offset      : constant added to the law, over its value at the shortest scale [1]: > 0 for noise, < 0 for
-                  missing short waves
-    deviation   : standard deviation of ln(value) from the law beyond statistical scatter [1]
+    relative_offset : constant added to the law, over its value at the shortest scale [1]: > 0 for noise, < 0
+                  for missing short waves
+    excess_deviation : standard deviation of ln(value) from the law beyond statistical scatter [1]
     dimension_drift : change of D over the range [1]
     drift_error : standard error of the drift [1]
     min_scale, max_scale : range of scales [m]
-    covers_interval : whether D covers its whole interval 1 to 2 over all scales, and this range is short
+    drift_covers_dimensions : whether D covers its whole interval 1 to 2 over all scales, and this range is
+        short
     """
 
     H: float

@@ -186,8 +186,8 @@ class ScanRoughness:
     """Roughness of one scan without form and spikes.
 
     is_areal      : whether the scan is an areal map
-    rms           : [m] root mean square height (Sq; Rq of a profile)
-    mean_absolute : [m] mean absolute height (Sa; Ra of a profile)
+    rms_height : [m] root mean square height (Sq; Rq of a profile)
+    mean_absolute_height : [m] mean absolute height (Sa; Ra of a profile)
     h             : [m] rms height of waves up to longest_wave
     slope         : [1] rms slope of the isotropic surface, of waves from longest_wave down to shortest_wave
     longest_wave, shortest_wave : wavelengths [m]

@@ -70,7 +70,8 @@ def with_surface(
     These are the rms heights of the measured sides. With the law `roughness` also slope, longest wave and, if
     it is determined, the Hurst exponent. With other laws also D and G, if they are determined.
 
-    force : set D and G or the Hurst exponent even if they are not determined; ValueError if one is not finite
+    set_undetermined : set D and G or the Hurst exponent even if they are not determined; ValueError if one is
+        not finite
     """
     sure = set_undetermined or undetermined_reason(identification, file.joint) is None
     if file.law == ROUGHNESS_LAW:

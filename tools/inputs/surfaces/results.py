@@ -40,7 +40,7 @@ class RoughnessEstimate(Estimate):
     As D approaches 1, the interval spans hundreds of decades. If it exceeds the range of positive
     floating-point numbers, G is not determined: value, low and high are nan.
 
-    decades : length of the interval [decades], whether or not G is determined
+    interval_decades : length of the interval [decades], whether or not G is determined
     """
 
     interval_decades: float

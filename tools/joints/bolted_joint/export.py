@@ -146,7 +146,8 @@ def _distribute_to_nodes(
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times stiffness per area.
 
-    total_outputs : {name in TOTAL_OUTPUTS: total}; None: the totals of `spring`
+    stiffness_and_damping_totals : {name in TOTAL_STIFFNESS_AND_DAMPING_NAMES: total}; None: the totals of
+        `spring`
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """

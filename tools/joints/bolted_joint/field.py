@@ -103,10 +103,10 @@ def insert_elastic_bodies(
 ) -> ParameterFile:
     """Compute the elastic bodies of an assembly; return the parameter file of the joint with them.
 
-    file           : parameters of the joint with rigid sides
-    preload        : [N] per bolt
-    attachment     : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
-    pressure_shape : normalised pressure at all nodes of the finite elements
+    parameter_file      : parameters of the joint with rigid sides
+    preload             : [N] per bolt
+    attachment          : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
+    normalised_pressure : normalised pressure at all nodes of the finite elements
     """
     from .new.plate_finite_elements import compute_joint_of_assembly
 

@@ -53,7 +53,7 @@ paper."""
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figures of the bolted joint, from the results of the main job (`JobResult`)."""
+    """Figures of the bolted joint, from the results of the main job (`PipelineResult`)."""
     joint = load_default("bolted_joint").values
     return [
         Figure(

@@ -51,7 +51,7 @@ def opening_load(sample: JointSample, preload: Array) -> Array:
 
 
 def loss_factor(sample: JointSample, preload: Array) -> Array:
-    """Loss factor (m) [1] of loops of the interface under SHEAR_RATIO of the force of all bolts.
+    """Loss factor (m) [1] of loops of the interface under LOOP_SHEAR_FORCE_RATIO of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
     finds the displacement of the shear force, from that of a virgin curve with the same initial stiffness and

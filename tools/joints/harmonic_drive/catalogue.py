@@ -52,7 +52,7 @@ ratio."""
 ACTUATOR_SERIES = ("CHA", "FHA", "RSF")
 """Series with a built-in motor; their published torques are not those of the gear alone."""
 HIGH_TORQUE_SERIES = ("CSG", "SHG")
-"""Series with higher torques than the others, by the factor STRONG_TORQUE_RATIO."""
+"""Series with higher torques than the others, by the factor HIGH_TORQUE_SERIES_RATIO."""
 HIGH_TORQUE_SERIES_RATIO = 1.3
 """Torque of a CSG drive over that of a CSF drive of the same size and ratio [1]."""
 SERIES_WITH_PUBLISHED_TORQUES = ("CSG", "SHG", "HFUC", "HFUS")

@@ -87,13 +87,13 @@ def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, s
 class DriveTestRig:
     """Simulated test rig: a drive whose input rotates at a steady speed, with a torque at its output.
 
-    drive       : running drive; inputs: angle and speed of wave generator (phi1, w1) and output (phi2, w2);
-                  first outputs: transmitted torque tau, motor torque tau1
-    ratio       : speed ratio [1]
-    presliding  : rotation [rad] of the wave generator before its friction slips
-    stiffness   : [N.m/rad] without torque
-    motor_angle : phi1 [rad]
-    step_count  : steps so far
+    drive               : running drive; inputs: angle and speed of wave generator (phi1, w1) and output
+                          (phi2, w2); first outputs: transmitted torque tau, motor torque tau1
+    ratio               : speed ratio [1]
+    presliding_rotation : rotation [rad] of the wave generator before its friction slips
+    stiffness           : [N.m/rad] without torque
+    motor_angle         : phi1 [rad]
+    step_count          : number of steps so far
 
     `open_fmu_test_rig` and `make_test_rig` create a rig.
     """
@@ -124,8 +124,8 @@ class DriveTestRig:
     def efficiency(self, speed: float, load_torque: float) -> float:
         """Efficiency [1]: output power over motor power.
 
-        speed : [rad/s] of the motor, > 0
-        load  : [N.m] at the output against the motion, > 0
+        speed       : [rad/s] of the motor, > 0
+        load_torque : [N.m] at the output against the motion, > 0
         """
         return load_torque / (
             abs(self.ratio) * self.motor_torque(speed, -math.copysign(load_torque, self.ratio))
@@ -192,7 +192,7 @@ def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
 def lost_motion(spring: HarmonicDriveSpring) -> float:
     """Lost motion [rad]: change of the mean angle of both branches between -4 % and +4 % of the rated torque.
 
-    The branches are those of the loop up to the rated torque; LOST_MOTION_RATIO is the 4 %.
+    The branches are those of the loop up to the rated torque; LOST_MOTION_TORQUE_RATIO is the 4 %.
     """
     rated = float(spring.joint.rated_torque)
     ends = (

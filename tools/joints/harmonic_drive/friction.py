@@ -181,7 +181,7 @@ def friction_parameters(
     stated_names    : of FRICTION_COLUMNS; contradictions of these numbers are errors
 
     friction_coulomb = starting torque
-    friction_viscous = (running torque - starting torque)/CATALOGUE_SPEED
+    friction_viscous = (running torque - starting torque)/CATALOGUE_MOTOR_SPEED
     load_loss        = 1/efficiency - 1 - running torque ratio/rated torque, at least 0
     load_loss_back   = 1 - ratio starting torque/back-driving torque, at least 0
 
@@ -271,7 +271,7 @@ def describe_interval(interval: tuple[float, float]) -> str:
 
 
 def rated_efficiency(drive: DriveParameters, temperature: float = REFERENCE_TEMPERATURE) -> float:
-    """Efficiency [1] of a drive at rated torque and CATALOGUE_SPEED, without hysteresis.
+    """Efficiency [1] of a drive at rated torque and CATALOGUE_MOTOR_SPEED, without hysteresis.
 
     temperature : [K] of the lubricant
     """
@@ -322,7 +322,7 @@ def add_friction_estimates(
 ) -> CatalogueEntry:
     """Add estimates of the friction numbers that are not published for a drive.
 
-    published_drives : result of `collect_published`
+    published_drives : result of `collect_published_friction`
 
     Without a rated torque there is no estimate of the efficiency.
     """

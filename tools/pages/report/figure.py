@@ -40,7 +40,7 @@ class ComparisonRow(NamedTuple):
     unit                : SI unit of both numbers
     published, computed : the numbers
     is_upper_limit      : whether the published number is an upper limit
-    role                : ROLE_SET, ROLE_INDEPENDENT or ROLE_PREDICTED
+    role                : ROLE_PARAMETER_SOURCE, ROLE_INDEPENDENT or ROLE_PREDICTED
     """
 
     name: str

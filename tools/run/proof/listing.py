@@ -1,6 +1,6 @@
 """Files that an exporting tool submits to a list of FMI tools, by the FMI cross-check rules, version 4.1.
 
-The folder fmus/VERSION/cs/PLATFORM/TOOL/TOOL_VERSION/MODEL contains MODEL.fmu, MODEL_in.csv, MODEL_ref.csv,
+The folder fmus/VERSION/cs/PLATFORM/TOOL/RELEASE/MODEL contains MODEL.fmu, MODEL_in.csv, MODEL_ref.csv,
 MODEL_ref.opt and README.md. The files describe one experiment that needs no parameter set: the first
 validation, or if there is none the first experiment of another purpose.
 """
@@ -33,7 +33,7 @@ FMI2_PLATFORMS = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 def write_listing(proof: Proof, output_folder: Path, overwrite: bool = False) -> list[Path]:
     """Write the files of a passed proof into one folder for each platform of the FMU, and return the folders.
 
-    force : overwrite files also in a folder whose README.md was not written by jointfmu
+    overwrite : overwrite files also in a folder whose README.md was not written by jointfmu
 
     Raises ValueError if no experiment is suitable, or if a file must not or cannot be written.
     """

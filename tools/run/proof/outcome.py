@@ -13,9 +13,9 @@ from .manifest import Experiment
 class WorstPoint:
     """Point of an output with the largest ratio of error to tolerance.
 
-    time             : [s]
-    value, reference : computed and reference value of the output
-    tolerance        : allowed absolute error
+    time                            : [s]
+    computed_value, reference_value : computed and reference value of the output
+    tolerance                       : allowed absolute error
     """
 
     output: str
@@ -49,8 +49,8 @@ class ExperimentOutcome:
 
     interface : FMI interface in which the experiment was executed; empty if it was not executed
     worst_points    : worst point of each output
-    compared_points : number of compared times
-    error     : error message; empty if none occurred
+    compared_time_count : number of compared times
+    error_message : error message; empty if none occurred
     """
 
     experiment: Experiment
@@ -87,9 +87,9 @@ class Proof:
 
     importer   : name of the importer
     interfaces : FMI interfaces in which experiments were executed
-    compared_start_count : number of compared start values
-    start_differences : a line for each start value that differs from modelDescription.xml or from
-        `ExpectedContents`
+    compared_start_value_count : number of compared start values
+    start_value_differences : a line for each start value that differs from modelDescription.xml or from
+        `ExpectedFmuContents`
     outcomes   : outcomes of the experiments, for each interface
     """
 

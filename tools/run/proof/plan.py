@@ -30,10 +30,10 @@ DEFAULT_STEP_COUNT, MAX_STEP_COUNT = 500, 10_000_000
 class ExperimentPlan:
     """Plan of an experiment in one interface of an FMU: the task for an importer.
 
-    interface      : FMI interface; empty if the experiment is not executed
-    nominal_values : {output: nominal value}
-    task           : fields of the `Task`; empty if the experiment cannot be executed
-    refusal_reason : why the experiment cannot be executed with this FMU; empty if it can
+    interface              : FMI interface; empty if the experiment is not executed
+    nominal_values         : {output: nominal value}
+    experiment_task_fields : fields of the `ExperimentTask`; empty if the experiment cannot be executed
+    refusal_reason         : why the experiment cannot be executed with this FMU; empty if it can
     """
 
     experiment: Experiment
@@ -84,7 +84,7 @@ class ExperimentPlan:
     def evaluate_importer_answer(self, importer_answer: Mapping[str, Any] | None) -> ExperimentOutcome:
         """Compare the answer of an importer with the reference results.
 
-        answer : {"rows"} or {"error"} from a `worker`; None if the experiment was not executed
+        importer_answer : {"rows"} or {"error"} from a `worker`; None if the experiment was not executed
         """
         if importer_answer is None:
             return ExperimentOutcome(self.experiment, self.interface, error_message=self.refusal_reason)
@@ -154,7 +154,7 @@ def _communication_points(experiment: Experiment, description: "ModelDescription
 
 
 def make_task_fields(fmu: Path, folder: str, interface: str, **other_fields: object) -> dict[str, object]:
-    """Fields of a `Task`, as a JSON object."""
+    """Fields of a `ExperimentTask`, as a JSON object."""
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **other_fields}
 
 

@@ -65,7 +65,8 @@ def input_values(
 ) -> list[Any]:
     """Values of an input at times (n) [s]: real inputs are interpolated linearly, others are held.
 
-    is_left_limit : at a jump, take the value before it instead of the value after it; real inputs only
+    takes_value_before_jump : at a jump, take the value before it instead of the value after it; real inputs
+        only
     """
     if variable_kind(variable) != "real":
         return [

@@ -40,8 +40,8 @@ def main() -> None:
 def _execute_task(execute_experiment: Any, task_fields: dict[str, Any], log_file: TextIO) -> dict[str, Any]:
     """Execute a task and return the answer: {"rows", "messages"} or {"error", "messages"}.
 
-    execute : function of the importer
-    log     : file with the output of the importer
+    execute_experiment : function of the importer
+    log_file           : file with the output of the importer
 
     An error is one line: the message of the FMU if there is one, else that of the importer.
     """

@@ -27,9 +27,10 @@ class CalibrationFit:
 class PublishedNumbers:
     """Published numbers of a joint, and functions that compute them.
 
-    papers      : names of the papers' files in models/reference/
-    observables : {quantity of a reference file: function of the parameter set and the point's arguments}
-    calibration : fits to calibration points, in the order of execution
+    papers               : names of the papers' files in models/reference/
+    observable_functions : {quantity of a reference file: function of the parameter set and the point's
+                           arguments}
+    calibration          : fits to calibration points, in the order of execution
     """
 
     papers: Sequence[str] = ()

@@ -42,7 +42,7 @@ class Guess:
     rule   : `constant`: a; `power law` through a and b; `offset`: a + b - c; `proportion`: a b/c; `growth`:
         from a, with the exponent of the power law from b to c
     points : ids of a, b, c; for a point that is no calibration point, its own guess is used
-    over   : argument of the power law, a key of `Point.where`; empty for other rules
+    over   : argument of the power law, a key of `PublishedPoint.where`; empty for other rules
     """
 
     rule: str
@@ -77,7 +77,7 @@ class Guess:
 class PublishedPoint:
     """Published number or claim.
 
-    quantity  : name of the computed quantity, a key of `PublishedNumbers.observables`
+    quantity  : name of the computed quantity, a key of `PublishedNumbers.observable_functions`
     where     : {argument of the quantity: value [SI]}
     value     : published number in `unit`; True or False for a claim
     place     : equation, table or figure in the paper

@@ -34,9 +34,9 @@ class JointSample(Protocol):
 class DerivedOutput:
     """Quantity that is computed from several evaluations of the joint. It is 0 at zero load.
 
-    variable : its name, unit and meaning
-    compute  : function (sample, loads (m) above zero, ascending) -> values (m); the last load is the end of
-        the ramp
+    variable       : its name, unit and meaning
+    compute_values : function (sample, loads (m) above zero, ascending) -> values (m); the last load is the
+        end of the ramp
     """
 
     variable: Variable
@@ -50,9 +50,9 @@ class LoadCurves:
     model    : name of the FMU that is evaluated
     load     : the ramped input
     outputs  : outputs of the FMU
-    knots    : number of loads at which the FMU is evaluated if the ramp has more loads; between them the
+    knot_count : number of loads at which the FMU is evaluated if the ramp has more loads; between them the
         outputs are interpolated by cubic splines. None: at all loads
-    derived  : further quantities
+    derived_outputs : further quantities
     default_end  : function, parameter set -> default end of the ramp
     max_load     : function, parameter set -> largest load of the tabulated law
     load_loss    : function, parameter set -> part of the input in a file that is no load in the ramp

@@ -31,13 +31,13 @@ class UncertaintyProblem:
     """Uncertainty study of a joint or an FMU.
 
     title     : kind of the joint, or name of the FMU file
-    load      : the ramped input
+    ramped_input : the ramped input, called the load
     loads     : load ramp (m), ascending for a joint
     units     : {output: unit}
     uncertain_parameters : parameters with a distribution; the load is the last one if it has a distribution
     settings  : {name: value} of all runs of an FMU
     evaluator : evaluation of one run
-    record    : JSON object that identifies joint or FMU, and ramp
+    identifying_record : JSON object that identifies joint or FMU, and ramp
     """
 
     title: str
@@ -72,9 +72,9 @@ def state_problem(
 ) -> UncertaintyProblem:
     """State the problem of a parameter file and settings.
 
-    settings : {name: value or text of a distribution}
-    ramp_end : end of the load ramp; None: end of the joint's law, or of the file
-    points   : number of points of the ramp
+    settings         : {name: value or text of a distribution}
+    ramp_end         : end of the load ramp; None: end of the joint's law, or of the file
+    ramp_point_count : number of points of the ramp
 
     A parameter without setting is uniformly distributed over the range that the file states, if it does. So
     is the load, if its start value in the file has a range, unless `ramp_end` is stated.
@@ -175,7 +175,7 @@ def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
 def _check_uncertain(parameter: UncertainParameter, parameter_field: Any) -> None:
     """Raise ValueError if a parameter cannot be uncertain, or its distribution exceeds its interval.
 
-    item : dataclass field that declares the parameter
+    parameter_field : dataclass field that declares the parameter
     """
     if "allowed" in parameter_field.metadata:
         raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")

@@ -33,8 +33,8 @@ class Bands:
     quantiles : {output: (len(QUANTILES), m)}
     mean, standard_deviation : mean and standard deviation, {output: (m)}
     nominal   : outputs for the values of the parameter file, or the start values of the FMU, {output: (m)}
-    samples   : outputs of all samples
-    refusals  : the samples that the law refuses
+    sampled_outputs : outputs of all samples
+    refused_samples : the samples that the law refuses
     units     : {output: unit}
     """
 
@@ -146,10 +146,10 @@ class SobolIndices:
 class Sensitivity:
     """Sobol' indices along the load ramp.
 
-    loads           : (m)
-    parameter_names : names of the uncertain parameters (d)
-    outputs         : {output: indices (m, d)}
-    base_samples    : number of base samples
+    loads             : (m)
+    parameter_names   : names of the uncertain parameters (d)
+    outputs           : {output: indices (m, d)}
+    base_sample_count : number of base samples
     """
 
     loads: Array

@@ -42,9 +42,9 @@ IN_MEMORY_EXECUTION = Execution()
 class SampledOutputs:
     """Outputs of n runs, in single precision.
 
-    outputs  : {name: (m, n)}; NaN for runs that failed
-    errors   : {index of a run that failed: error message}, in ascending order
-    new_runs : number of runs that were not in the folder before
+    outputs       : {name: (m, n)}; NaN for runs that failed
+    errors        : {index of a run that failed: error message}, in ascending order
+    new_run_count : number of runs that were not in the folder before
     """
 
     outputs: Mapping[str, SinglePrecisionArray]
@@ -70,9 +70,9 @@ def evaluate_runs(
 ) -> SampledOutputs:
     """Do the runs that are not yet in the folder of a study, and keep each run when it is finished.
 
-    runs      : settings of all runs
-    names     : outputs that are returned, of `row_count` values each
-    file_name : file of the runs in the folder
+    runs         : settings of all runs
+    output_names : outputs that are returned, of `row_count` values each
+    file_name    : file of the runs in the folder
 
     The results do not depend on the order of the runs, or on where they are done.
 

@@ -286,9 +286,9 @@ def draw_samples(uncertain_parameters: Sequence[UncertainParameter], points: Arr
 class RefusedSamples:
     """Samples that the law refuses.
 
-    count   : number of refused samples
-    example : {name: value} of the first refused sample
-    reason  : error message of the law for this sample
+    count                : number of refused samples
+    first_refused_sample : {name: value} of the first refused sample
+    reason               : error message of the law for this sample
     """
 
     count: int

@@ -99,7 +99,7 @@ class LoadRamp:
 class FmuRamp:
     """Evaluator that runs an FMU along its load ramp, see `RampEvaluator`.
 
-    content : bytes of the FMU, if it is to be sent to another machine
+    fmu_content : bytes of the FMU, if it is to be sent to another machine
     """
 
     runs_per_job: ClassVar[int] = 1
@@ -151,10 +151,10 @@ class JointRamp:
 
     loads            : load ramp (m), ascending
     load_is_relative : whether a sample of the load is a factor on the ramp; else it replaces the last load
-    reopens          : whether each sample opens the joint, for parameters that the FMU does not expose; this
+    reopens_joint    : whether each sample opens the joint, for parameters that the FMU does not expose; this
         takes seconds
-    rows             : indices of the loads that are evaluated; None: all
-    key              : identifies the study
+    load_indices     : indices of the loads that are evaluated; None: all
+    study_key        : text that identifies the study
     """
 
     file: ParameterFile

@@ -190,7 +190,7 @@ def corrected_spot_distribution(law: Hu2023) -> SpotDistribution:
     ) -> PowerTerm:
         """Power law coefficient (s/s_ec)^exponent of a regime, as a function of s/s_min.
 
-        first_bound : log-area at which regime 0 begins
+        first_regime_lower_log_area : log-area at which regime 0 begins
         """
         lower = bounds[regime_index] if regime_index else first_regime_lower_log_area
         upper = bounds[regime_index + 1] if regime_index < 3 else None
@@ -232,8 +232,8 @@ def _tangential_stiffness_terms(
 ) -> tuple[RegimeTerm, ...]:
     """Tangential stiffness k_t = 8 G' r (1 - t/(mu f))^(1/3) of the three regimes that are not fully plastic.
 
-    load_terms    : load of a spot in each of these regimes
-    regime_bounds : log-areas of the ends of the regimes
+    spot_load_terms : load of a spot in each of these regimes
+    regime_bounds   : log-areas of the ends of the regimes
 
     Eqs. 39, 41-43. The shear force t of a spot depends on the choice `traction`:
 

@@ -18,8 +18,8 @@ from ..surface import ElasticConstants, contact_modulus, contact_shear_modulus
 from .persson import bearing_curve_log_slope, contact_area_shares
 
 FEW_SPOTS_STIFFNESS_FACTOR = 0.3
-"""Factor C [1] of the stiffness at small load, see `RoughnessLaw.spots`; fitted to boundary elements
-(studies/validity_stiffness.py roughness)."""
+"""Factor C [1] of the stiffness at small load, see `RoughnessLaw.spot_distribution`; fitted to boundary
+elements (studies/validity_stiffness.py roughness)."""
 STIFFNESS_ONSET_LOAD_RATIO = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
 MIN_VALIDATED_LOAD_RATIO = 0.3
@@ -178,7 +178,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
 
 
 def onset_pressure(law: RoughnessLaw) -> Number:
-    """Lowest pressure p_1 [Pa] of the law, at log-area u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
+    """Lowest pressure of the law, p_1 = STIFFNESS_ONSET_LOAD_RATIO E* h longest_wave/A_0 [Pa], at u = 0."""
     return (
         STIFFNESS_ONSET_LOAD_RATIO
         * contact_modulus(law.side1, law.side2)

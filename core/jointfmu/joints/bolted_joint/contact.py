@@ -59,7 +59,7 @@ class NormalState(NamedTuple):
 class Contact:
     """Contact interface: points carry the contact pressure, patches the friction.
 
-    curve               : contact pressure [Pa] over approach [m]
+    pressure_curve      : contact pressure [Pa] over approach [m]
     has_elastic_members : the patches take the normal force of the points around them. Between rigid members
                           each patch has its own pressure at tightening, and opens at its own position.
     """

@@ -100,7 +100,7 @@ class FrictionUpdate:
 class FrictionLaw:
     """Friction law of the patches.
 
-    curve                : contact pressure [Pa] over approach [m]
+    pressure_curve       : contact pressure [Pa] over approach [m]
     stiffness_ratio      : K_T/K_N [1]
     friction_coefficient : mu [1]
     has_elastic_members  : members are elastic: slip is in the plane for any relative displacement

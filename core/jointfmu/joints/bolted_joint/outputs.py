@@ -202,7 +202,7 @@ def joint_outputs(
     rates: Sequence[Number],
     p_max: Number,
 ) -> dict[str, Number]:
-    """Outputs {name: value} of the joint, from the sums over the contact named in SUM_NAMES.
+    """Outputs {name: value} of the joint, from the sums over the contact named in CONTACT_SUM_NAMES.
 
     displacement, rotation : s_rel (3) [m] and theta (3) [rad] of side 2
     rates                  : v_rel and omega (6) [m/s, rad/s]

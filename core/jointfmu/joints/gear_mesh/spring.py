@@ -185,7 +185,7 @@ def mesh_outputs(
     """Outputs of the gear mesh at a motion (phi1, w1, phi2, w2).
 
     load, stiffness, energy : [N], [N/m], [J] of one tooth pair at |s_rel|
-    closing_end             : [m] deflection at which the closing of the contact ends
+    closing_end_deflection  : [m] deflection at which the closing of the contact ends
     """
     _, w1, _, w2 = motion
     s = deflection(mesh, motion)

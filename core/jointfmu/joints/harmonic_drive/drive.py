@@ -204,7 +204,7 @@ class DriveParameters(ABC):
         ]
 
     def find_table_parameter_limits(self) -> list[ParameterLimit]:
-        """Limits of parameters, besides `find_limits`, that a table up to the last torque requires."""
+        """Further parameter limits: those that a table up to the last torque requires."""
         return []
 
 

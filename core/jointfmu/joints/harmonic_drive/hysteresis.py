@@ -71,8 +71,8 @@ def slider_shares(
 ) -> tuple[list[Number], list[Number]]:
     """Share of each slider in the stiffness K_h and in the friction limit M_f [1]; the sum of each is 1.
 
-    exponent         : exponent m of K_N ~ P^m
-    remaining_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
+    exponent                  : exponent m of K_N ~ P^m
+    remaining_friction_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
     """
     rate = [remaining**exponent if remaining else 0.0 for remaining in remaining_friction_shares]
     used_shares = [
@@ -90,9 +90,8 @@ def _relative_wind_up(remaining_friction_share: float, exponent: Number) -> Numb
 
 @dataclass(frozen=True, slots=True)
 class HysteresisSliders(Sliders):
-    """Sliders of the hysteresis of a drive.
+    """Sliders of the hysteresis of a drive; `stiffness` (n) [N.m/rad].
 
-    stiffness      : (n) [N.m/rad] of the springs
     friction_limit : (n) [N.m] of the friction torques; all zero without hysteresis
     """
 
@@ -196,9 +195,9 @@ def _find_limit_torque(
 
     Found by fixed-point iteration.
 
-    unit_sliders     : sliders with the sum of limits 1 N.m
-    half_loop_torque : [N.m] midline torque at half of hysteresis_loss. At zero total torque the friction
-        balances it; M_f equals it if all sliders have reversed.
+    sliders_with_unit_limit : sliders with the sum of limits 1 N.m
+    half_loop_torque        : [N.m] midline torque at half of hysteresis_loss. At zero total torque the
+        friction balances it; M_f equals it if all sliders have reversed.
 
     Raises ValueError if hysteresis_stiffness is too small for such a loop.
     """

@@ -49,7 +49,8 @@ class SplineNode(NamedTuple):
     """Node of the quintic spline of the midline.
 
     angle, torque, stiffness : wind-up [rad], torque [N.m] and stiffness [N.m/rad]
-    slope_before, slope_after : derivative of the stiffness [N.m/rad2] on the side of smaller and larger angle
+    stiffness_slope_before, stiffness_slope_after : derivative of the stiffness [N.m/rad2] on the side of
+        smaller and larger angle
     """
 
     angle: Number
@@ -97,7 +98,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
     corner at the wind-up theta_i, within theta_i (1 +- corner), the stiffness changes from one line to the
     next by the smooth step 3 t^2 - 2 t^3. Outside this range torque and angle are exactly those of the lines.
     The torque is twice continuously differentiable everywhere. With corner = 0 the angles are those of the
-    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER_RATIO): a kink without an event.
+    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER_HALF_WIDTH_RATIO): a kink without an event.
     """
 
     K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0, le=MAX_STIFFNESS)
@@ -151,7 +152,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
 
     @property
     def corner_half_width_ratio(self) -> Number:
-        """Half-width of a smoothed corner over its wind-up [1], at least MIN_CORNER_RATIO."""
+        """Half-width of a smoothed corner over its wind-up [1], at least MIN_CORNER_HALF_WIDTH_RATIO."""
         return np.maximum(self.corner, MIN_CORNER_HALF_WIDTH_RATIO)
 
     @property
@@ -325,9 +326,10 @@ def _sample_stiffness(
 ) -> Array:
     """Stiffness (m, n) at m sample points inside each of n quintic segments.
 
-    segment_widths, torque_steps : (n) widths and torque increments of the segments
-    node_stiffness               : (n + 1) stiffness at the nodes
-    slope_after, slope_before    : (n) derivative of the stiffness at the start and at the end of each segment
+    segment_widths, torque_steps                  : (n) widths and torque increments of the segments
+    node_stiffness                                : (n + 1) stiffness at the nodes
+    stiffness_slope_after, stiffness_slope_before : (n) derivative of the stiffness at the start and at the
+                                                    end of each segment
     """
     t = _SEGMENT_SAMPLE_POINTS[:, None]
     first, last = node_stiffness[:-1], node_stiffness[1:]

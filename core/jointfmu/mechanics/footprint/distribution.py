@@ -65,7 +65,7 @@ class PressureDistribution:
     def merge_nodes(self, keeps_moment_pressure: bool = True) -> "MergedDistribution":
         """Merge nodes that have the same pressure at every preload and moment.
 
-        keeps_moment : False: without moment; merge all nodes with the same pressure at every preload
+        keeps_moment_pressure : False: without moment; merge all nodes with the same pressure at every preload
         """
         tilt = self.moment_pressure_ratio if keeps_moment_pressure else 0.0 * self.moment_pressure_ratio
         keys = np.round(np.column_stack([self.preload_pressure_ratio, tilt]), PRESSURE_DECIMALS)
@@ -165,8 +165,8 @@ class NodalField:
     Optional friction patches represent the friction.
 
     Raises ValueError if the entries of the points, or of the patches, have different lengths or do not
-    balance. Balanced within BALANCE_TOLERANCE: the sum of shares is 1, the centroid is the origin, the mean
-    of `equal` is 1, the mean of `tilt` is 0.
+    balance. Balanced within NODAL_FIELD_BALANCE_TOLERANCE: the sum of shares is 1, the centroid is the
+    origin, the mean of `equal` is 1, the mean of `tilt` is 0.
     """
 
     share: tuple[float, ...] = series_field(

@@ -151,7 +151,7 @@ def _divide_nodes_among_patches(distribution: PressureDistribution, patch_centre
     Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
     this is repeated LLOYD_ITERATIONS times.
 
-    centres : (m, 2) initial positions of the patches
+    patch_centres : (m, 2) initial positions of the patches
     """
     share, (x, y) = distribution.area_share, distribution.position.T
     weight, count = (

@@ -2,9 +2,9 @@
 
 Force and stiffness of a joint are sums over its nodes: share times position times a function of the approach
 of the node. For all laws these functions are close to powers of the pressure by preload and moment, changed
-by a normal displacement and a tilt (`_sample_functions`). Most sums of such functions depend on few others.
-So a subset of the nodes with other shares has nearly the same sums (`elimination`). A symmetric contact stays
-symmetric.
+by a normal displacement and a tilt (`_sample_load_functions`). Most sums of such functions depend on few
+others. So a subset of the nodes with other shares has nearly the same sums (`elimination`). A symmetric
+contact stays symmetric.
 
 The choice of nodes and their shares are computed with rounded numbers (`reproducible`); the result contains
 the unrounded nodes. studies/fields_explanation.py prints the deviation from the sums over all nodes.

@@ -21,8 +21,8 @@
 #define COLD_FUNCTION __attribute__((cold))
 #endif
 
-/* Define `loop_baseline`, for any processor and optimised for size, and `loop_avx`, from an ALWAYS_INLINE function
- * `loop`. */
+/* Define two functions from an ALWAYS_INLINE function `loop`: its name with the ending `_baseline`, for any processor
+ * and optimised for size, and with the ending `_avx`. */
 #define DEFINE_BASELINE_AND_AVX(loop, parameters, arguments)         \
     COLD_FUNCTION static void loop##_baseline parameters             \
     {                                                                \

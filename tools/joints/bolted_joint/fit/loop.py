@@ -389,7 +389,7 @@ def _exchange_stiffness_level(
 ) -> UnknownExchange | None:
     """Replace the unknown parameter that sets the stiffness level by the unknown stiffness at rest [N/m].
 
-    compute_rest_stiffness : {name: value} -> stiffness at rest [N/m]
+    compute_stiffness_at_rest : {name: value} -> stiffness at rest [N/m]
 
     Returns the exchange of unknowns; None if the level is not fitted.
     """

@@ -44,16 +44,16 @@ damping."""
 class CombinedSpring(NamedTuple):
     """Bolted joint at fixed preload and moment, with all nodes combined to one spring.
 
-    force_table           : increase of the force [N] from the tightened state, over the approach from there
-                            [m]
-    damping_table         : rows (n, 2) of approach [m] and dissipation factor eta_n [1]
-    shear_ratio           : K_T/K_N [1]
-    preload_contact_force : normal force of the interface at tightening [N]
-    pair_boundaries       : rows (n, 3) of approach [m], normal force [N] and stiffness [N/m]; the friction
-                            springs between two rows are combined to one pair of sliders
-    slider_properties     : rows (2 n - 2, 2) of stiffness [N/m] and friction limit [N] at tightening: first
-                            the slider of each pair that slips earlier, then the other slider of each pair
-    bolt_forces           : preload force (b) [N] at each bolt position, all bolts of a position together
+    force_table            : increase of the force [N] from the tightened state, over the approach from there
+                             [m]
+    damping_table          : rows (n, 2) of approach [m] and dissipation factor eta_n [1]
+    shear_stiffness_ratio  : K_T/K_N [1]
+    preload_contact_force  : normal force of the interface at tightening [N]
+    slider_pair_boundaries : rows (n, 3) of approach [m], normal force [N] and stiffness [N/m]; the friction
+                             springs between two rows are combined to one pair of sliders
+    slider_properties      : rows (2 n - 2, 2) of stiffness [N/m] and friction limit [N] at tightening: first
+                             the slider of each pair that slips earlier, then the other slider of each pair
+    bolt_forces            : preload force (b) [N] at each bolt position, all bolts of a position together
     """
 
     force_table: InterpolationTable

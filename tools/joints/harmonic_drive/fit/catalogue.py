@@ -1,11 +1,11 @@
 """Parameters of a drive from the torsional stiffness in a catalogue (K1, K2, K3, T1, T2).
 
-Two laws. `catalogue` (`make_line_drive_from_row`): three lines, taken from the row without a fit; for
-comparison the law `hu2023` is fitted too. `hu2023` (`fit_contact_pair_law`): smooth law of the contact pair
-of flexspline and flexible bearing. The fit meets the angle at T1, T2 and the rated torque, and approximates
-the lines elsewhere up to max_torque. Its unknowns are those of a fit to a measured curve. `torque_smoothing`,
-the torque below which the pressure does not yet grow, is T1, where the stiffness of the catalogue starts to
-rise. It becomes a fourth unknown if three unknowns do not meet the angles.
+Two laws. `catalogue` (`make_drive_with_catalogue_law_from_row`): three lines, taken from the row without a
+fit; for comparison the law `hu2023` is fitted too. `hu2023` (`fit_contact_pair_law`): smooth law of the
+contact pair of flexspline and flexible bearing. The fit meets the angle at T1, T2 and the rated torque, and
+approximates the lines elsewhere up to max_torque. Its unknowns are those of a fit to a measured curve.
+`torque_smoothing`, the torque below which the pressure does not yet grow, is T1, where the stiffness of the
+catalogue starts to rise. It becomes a fourth unknown if three unknowns do not meet the angles.
 """
 
 from collections.abc import Mapping, Sequence
@@ -81,9 +81,10 @@ def make_sourced_numbers(
 ) -> dict[str, SourcedNumber]:
     """Numbers of a catalogue row with their source: {parameter: number}.
 
-    rated_origin : origin of the rated torque: "catalogue" if it is published, else that of the estimate T2
-    ratio        : speed ratio [1], added if it is known
-    source       : where the row is published
+    rated_torque_origin : origin of the rated torque: "catalogue" if it is published, else that of the
+                          estimate T2
+    ratio               : speed ratio [1], added if it is known
+    source              : where the row is published
     """
     origin = f"{source} ({catalogue_row})"
     rated = origin if rated_torque_origin == "catalogue" else "no rated torque given; T2 of the catalogue"
@@ -104,8 +105,9 @@ def fit_contact_pair_law(
 ) -> FitResult:
     """Fit the smooth law of the contact pair to a row of a catalogue.
 
-    fitted_names    : names to fit; None: FITTED_PARAMETERS, and EXTRA_PARAMETER if the others do not suffice
-    sourced_numbers : of the row, from `source_numbers`; None: those of `catalogue_row`
+    fitted_names    : names to fit; None: FITTED_PARAMETERS, and EXTRA_FITTED_PARAMETER if the others do not
+                      suffice
+    sourced_numbers : of the row, from `make_sourced_numbers`; None: those of `catalogue_row`
     source          : where the row is published
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
@@ -161,7 +163,7 @@ def _fit_with_increasing_weight(
 ) -> tuple[Solution, float]:
     """Fit the contact pair with increasing weight of the angles at T1, T2 and rated torque, until they match.
 
-    unknown_sets : sets of unknowns to try in turn
+    sets_of_unknowns : sets of unknowns to try in turn
 
     Returns the solution and its relative standard deviation [1] of these angles. Raises RuntimeError if no
     fit meets them.

@@ -214,7 +214,7 @@ def fit_robot_log(
 ) -> tuple[Solution, FitPlot]:
     """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
-    fitted_names   : of LOG_PARAMETERS
+    fitted_names   : of ROBOT_LOG_FITTED_PARAMETERS
     torque_changes : (k, n) [N.m] change of the torques by each of k independent errors of the load, of one
                      standard deviation each; their effect is added to the covariance of the fit
 

@@ -8,7 +8,7 @@ of the arm; the inertia is then that of the rotor. Three terms are linear in the
 eliminated: the inertia, an offset of the current, and gravity = a cos(q) + b sin(q) if it is not measured.
 The load of the teeth is gravity plus the inertia torque of the arm, that is of the total inertia without the
 rotor; or the torque of the sensor. The other unknowns are fitted over their logarithms. The load depends on
-them: it is fixed during each fit, and updated for the next of LOAD_ITERATIONS fits.
+them: it is fixed during each fit, and updated for the next of LOAD_ITERATION_COUNT fits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -157,12 +157,12 @@ FINITE_DIFFERENCE_STEP = 1e-4
 class FittedLogFriction:
     """Friction model fitted to the samples of logs.
 
-    drive           : with the fitted friction
-    solution        : of the fit of the friction parameters
-    linear_unknowns : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
-    covariance      : (k, k) of the linear unknowns
-    rotor_inertia   : [kg.m2]
-    rotor_deviation : [kg.m2] standard deviation of the rotor inertia
+    drive                   : with the fitted friction
+    solution                : of the fit of the friction parameters
+    linear_unknowns         : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
+    covariance              : (k, k) of the linear unknowns
+    rotor_inertia           : [kg.m2]
+    rotor_inertia_deviation : [kg.m2] standard deviation of the rotor inertia
     """
 
     drive: DriveParameters
@@ -361,9 +361,9 @@ def refit_without_undetermined(
 ) -> tuple[FittedLogFriction, list[str], list[str]]:
     """Repeat the fit without the parameters that the log does not determine.
 
-    A parameter of START_VALUES is dropped if its standard deviation exceeds a factor of UNDETERMINED_FACTOR
-    and its value in the file fits as well. Returns the fit, names of the fitted parameters, and notes about
-    the others.
+    A parameter of START_VALUES is dropped if its standard deviation exceeds a factor of
+    UNDETERMINED_DEVIATION_FACTOR and its value in the file fits as well. Returns the fit, names of the fitted
+    parameters, and notes about the others.
     """
     undetermined = [
         n
@@ -428,7 +428,7 @@ def fit_with_rotor_inertia(
 ) -> FittedLogFriction:
     """Fit the friction with a known rotor inertia [kg.m2].
 
-    rotor_deviation : [kg.m2] standard deviation of the inertia; its effect is added to the covariance
+    rotor_inertia_deviation : [kg.m2] standard deviation of the inertia; its effect is added to the covariance
     """
     fit = fit_samples(parameter_file, samples, fitted_names, rotor_inertia)
     shifted = fit_samples(
@@ -464,7 +464,7 @@ def _start_values(
 ) -> dict[str, float]:
     """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
 
-    linear_fit : result of `_fit_linear_model`
+    linear_fit_values : result of `_fit_linear_model`
     """
     size = float(np.median(np.abs(samples.motor_torque))) or 1.0
     fastest = abs(parameter_file.values.ratio) * float(np.max(np.abs(samples.dq)))

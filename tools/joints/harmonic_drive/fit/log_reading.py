@@ -38,21 +38,21 @@ MIN_SPEED_RANGE_RATIO = 1.2
 class Samples:
     """Samples of logs; arrays (n) in SI units, NaN for columns that a log does not have.
 
-    time           : [s]
-    q, dq, ddq     : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
-    window_speeds  : (n, FILTER_NODE_COUNT) [rad/s] of the joint, within the window of the filter
-    window_weights : (n, FILTER_NODE_COUNT) [1] of the filter at these speeds
-    window_angles  : (n, FILTER_NODE_COUNT) [rad] of the motor at these speeds; NaN if unknown
-    ripple_terms   : (n, 2 k) [1] filtered sense of rotation times sine and cosine of k harmonics of the motor
-                     angle; k = 0 until friction ripple is found
-    motor_torque   : [N.m] of the motor
-    gravity_torque : [N.m] torque at the joint that balances gravity
-    temperature    : [K]
-    motor_angle    : [rad]
-    sensor_torque  : [N.m] of a sensor at the joint
-    is_held_out    : sample for validation
-    is_dynamic     : sample of a log with the column time
-    is_developed   : friction is fully developed
+    time                  : [s]
+    q, dq, ddq            : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
+    window_speeds         : (n, FILTER_NODE_COUNT) [rad/s] of the joint, within the window of the filter
+    window_weights        : (n, FILTER_NODE_COUNT) [1] of the filter at these speeds
+    window_angles         : (n, FILTER_NODE_COUNT) [rad] of the motor at these speeds; NaN if unknown
+    ripple_terms          : (n, 2 k) [1] filtered sense of rotation times sine and cosine of k harmonics of
+                            the motor angle; k = 0 until friction ripple is found
+    motor_torque          : [N.m] of the motor
+    gravity_torque        : [N.m] torque at the joint that balances gravity
+    temperature           : [K]
+    motor_angle           : [rad]
+    sensor_torque         : [N.m] of a sensor at the joint
+    is_held_out           : sample for validation
+    is_of_dynamic_log     : sample of a log with the column time
+    is_friction_developed : friction is fully developed
     """
 
     time: Array
@@ -162,7 +162,7 @@ def make_dynamic_samples(
 
 
 def _filter_nodes(window_width: int) -> tuple[SampleIndices, Array]:
-    """Sample offsets (FILTER_NODES) within the window of the filter, and the filter weights at these nodes.
+    """Sample offsets (FILTER_NODE_COUNT) of the nodes of the filter window, and the weights at the nodes.
 
     The weights are those for values that are linear between the nodes.
     """
@@ -177,8 +177,8 @@ def _is_friction_developed(
 ) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
-    The motor has rotated by DEVELOPED_ROTATION_RATIO times `presliding` since its last reversal, and no
-    reversal lies within the window of the filter (`window_width` samples).
+    The motor has rotated by DEVELOPED_FRICTION_ROTATION_RATIO times `presliding` since its last reversal, and
+    no reversal lies within the window of the filter (`window_width` samples).
     """
     sign = np.sign(joint_speed)
     run = np.concatenate([[0], np.cumsum(np.diff(sign) != 0.0)])
