@@ -48,10 +48,10 @@ os.environ.setdefault(COMPILER_CACHE_ENVIRONMENT_VARIABLE, str(compiler_cache_fo
 
 HERE = Path(__file__).parent
 RELEASED = ("-target", ZIG_TARGETS[platform_tuple], "-O2", "-s")
-"""Options of zig as FMUs are linked here. Others let it compile its part of the C runtime first, 4 s with
-optimization, 20 s without."""
+"""Options of zig with which FMUs are linked in tests. With others, zig first compiles its C runtime: 4 to 20
+s."""
 SLOW_FIXTURES = frozenset({"fmus", "native", "system_files", "elastic_joint", "tutorial", "site"})
-"""Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
+"""Fixtures that build FMUs or run commands; fixtures such as `fmu` and `host` depend on them."""
 LONGEST_FILES = frozenset(
     {
         "test_native_c.py",
@@ -61,15 +61,15 @@ LONGEST_FILES = frozenset(
         "test_systems.py",
     }
 )
-"""Files of tests that take about a minute: no process must begin one when the others have nothing left."""
+"""Test files that take about a minute; they start first, so that no process runs one alone at the end."""
 
 
 RUN = "JOINTFMU_TEST_RUN"
-"""Names the folder of a run of pytest, which its processes share."""
+"""Environment variable with the folder that the processes of one run of pytest share."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the folder in which all processes of this run keep what the probes of clients find."""
+    """Make the folder in which all processes of this run store the results of the client probes."""
     if RUN not in os.environ:
         os.environ[RUN] = tempfile.mkdtemp(prefix="jointfmu-tests-")
         config.add_cleanup(lambda: shutil.rmtree(os.environ.pop(RUN)))
@@ -77,13 +77,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Skip a test without the clients that it needs, before its fixtures are made."""
+    """Skip a test whose clients are missing, before its fixtures are made."""
     clients.skip_without(*(name for mark in item.iter_markers("needs") for name in mark.args))
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Iterator[None]:
-    """What is imported and collected stays: no search for garbage looks through it, then or later."""
+    """Exclude the modules and tests that exist now from garbage collection, to save time."""
     gc.disable()
     try:
         return (yield)
@@ -94,7 +94,7 @@ def pytest_collection() -> Iterator[None]:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark as slow what uses a slow fixture; other tests of more than a second or two say it themselves.
+    """Mark tests as slow that use a slow fixture. Other slow tests have the mark in their file.
 
     Files with slow tests go first, the longest before all: the others fill up what the processes have left at
     the end.
@@ -109,7 +109,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
-    """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""
+    """Function that runs `jointfmu` and returns the one line of its refusal: exit status 2, nothing on
+    standard output."""
     from jointfmu_tools import cli
 
     try:
@@ -124,7 +125,7 @@ def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
 
 
 class Fmu(Instance):
-    """An instance of an FMU file with a clock, whose messages are looked at."""
+    """Instance of an FMU file with a clock, and access to its messages."""
 
     def __init__(self, path: Path, name: str = "test", exchange: bool = False, logging: bool = True) -> None:
         super().__init__(*unpack(path, path.stat().st_mtime_ns), name, exchange)
@@ -148,28 +149,28 @@ class Fmu(Instance):
         self.time = start
 
     def start(self, values: Mapping[str, Any] | None = None) -> "Fmu":
-        """Set start values in initialization mode and leave it."""
+        """Set start values in initialization mode, then leave this mode."""
         self.enter_initialization()
         self.set_values(values or {})
         self.fmu.exitInitializationMode()
         return self
 
     def step(self, size: float = 1.0) -> None:
-        """One step."""
+        """Do one step."""
         self.do_step(self.time, size)
         self.time += size
 
     def at(self, values: Mapping[str, float]) -> dict[str, float]:
-        """All outputs at inputs, without a step."""
+        """All outputs at the given inputs, without a step."""
         self.set_values(values)
         return self.get()
 
     def reset(self) -> None:
-        """Back to the state after instantiation."""
+        """Reset to the state after instantiation."""
         self.fmu.reset()
 
     def refused(self, call: Callable[..., Any], *args: Any) -> str:
-        """The one error that the call logs; fails if the call succeeds."""
+        """Execute a call that the FMU must refuse, and return the one error that it logs."""
         from fmpy.fmi1 import FMICallException
 
         seen = len(self.messages)
@@ -190,7 +191,8 @@ class Fmu(Instance):
 
 @cache
 def unpack(path: Path, stamp: int) -> tuple[str, Any]:
-    """Folder and model description of an FMU file; `stamp` tells a rebuilt file from the old one."""
+    """Folder and model description of an unpacked FMU file; `stamp` distinguishes a rebuilt file from the old
+    one."""
     from fmpy import extract, read_model_description
 
     folder = path.parent / f".{path.stem}-{stamp}-{os.getpid()}"  # no process unpacks over another's library
@@ -198,7 +200,8 @@ def unpack(path: Path, stamp: int) -> tuple[str, Any]:
 
 
 def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    """Run a script in a process of its own, where a crash harms no other test; it can import this file."""
+    """Run a script in a process of its own, so that a crash does not end the tests. The script can import
+    this file."""
     return subprocess.run(
         [sys.executable, "-c", script, *map(str, arguments)],
         env=os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (HERE, HERE / "support")))},
@@ -209,7 +212,8 @@ def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str
 
 
 def run_client(script: str, tmp_path: Path, path: Path | str, **case: Any) -> Any:
-    """Run a client's script in a process of its own. It reads a case from a file and writes its result there.
+    """Run the script of a client in a process of its own. The script reads a case from a file and writes its
+    result.
 
     Standard output carries no result, because some clients print to it.
     """
@@ -221,7 +225,7 @@ def run_client(script: str, tmp_path: Path, path: Path | str, **case: Any) -> An
 
 
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
-    """A folder that `make` fills, once for all processes that share the tests."""
+    """Folder that `make` fills once for all test processes."""
     parallel = "PYTEST_XDIST_WORKER" in os.environ
     folder = (factory.getbasetemp().parent if parallel else factory.getbasetemp()) / name
     with FileLock(folder.with_suffix(".lock")):
@@ -235,7 +239,7 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 
 @contextmanager
 def here_alone(versions: str = "23") -> Iterator[None]:
-    """What is built here is for this machine alone: that all platforms are served is shown of `native`.
+    """Build FMUs for this machine only; the fixture `native` has all platforms.
 
     What is kept for all of them is taken from there; what else is compiled is kept apart.
 
@@ -273,18 +277,18 @@ def here_alone(versions: str = "23") -> Iterator[None]:
 
 
 REFINEMENT = {"bodies": 0.5}
-"""Of the elements of plates that `jointfmu new` makes."""
+"""Refinement of the elements of plates in tests, for `jointfmu new`."""
 
 
 @pytest.fixture
 def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Elements as the product has them: where their digits count."""
+    """Use the element sizes of the product instead of coarse ones, for tests of exact numbers."""
     monkeypatch.setitem(REFINEMENT, "bodies", 1.0)
 
 
 @pytest.fixture
 def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
+    """Use few points for ramp and loops of an FMU's page, because a page of elastic plates takes 20 s."""
     from jointfmu_tools.pages.report import load_history
     from jointfmu_tools.run.ramps.loops import CyclicPath
 
@@ -294,8 +298,8 @@ def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Bodies of equal plates, of elements twice as large but with `fine_elements`, patches of equal contacts
-    and experiments of equal FMUs are computed once for all processes that share the tests."""
+    """Share computed results between all test processes: bodies of equal plates (with doubled element size,
+    unless `fine_elements`), patches of equal contacts, experiments of equal FMUs."""
     from jointfmu_fmu_src.proof import members
     from jointfmu_tools.inputs.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
@@ -375,7 +379,7 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def system_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with what `jointfmu build --systems` makes, and the drive with torque in."""
+    """Folder with the files that `jointfmu build --systems` writes, and the drive with torque as input."""
     from jointfmu_fmu_src.building import build_fmus
     from jointfmu_tools import cli
 
@@ -388,7 +392,8 @@ def system_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def elastic_joint(tmp_path_factory: pytest.TempPathFactory, solved_once: None) -> Path:
-    """Folder with joint.toml, a plate on four bolts with elastic sides, and its native FMUs as in `native`.
+    """Folder with joint.toml (plate with four bolts and elastic sides) and its FMUs, in subfolders as in
+    `native`.
 
     The FMUs are for this machine alone. Finite elements compute the sides: mark the test with needs("gmsh").
     """
@@ -412,7 +417,7 @@ def elastic_joint(tmp_path_factory: pytest.TempPathFactory, solved_once: None) -
 
 @pytest.fixture
 def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
-    """Makes instances by name, from another folder if given, and frees them after the test."""
+    """Function that makes instances by name, by default of `fmus`; they are freed after the test."""
     made: list[Fmu] = []
     path = list(sys.path)
 
@@ -428,7 +433,7 @@ def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
 
 @pytest.fixture
 def fixed(tmp_path: Path, fmu: Callable[..., Fmu]) -> Callable[..., Fmu]:
-    """The same with parameters that are fixed."""
+    """Function as `fmu`, for FMUs with fixed instead of tunable parameters."""
     from jointfmu_fmu_src.building import build_fmus
 
     def instance(name: str) -> Fmu:
@@ -442,19 +447,20 @@ def fixed(tmp_path: Path, fmu: Callable[..., Fmu]) -> Callable[..., Fmu]:
 
 @pytest.fixture(params=["fmi2", "fmi3"])
 def version(request: pytest.FixtureRequest) -> str:
-    """Every native flavour."""
+    """FMI version of each native flavour."""
     return str(request.param)
 
 
 @pytest.fixture(params=[False, True], ids=["co-simulation", "model exchange"])
 def exchange(request: pytest.FixtureRequest) -> bool:
-    """Both interfaces: whether it is model exchange."""
+    """Whether the interface is model exchange; both are tested."""
     return bool(request.param)
 
 
 @pytest.fixture
 def host(native: Path) -> Iterator[Callable[..., Fmu]]:
-    """Makes instances of native FMUs, from another folder if given, and frees them after the test."""
+    """Function that makes instances of native FMUs by name, by default of `native`; they are freed after the
+    test."""
     made: list[Fmu] = []
 
     def instance(name: str, version: str = "fmi3", folder: Path = native, **options: Any) -> Fmu:

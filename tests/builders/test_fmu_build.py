@@ -370,7 +370,7 @@ def test_a_bad_source_date_is_refused_by_name(
 
 
 class Links(HTMLParser):
-    """Everything a page would load, and its tags."""
+    """Parser that collects the addresses that a page would load, and the tags of the page."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -386,7 +386,7 @@ class Links(HTMLParser):
 
 
 class Job(NamedTuple):
-    """A main job: its folder, what it printed, what it found."""
+    """Run of the main job: its folder, its printed lines, its result."""
 
     folder: Path
     said: str
@@ -395,8 +395,8 @@ class Job(NamedTuple):
 
 @pytest.fixture(scope="module")
 def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, system_files: Path) -> Job:
-    """The one main job of these tests. It builds all FMUs and systems, as the fixtures of all tests have: it
-    gets copies of theirs."""
+    """Run of the main job that all these tests examine; it gets copies of the FMUs and systems of the
+    fixtures."""
     folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run_pipeline
 
     def copied(sources: Iterable[Path], out: Path) -> list[Path]:

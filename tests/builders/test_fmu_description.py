@@ -30,7 +30,7 @@ SHOWN = {
     "mm2": 1e-6,
     "degC": 1.0,
 }
-"""Units whose SI value the prefixes below do not give."""
+"""Display units whose SI value does not follow from the prefixes below."""
 PREFIX = {"M": 1e6, "G": 1e9, "k": 1e3, "m": 1e-3, "u": 1e-6}
 BASE: dict[str, dict[str, int]] = {
     "m": {"m": 1}, "s": {"s": 1}, "kg": {"kg": 1}, "rad": {"rad": 1}, "1": {}, "K": {"K": 1},
@@ -40,7 +40,7 @@ BASE: dict[str, dict[str, int]] = {
 
 
 def si_value(shown: str) -> float:
-    """Value of one display unit in SI units, e.g. N/um: 1e6."""
+    """SI value of one display unit: 1e6 for N/um."""
     top, _, bottom = shown.partition("/")
     if shown in SHOWN:
         return SHOWN[shown]

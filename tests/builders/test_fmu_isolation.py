@@ -26,7 +26,7 @@ NAMES = list(MODELS)
 
 
 def trace(instance: Fmu, name: str, points: int = 10) -> list[dict[str, float]]:
-    """Outputs along a load ramp, with steps."""
+    """Outputs of an FMU along a load ramp, one step per point."""
     driven, end = MODELS[name].ramp.input_name, MODELS[name].ramp.end_value
     found = []
     for value in np.linspace(0.1, 1.0, points) * end:
@@ -144,7 +144,7 @@ def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def doubled_sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """FMUs of a package whose gear contact is twice as stiff."""
+    """Sources of a package whose gear contact has twice the stiffness, and its FMUs."""
     out = tmp_path_factory.mktemp("doubled_sources")
     sources = python_build.collect_runtime_sources(KINDS["gear_contact"])
     sources["joints/gear_contact/spring.py"] += """
@@ -255,7 +255,8 @@ print(json.dumps({"status": status, "outputs": list(out), "log": log, "modules":
 def c_like_host(
     path: Path, packages: Path | None, driven: str, value: float, padding: str = ""
 ) -> tuple[int, str, dict[str, Any]]:
-    """Exit status, standard error, and what the host saw."""
+    """Load and run a python FMU as a C host does: exit status, standard error, and the outputs that the host
+    reads."""
     folder, description = unpack(path, path.stat().st_mtime_ns)
     library = Path(folder) / "binaries" / platform / f"{path.stem}{sharedLibraryExtension}"
     listed = {v.name: v.valueReference for v in description.modelVariables}
@@ -276,7 +277,7 @@ def c_like_host(
 
 @pytest.fixture(scope="module")
 def only_numpy(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder of packages with numpy and nothing else."""
+    """Folder of packages that contains numpy and nothing else."""
     folder, numpy = tmp_path_factory.mktemp("packages"), Path(np.__file__).parent
     for found in (numpy, numpy.with_name("numpy.libs")):
         if found.exists():

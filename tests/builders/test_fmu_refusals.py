@@ -342,7 +342,7 @@ def test_outputs_stay_finite_at_any_finite_displacement(fmu: Host) -> None:
 
 
 def without(source: Path, target: Path, part: str) -> Path:
-    """A copy of an FMU without the members whose path contains `part`."""
+    """Copy an FMU without the members whose path contains `part`."""
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
         names = [n for n in old.namelist() if part not in n]
         assert len(names) < len(old.namelist())
@@ -384,7 +384,7 @@ def broken(kind: str, whole: Path, folder: Path) -> Path:
 
 
 def changed(source: Path, target: Path, change: Callable[[str, bytes], bytes]) -> Path:
-    """A copy of an FMU with its members changed."""
+    """Copy an FMU with its members changed by a function."""
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
         for name in old.namelist():
             new.writestr(name, change(name, old.read(name)))
@@ -392,7 +392,7 @@ def changed(source: Path, target: Path, change: Callable[[str, bytes], bytes]) -
 
 
 def description(old: bytes, new: bytes) -> Callable[[str, bytes], bytes]:
-    """A change of the model description alone."""
+    """Change for `changed`: replace a pattern in the model description."""
     return lambda name, data: re.sub(old, new, data) if name == "modelDescription.xml" else data
 
 

@@ -22,14 +22,15 @@ SLOPE = 1e-5
 
 
 def file_of(name: str) -> ParameterFile:
-    """A surface so flat that part of the real area is elastic; as loaded as the ordinary one."""
+    """Parameter file of the law `roughness`: flat surfaces at the usual load, so that part of the real area
+    is elastic."""
     file = load_default(MODELS[name].joint, "roughness")
     return file.with_values({"slope": 0.4 * file.values_by_name["H"] / 2e11}, "user", "test")
 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with fmi3/NAME.fmu and python/NAME.fmu."""
+    """Folder with fmi3/NAME.fmu and python/NAME.fmu with the law `roughness`."""
 
     def make_all(out: Path) -> None:
         with here_alone("3"):

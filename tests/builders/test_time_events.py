@@ -39,7 +39,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def exchange(folder: Path, version: str) -> Iterator[Make]:
-    """Makes instances for model exchange."""
+    """Function that makes instances for model exchange."""
     made: list[Fmu] = []
 
     def instance(name: str) -> Fmu:
@@ -52,7 +52,7 @@ def exchange(folder: Path, version: str) -> Iterator[Make]:
 
 
 def next_event(fmu: Fmu) -> float:
-    """The time that an FMU in event mode announces; infinite if none."""
+    """Time of the next event that an FMU in event mode announces [s]; infinite if there is none."""
     if fmu.version == 3:
         *_, defined, time = fmu.fmu.updateDiscreteStates()
         return float(time) if defined else np.inf
@@ -62,7 +62,7 @@ def next_event(fmu: Fmu) -> float:
 
 
 def corners(name: str, changes: dict[str, float]) -> list[float]:
-    """Ends of the pieces over which a load is one polynomial each, found in its course."""
+    """Times between which a load is one polynomial, found from its values over time."""
     given = flatten_parameters(load_partner_parameters(name).values) | changes
     times = {given["ramp_start"], given["ramp_start"] + given["ramp_duration"]}
     edge = given["pulse_start"]
@@ -98,7 +98,7 @@ def test_bodies_announce_none(exchange: Make) -> None:
 
 
 def driven(load: Fmu, mass: Fmu, stop: float, with_events: bool) -> NDArray[np.float64]:
-    """Position and speed at the end of a mass at rest under a load, by scipy's BDF."""
+    """Position and speed at the end of a mass that a load moves from rest, integrated by scipy's BDF."""
     pair = (ctypes.c_double * 2)()
     rates = mass.fmu.getDerivatives if mass.version == 2 else mass.fmu.getContinuousStateDerivatives
 

@@ -47,7 +47,7 @@ def part() -> compiled_models.CompiledModel:
 
 @pytest.fixture
 def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The part of a joint in a cache; to compile it anew fails the test."""
+    """Compiled part of a joint in a cache. Compiling it again fails the test."""
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
     monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
@@ -67,7 +67,7 @@ def found() -> compiled_models.CompiledModel:
 
 
 def levels(cached: Path) -> list[Path]:
-    """The part, and the folders up to that of the cache."""
+    """Paths of the compiled part and of its folders, up to the folder of the cache."""
     return [cached, *cached.parents[: len(cached.relative_to(cache.cache_folder()).parts)]]
 
 

@@ -63,7 +63,7 @@ each_law = pytest.mark.parametrize("law", LAWS)
 
 @pytest.fixture
 def run(capsys):
-    """Runs a command; gives exit status, standard output and standard error."""
+    """Function that runs a command and returns exit status, standard output and standard error."""
 
     def call(*args):
         try:
@@ -77,7 +77,7 @@ def run(capsys):
 
 @pytest.fixture
 def law_json(run):
-    """The one JSON object that `law --json` prints."""
+    """Function that returns the JSON object which `law --json` prints."""
 
     def call(*args):
         status, out, err = run("law", *args, "--json")
@@ -385,7 +385,7 @@ def test_ramp(run, fmus, tmp_path):
 
 @pytest.fixture
 def places(tmp_path, fmus):
-    """Files that a command may be pointed at."""
+    """Files that serve as arguments of commands."""
     (tmp_path / "text.toml").write_text("plain text")
     (tmp_path / "text.fmu").write_text("plain text")
     (tmp_path / "folder").mkdir()

@@ -35,7 +35,7 @@ def parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser
 
 
 def example(parser: argparse.ArgumentParser) -> str:
-    """The last line of a help, without the program."""
+    """Last line of a help text without the name of the program: the example."""
     head, _, line = parser.format_help().rpartition(":\n  jointfmu ")
     assert head, f"{parser.prog} has no example"
     return line.strip()
@@ -54,9 +54,9 @@ NEED = (
     "footprint",
     "modes",
 )
-"""Commands whose examples take long: they build FMUs or need them, solve finite elements or thin tables."""
+"""Commands with examples that take long: the examples build or run FMUs, or solve finite elements."""
 ON_PAGES = [{*shlex.split(line, comments=True)[1:]} for line in commands]
-"""Words of the commands that test_readme.py runs."""
+"""Words of the commands that test_readme.py executes."""
 
 
 def test_no_example_is_of_a_command_that_is_gone() -> None:
@@ -71,7 +71,7 @@ def test_an_example_is_of_its_command(prog: str) -> None:
 
 
 def shear() -> str:
-    """Rows of a loop whose first loading is a parabola, from one turning point to the other and back."""
+    """Rows of a friction loop: both branches are parabolas that double the first loading (Masing)."""
     u = np.cos(np.linspace(0.0, 3.0 * np.pi, 120))
     way = np.where(np.arange(120) // 40 % 2, u + 1.0, u - 1.0)
     force = np.copysign(0.9, -way) + 2.0 * (0.5 * way - np.copysign(0.1 * (0.5 * way) ** 2, way))
@@ -80,7 +80,7 @@ def shear() -> str:
 
 @pytest.fixture(scope="module")
 def read(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What examples read: parameters, a scan, loops, a log, stiffness over preload."""
+    """Input files of the examples: parameters, a scan, loops, a log, stiffness over preload."""
     place = tmp_path_factory.mktemp("read")
     curve = HarmonicDriveSpring.tabulate(load_default("harmonic_drive").values).curve
     torque = 15.0 * np.sin(np.linspace(0.0, 2.5 * np.pi, 200))
@@ -101,7 +101,7 @@ def read(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(read: Path, tmp_path: Path) -> Path:
-    """Those files in a folder of its own."""
+    """Folder with the input files of the examples."""
     return shutil.copytree(read, tmp_path, dirs_exist_ok=True)
 
 

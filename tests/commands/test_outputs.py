@@ -30,7 +30,7 @@ INPUTS = frozenset(
         "robot",
     ]
 )
-"""Arguments that name what a command reads; all others that take a path are outputs."""
+"""Arguments that name an input file. All other arguments that take a path name an output."""
 COMMANDS = {one.prog: one for one in _iterate_parsers(build_parser()) if one._actions}
 OUTPUTS = [
     (prog, name, kind)
@@ -42,7 +42,7 @@ NEW = ["new", "harmonic-drive", "--catalogue", "CSG-17-100", "--out"]
 
 
 def words(prog, name, path):
-    """A command line with every required argument, the output, and `input.toml` as an input."""
+    """Command line with every required argument: the output path, and `input.toml` for each input."""
     one = COMMANDS[prog]
     found = prog.split()[1:]
     for action in one._actions:

@@ -71,7 +71,7 @@ def test_a_shell_has_its_script(shell: str, capsys: pytest.CaptureFixture[str]):
 
 
 def completed(script: str, *words: str) -> list[str]:
-    """What bash offers for the last of the words."""
+    """Completions that bash offers for the last word."""
     function = re.findall(r"^complete .*-F (\w+)", script, re.MULTILINE)[0]
     line = " ".join(f"'{word}'" for word in words)
     ask = f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; {function}"

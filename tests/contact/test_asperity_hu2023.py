@@ -20,7 +20,7 @@ log_areas = st.floats(0.05, 40.0)
 
 @dataclass
 class Paper:
-    """The symbols of the paper for one law, from its text."""
+    """Equations of the paper for the parameters of one law, in the symbols of the paper."""
 
     law: Hu2023
 
@@ -61,7 +61,7 @@ class Paper:
         return self.H * s
 
     def k_n(self, s):
-        """df/d(epsilon): Eq. 29 and the derivatives of Eqs. 11 and 12."""
+        """Stiffness df/d(epsilon) of a spot: Eq. 29 and the derivatives of Eqs. 11 and 12."""
         if s <= self.s_ec:
             return 2 * self.E * sqrt(s / pi)
         if s <= self.s_epc1:
@@ -74,7 +74,7 @@ class Paper:
         return 8 * self.Gs * sqrt(s / pi)  # Eq. 39 at t = 0
 
     def total(self, spot, s_l, end=None, power=None):
-        """Sum from s_min to s_l, or to the end of a regime; with the power of the smallest spots, from 0."""
+        """Sum over all spots from s_min to s_l, or to the end of a regime."""
         start = self.s_min if power is None else min(self.s_min, self.s_ec)
         # below the start the law is one power: the integral of c s^(power - m - 1) from 0
         below = 0.0
@@ -88,7 +88,7 @@ class Paper:
 
 
 def apart(law, u):
-    """The largest spot keeps 1 % from the edges, where the quadrature loses the difference of logarithms."""
+    """Whether the largest spot is 1 % away from the regime ends, where the quadrature loses digits."""
     edge = log(Paper(law).s_ec / law.surface.s_min)
     return all(abs(u - edge - log(x)) > 0.01 for x in (1.0, 0.93 * 6**1.136, 0.94 * 110**1.146))
 
@@ -118,7 +118,7 @@ def test_totals_are_sums_over_spots(case):
 
 
 def sheared(law, traction):
-    """The spots of a law whose real area carries a shear traction [Pa]."""
+    """Spot quantities of a law whose real area carries a shear traction [Pa]."""
     return changed(law, {"traction": "real_area", "shear_traction": traction}).spot_distribution()
 
 
@@ -259,7 +259,8 @@ def test_regimes_above_a_large_smallest_spot():
 
 
 def closed_forms(paper, s_l):
-    """Eqs. 18-27, 30, 33-35, the elastic stiffness from s_min, all regimes present (s_l > s_epc2)."""
+    """Closed forms of Eqs. 18-27, 30, 33-35 if all regimes are present (s_l > s_epc2), elastic stiffness from
+    s_min."""
     D, E, k, H, psi = paper.D, paper.E, paper.k, paper.H, paper.psi
     s_min, s_ec, s1, s2 = paper.s_min, paper.s_ec, paper.s_epc1, paper.s_epc2
     common = psi ** (1.5 - 0.5 * D) * s_l ** (0.5 * D - 0.5)

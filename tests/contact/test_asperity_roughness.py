@@ -106,7 +106,8 @@ def test_approach_is_the_integral_of_the_compliance(p):
 
 
 def diffused(x, t, walls=200):
-    """Elastic share and load of Persson's equation on a grid between its two walls: no series."""
+    """Elastic share of the area and load by Persson's diffusion equation, solved on a grid between both
+    boundaries."""
     step = 1.0 / walls
     grid = (np.arange(walls - 1) + 1) * step
     laplace = (

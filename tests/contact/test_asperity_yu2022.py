@@ -21,7 +21,7 @@ KOGUT_ETSION = ((0.93, 1.136, 1.03, 1.425), (0.94, 1.146, 1.40, 1.263))  # m, n,
 
 @dataclass
 class Paper:
-    """The symbols of the paper for one law, from its text."""
+    """Equations of the paper for the parameters of one law, in the symbols of the paper."""
 
     law: Yu2022
 
@@ -46,11 +46,11 @@ class Paper:
         self.a_nepc, self.a_npc = (self.edge(limit) for limit in limits)
 
     def count(self, a_l):
-        """a n'(a): lambda times Eq. 44."""
+        """Number density of the spots per logarithmic area a n'(a): lambda times Eq. 44."""
         return lambda a: self.law.lambda_ * self.m * (a_l / a) ** self.m
 
     def R_m(self, a):
-        """Eqs. 12, 13 and 15."""
+        """Radius of curvature of Eqs. 12, 13 and 15."""
         s = 1 - self.e**2
         R_x = a ** (self.D1 / 2) * s ** (-self.D1 / 4)
         R_x /= 2 ** (4 - self.D1) * pi ** (self.D1 / 2) * self.G1 ** (self.D1 - 1) * self.root
@@ -62,15 +62,15 @@ class Paper:
         return self.KE * self.R_m(a) * (self.k * self.H / self.E) ** 2
 
     def ratio(self, a):
-        """Area over the area at the onset of yield of the same curvature: Eq. 22 at w_nec."""
+        """Area of a spot over its area at the onset of yield with the same curvature: Eq. 22 at w_nec."""
         return a / (self.f1 * pi * self.R_m(a) * self.w_nec(a))
 
     def edge(self, ratio):
-        """Area where a spot has this ratio; a large spot is the less deformed one."""
+        """Area of the spot with this ratio; the ratio decreases as the area grows."""
         return exp(brentq(lambda t: log(self.ratio(exp(t)) / ratio), -250.0, 250.0, xtol=1e-13, rtol=4 * EPS))
 
     def stage(self, a):
-        """Deformation w/w_nec and the branch c, d of Eqs. 34 and 36."""
+        """Deformation ratio w/w_nec, and exponents c, d of its stage in Eqs. 34 and 36."""
         m, n, c, d = KOGUT_ETSION[0] if a > self.a_nepc else KOGUT_ETSION[1]
         if self.law.plastic_area == "geometric":
             m = n = 1.0
@@ -88,7 +88,7 @@ class Paper:
         return self.f2 * 4 / 3 * self.E * sqrt(R_m) * w**1.5  # Eq. 23
 
     def stiffness(self, a):
-        """dF/dw at the spot's curvature; only above a_npc."""
+        """Stiffness dF/dw of a spot with constant curvature, for areas above a_npc."""
         R_m, w_nec = self.R_m(a), self.w_nec(a)
         if a <= self.a_nec:
             w, c, d = self.stage(a)
@@ -96,7 +96,7 @@ class Paper:
         return self.f2 * 2 * self.E * sqrt(R_m * a / (self.f1 * pi * R_m))
 
     def total(self, spot, a_l, start=None):
-        """Sum from 0 (plastic spots first), or from the start of a regime, to a_l."""
+        """Sum over the spots up to a_l, from zero (plastic spots) or from the start of a regime."""
         edges = [self.a_npc, self.a_nepc, self.a_nec]
         if start is None:
             edges.insert(0, open_end(min(self.a_npc, a_l), 1 - self.m))

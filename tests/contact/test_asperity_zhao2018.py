@@ -20,7 +20,7 @@ log_areas = st.floats(-6.0, 20.0).filter(lambda u: not 0.0 < u < 0.01)
 
 @dataclass
 class Paper:
-    """The symbols of the paper for one law, from its text; `ac` is the law's choice."""
+    """Equations of the paper for one law, in the symbols of the paper; `ac` follows the choice of the law."""
 
     law: Zhao2018
 
@@ -68,11 +68,11 @@ class Paper:
         return 4 * self.E * (3 - self.D) / (3 * sqrt(2 * pi) * (2 - self.D)) * sqrt(a)
 
     def elastic(self, spot, largest):
-        """Sum over a'_c < a' <= a'_L."""
+        """Sum over the elastic spots, a'_c < a' <= a'_L."""
         return over_spots(spot, self.count(largest), [self.ac], largest)
 
     def plastic(self, spot, largest, exponent):
-        """Sum over 0 < a' <= a'_c; the integrand falls with the exponent of ln a'."""
+        """Sum over the plastic spots, 0 < a' <= a'_c; the integrand decreases with this exponent of ln a'."""
         end = min(self.ac, largest)
         return over_spots(spot, self.count(largest), [open_end(end, exponent)], end)
 
@@ -219,7 +219,7 @@ def test_family_stiffness_is_the_derivative_along_the_family():
 
 
 def closed_forms(paper, aL):
-    """Eqs. 9-11, 14, 16, 18, 19, 22, 24, 26 with the printed errors corrected."""
+    """Closed forms of Eqs. 9-11, 14, 16, 18, 19, 22, 24, 26, with the printed errors corrected."""
     D, G, E, H, ac, psi = paper.D, paper.G, paper.E, paper.H, paper.ac, paper.psi
     L, Gs, law = log(paper.gamma), paper.Gs, paper.law
     if D == 1.5:

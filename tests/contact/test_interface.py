@@ -22,7 +22,7 @@ from jointfmu.quantity import flatten_fields, flatten_parameters
 
 EPS = np.finfo(float).eps
 RESIDUAL = 1e-12
-"""Relative residual of the load that `largest_spot` promises."""
+"""Relative residual of the load that `solve_largest_spot` guarantees."""
 
 each_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 each_kind = pytest.mark.parametrize("kind", RANDOM)
@@ -353,7 +353,7 @@ def test_slope_of_the_stiffness_curve(law, name):
 
 @pytest.fixture
 def casadi_numpy():
-    """Let numpy's functions build casadi expressions, in this test only."""
+    """Patch numpy's functions to build casadi expressions, in this test only."""
     before = casadi.GlobalOptions.getNumpyMode()
     casadi.GlobalOptions.setNumpyMode(1)
     yield
@@ -361,7 +361,7 @@ def casadi_numpy():
 
 
 def symbolic(law, prefix=""):
-    """The law with a symbol for every number, past its checks; and {name: (symbol, value)}."""
+    """Copy of a law with a symbol for every number, without checks; and {name: (symbol, value)}."""
     clone, symbols = object.__new__(type(law)), {}
     for item in fields(law):
         value = getattr(law, item.name)

@@ -27,7 +27,7 @@ points = st.floats(-6.0, 6.0)
 
 
 def reference(function, lower, upper, **options):
-    """Adaptive quadrature, asked for 1e-12."""
+    """Integral by adaptive quadrature with the requested tolerance 1e-12."""
     return quad(function, lower, upper, epsabs=0.0, epsrel=1e-12, limit=200, **options)[0]
 
 

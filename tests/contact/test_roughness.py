@@ -25,7 +25,7 @@ def entry(name, value, unit="m"):
 
 @pytest.fixture
 def loaded(tmp_path):
-    """Reads the default gear contact, which states no roughness, with further lines."""
+    """Function that reads the default gear contact, which states no roughness, with added lines."""
 
     def read(lines):
         path = tmp_path / "joint.toml"

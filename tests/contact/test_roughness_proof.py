@@ -12,14 +12,15 @@ from oracles import roughness_law as cases
 from oracles.measured_joints import GAMMA, joint_law, level, measured
 
 SEEDS = {1: range(400, 408), 4: range(400, 403)}
-"""Of surfaces with waves up to side/1 and side/4: the few hills of the first differ more."""
+"""Seeds {roll-off: seeds}; surfaces with long waves have few hills, and need more seeds."""
 slow = pytest.mark.slow
 pytestmark = needs("tamaas")
 
 
 @pytest.fixture(scope="module")
 def pressed():
-    """Boundary elements and law on the lowest and the highest Hurst exponent and two bands, 128 points."""
+    """Results of boundary elements (128 points) and of the law, for the extreme Hurst exponents and two wave
+    bands."""
     return {
         (H, roll_off): cases.elastic_contacts(H, roll_off, seeds=seeds, points=128)
         for H in (min(cases.HURST), max(cases.HURST))

@@ -156,7 +156,7 @@ def test_a_preload_that_no_bolt_bears():
 
 @pytest.fixture
 def fine(tmp_path):
-    """Path of the specimen with a surface eight times finer."""
+    """Path of the box specimen's parameter file, with a surface eight times finer."""
     path = tmp_path / "fine.toml"
     path.write_text(
         format_parameter_file(BOLTED.with_roughness({"Ra1": 0.2e-6, "Ra2": 0.2e-6}, "user", "test"))

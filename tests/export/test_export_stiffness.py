@@ -32,7 +32,7 @@ DIGITS = {"ansys": 1e-6, "calculix": 1e-6}
 
 
 def coupled(coupling=0.2):
-    """A positive definite stiffness with all couplings, of the size of a joint of four M8."""
+    """Positive definite stiffness matrix with all couplings, of the size of a joint of four M8 bolts."""
     rng = np.random.default_rng(5)
     size = np.sqrt([8e9, 7e9, 2e10, 1.2e7, 1.1e7, 1e7])
     off = rng.uniform(-coupling, coupling, (6, 6))
@@ -52,7 +52,8 @@ def expected_motion(K, positions, normal):
 
 
 def assert_moves(matrix, motion, tolerance=1e-8):
-    """Node 2 moves under LOAD with node 1 held, and a rigid motion of both nodes needs no force."""
+    """Assert that node 2 moves as expected under LOAD with node 1 fixed, and that rigid motions cause no
+    force."""
     np.testing.assert_allclose(matrix, matrix.T, rtol=1e-12)
     np.testing.assert_allclose(np.linalg.solve(matrix[6:, 6:], LOAD), motion, rtol=tolerance)
     r = 1e3 * POSITIONS
@@ -298,7 +299,8 @@ def test_refusals(words, says, tmp_path, capsys, monkeypatch):
 @pytest.mark.slow
 @needs("gmsh")
 class TestElasticJoint:
-    """A joint with elastic sides: the whole joint, unless the user asks for the interface."""
+    """Exports of a joint with elastic sides: of the complete joint by default, of the interface if requested.
+    """
 
     def test_stiffness_is_the_slope_of_the_compiled_joint(self, elastic_joint, tmp_path, capsys):
         file = load_parameter_file(elastic_joint / "joint.toml")

@@ -28,7 +28,7 @@ BOLTS = BoltList(x=(0.0, 0.0), y=(-0.015, 0.015), hole_diameter=0.0066, head_dia
 
 
 class Linear:
-    """p = k delta while closed."""
+    """Linear contact law p = k delta."""
 
     def __init__(self, k: float) -> None:
         self.k = k
@@ -49,7 +49,7 @@ def law():
 
 
 def imbalance(solution):
-    """Forces (n) [N] on each body that nothing balances: the reactions of the supports, and round-off."""
+    """Unbalanced forces (n) [N] on each body: reactions of the supports, and round-off."""
     model = solution.model
     nodal = (
         model.contact_interface.interpolation_matrix.T
@@ -95,7 +95,7 @@ def test_two_blocks_pressed_uniformly(law):
 
 
 def wavy(n: int, mean: float, k: float, amplitude: float) -> ContactSolution:
-    """Half a wave of length 1 in n elements, symmetric at both ends, plane strain, 1.5 waves deep.
+    """Contact of half a sinusoidal wave in n plane-strain elements, symmetric at both ends, 1.5 waves deep.
 
     At that depth exp(-2 kappa h) = 7e-9 of the wave is left.
     """
@@ -230,14 +230,14 @@ def test_bodies_of_different_kind(law):
 
 
 def pulled(plates, law, *forces, held=None):
-    """Both heads pulled by forces [N] along +z, away from the contact."""
+    """Solution with both bolt heads loaded by forces [N] along +z, away from the contact."""
     model = ContactModel(plates.bodies, plates.contact_interface, law, fixed_unknowns=held)
     return model, [plates.bolt_head_loads[0] @ np.array(forces)]
 
 
 @pytest.fixture(params=[False, True], ids=["factor", "perturbed factor"])
 def factor(request, monkeypatch):
-    """The factorisation as it is, and one of a matrix so perturbed that it never breaks down."""
+    """Factorisation of the stiffness: the usual one, and one of a perturbed matrix that always succeeds."""
     if request.param:
 
         def perturbed(matrix):

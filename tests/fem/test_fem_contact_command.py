@@ -64,7 +64,7 @@ def plates(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def computed(plates) -> tuple[dict, Path]:
-    """One run that writes everything, and the folder it writes to."""
+    """Output and folder of one run of the command that writes all files."""
     folder = plates.parent / "out"
     names = {"--out": "joint.toml", "--field": "field.csv", "--plot": "field.png"}
     given = [part for option, name in names.items() for part in (option, str(folder / name))]

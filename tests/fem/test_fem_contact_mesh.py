@@ -95,7 +95,7 @@ def test_refinement_divides_the_sizes():
 
 
 def distorted(n: int, by: float) -> MeshHex:
-    """A cube of n elements a side whose inner nodes are moved in the plan."""
+    """Cube of n elements per side, inner nodes displaced in the plan."""
     lines = np.linspace(0.0, 1.0, n + 1)
     mesh = MeshHex.init_tensor(lines, lines, lines)
     x, y, z = mesh.p

@@ -42,7 +42,7 @@ def steps(end, size):
 
 
 def solve(below, above, size, normal, tangential, count=6):
-    """Two blocks of one plan; None below: the mirror image."""
+    """Modes of two blocks with the same plan; if `below` is None, of a block and its mirror image."""
     bodies = tuple(one.body(size, sign) for one, sign in ((below, -1), (above, 1)) if one)
     interface = above.contact(size)
     ones = np.ones(interface.quadrature_area.size)
@@ -65,7 +65,8 @@ def test_rod_of_two_halves():
 
 
 def rigid_frequencies(one, other, normal, tangential):
-    """Two rigid plates on distributed springs: twelve coordinates, about the centres of mass."""
+    """Frequencies of two rigid plates on distributed springs: twelve degrees of freedom about the centres of
+    mass."""
     mass, stiffness = [], np.zeros((12, 12))
     for plate in (one, other):
         m = plate.density * plate.length * plate.width * plate.thickness

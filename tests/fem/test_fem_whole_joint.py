@@ -20,12 +20,12 @@ def lap(length=0.1, width=0.04, thickness=2e-3, nu=0.0, hole=2e-3):
 
 
 def even(joint, tangential, normal):
-    """Springs [N/m3] that are the same everywhere."""
+    """Uniform springs [N/m3] of the contact."""
     return np.tile([tangential, tangential, normal], (joint.contact_interface.quadrature_area.size, 1))
 
 
 def block(nu=0.0):
-    """Thick plates, whose wide hole needs few elements."""
+    """Joint of thick plates with a wide hole, which needs few elements."""
     return lap(length=0.05, width=0.05, thickness=0.02, nu=nu, hole=8e-3)
 
 

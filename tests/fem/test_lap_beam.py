@@ -16,7 +16,7 @@ from jointfmu.mechanics.curve import tabulate_approach
 pytestmark = pytest.mark.slow
 
 BAR = replace(cases.beam(), lap=cases.beam().length, bolts=())
-"""A lap as long as the beam, without bolts: two bars, one on the other."""
+"""Two bars, one on the other, without bolts: the lap is as long as the beam."""
 
 
 @needs("gmsh")

@@ -23,7 +23,7 @@ LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
 
 @pytest.fixture(scope="module")
 def disc():
-    """An evenly pressed disc of many points, whose middle lags behind by two modes, and patches of it."""
+    """Uniformly pressed disc of many points whose middle lags behind by two modes, and its patches."""
     law = BoltedJointSpring.for_joint(load_default("bolted_joint").values).friction_law.foundation()
     line = RADIUS * (np.arange(COUNT) + 0.5) / COUNT * 2.0 - RADIUS
     place = np.stack([each.ravel() for each in np.meshgrid(line, line)], axis=1)
@@ -56,7 +56,7 @@ LINEAR = ShearStates(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
 
 
 def tightened(disc) -> StickContactStiffness:
-    """A joint twice as stiff as its contact against shifts."""
+    """Stick stiffness of a joint that is twice as stiff as its contact."""
     law, points, rows = disc[:3]
     full = stick_stiffness_matrix(evaluate_friction(law, LINEAR, points, rows)[1], points.point_area)
     return StickContactStiffness(LINEAR, full, 2.0 * full.diagonal())

@@ -31,7 +31,7 @@ AREAS = ["COORD.COOR1", "COORD.COOR2", "COORD.COOR3", "CNAREA"]
 
 
 def number(x):
-    """As Abaqus/CAE prints it: exponents in threes, no zeros at the end."""
+    """Format a number as Abaqus/CAE prints it: three digits of exponent, no trailing zeros."""
     if x == 0.0:
         return "0."
     power = 3 * int(np.floor(np.log10(abs(x)) / 3.0 + 1e-9))
@@ -40,7 +40,7 @@ def number(x):
 
 
 def report(columns, table, part="part: PART-1-1", step="Step-1", increment=1, per_line=9, labels=None):
-    """A report with a table (n, columns) of the nodes `labels`, its columns in lines of `per_line`."""
+    """Report of a table (n, columns) of the nodes `labels`, with `per_line` columns per line."""
     labels = range(1, len(table) + 1) if labels is None else labels
     lines = [*REPORT.format(step=step, increment=increment).splitlines(), ""]
     lines += [f"Field Output reported at nodes for {part}", "   Averaged at nodes", ""]
@@ -63,7 +63,7 @@ def report(columns, table, part="part: PART-1-1", step="Step-1", increment=1, pe
 
 
 def listed():
-    """Pressure, three coordinates and area of nodes on the rectangle."""
+    """Rows of pressure, three coordinates and area of nodes on the rectangle."""
     points, _ = grid(4, 3)
     p = 1.0 + points[:, 0] * points[:, 1]
     return np.column_stack([p, points, np.full(len(p), 5.0), np.full(len(p), 0.4)])
@@ -159,7 +159,7 @@ INCREMENT = """
 
 
 def printed(columns, table, labels, status=""):
-    """A node table of a data file; rows of zeros are left out."""
+    """Node table of a data file, without rows of zeros."""
     lines = ["", "", "   THE FOLLOWING TABLE IS PRINTED FOR NODES BELONGING TO NODE SET CONTACT", ""]
     lines += ["       NODE FOOT-   " + "".join(f"{name:<12s}" for name in columns), "            NOTE", ""]
     for label, row in zip(labels, table, strict=True):

@@ -14,7 +14,8 @@ from test_fields_files import UNITS, blocks, faces, listing
 
 
 def archive(points, elements, types):
-    """What CDWRITE writes, as the examples of mapdl-archive have it: `elements` are (type, nodes)."""
+    """Archive as CDWRITE writes it, in the format of the examples of mapdl-archive; `elements` are (type,
+    nodes)."""
     lines = ["/COM,ANSYS RELEASE 2021 R1", "/PREP7", "/NOPR"]
     lines += [f"ET,{i},{kind}" for i, kind in types.items()]
     lines += [f"NBLOCK,6,SOLID,{len(points):10d},{len(points):10d}", "(3i9,6e21.13e3)"]

@@ -15,7 +15,7 @@ UNITS = {"length_unit": "mm", "pressure_unit": "MPa"}
 
 
 def grid(nx, ny, quadratic=False):
-    """Points (n, 2) of the rectangle 4 by 2, slightly warped inside, and its quadrilaterals."""
+    """Points (n, 2) of the rectangle 4 by 2, slightly displaced inside, and its quadrilaterals."""
     m = 2 if quadratic else 1
     x, y = np.meshgrid(np.linspace(0, 4, m * nx + 1), np.linspace(0, 2, m * ny + 1), indexing="ij")
     bump = 0.1 * np.sin(np.pi * x / 4) * np.sin(np.pi * y / 2)
@@ -29,7 +29,7 @@ def grid(nx, ny, quadratic=False):
 
 
 def faces(kind, n):
-    """The rectangle in faces of a kind, n along its short side."""
+    """Points and faces of the rectangle in faces of one kind, n along its short side."""
     points, quads = grid(2 * n, n, quadratic=kind in ("triangle6", "quad8", "quad9"))
     if kind in ("quad", "quad9"):
         return points, quads
@@ -84,7 +84,7 @@ def test_boundary_of_one_cell_is_all_its_faces(kind, count, area):
 
 
 def _area(points, face):
-    """Of a plane face in space: areas in its own plane."""
+    """Area of a plane face in space."""
     own = points[face] - points[face[0]]
     _, _, axes = np.linalg.svd(own)
     return nodal_areas(own @ axes[:2].T, [np.arange(len(face))[None, :]]).sum()
@@ -218,7 +218,7 @@ def test_broken_frd_is_refused_with_the_line(tmp_path):
 
 
 def blocks(quadratic=False):
-    """Two blocks of bricks on each other at z = 0, each with nodes of its own, and a pressure on both."""
+    """Two blocks of bricks in contact at z = 0, without common nodes, and pressures on both faces."""
     points, cells = grid(4, 3)
     n = len(points)
     levels = [np.column_stack([points, np.full(n, z)]) for z in (-1.0, 0.0, 0.0, 1.0)]
@@ -303,7 +303,8 @@ HEADER = """
 
 
 def listing(p, points, cells, per_page=7):
-    """What PRNSOL,CONT, NLIST and ELIST of CONTA174 print: pages with headers, glued negative numbers."""
+    """Listing of PRNSOL,CONT, NLIST and ELIST for CONTA174: pages with headers, negative numbers without
+    blanks."""
     lines = [" PRINT CONT NODAL SOLUTION PER NODE", HEADER, "  ***** POST1 NODAL CONTACT LISTING *****",
              "  LOAD STEP=     1  SUBSTEP=     3", "   TIME=    1.0000      LOAD CASE=   0", ""]  # fmt: skip
     head = "    NODE    STAT        PENE        PRES        SFRI        STOT"

@@ -56,13 +56,13 @@ CONTROLS = ("\0", "\x1b[31m", "\n", "\r", "\t", "\x7f", "\x85", "\u2028", "\u202
 
 
 def hostile(text: str, joint: str = DRIVE) -> ParameterFile:
-    """The default parameters of a joint with this text as name and as every source."""
+    """Default parameters of a joint with this text as name and as every source."""
     file = load_default(joint)
     return replace(file, name=text, sources=dict.fromkeys(file.sources, text))
 
 
 class Tags(HTMLParser):
-    """The elements of a page with the names of their attributes, and its text."""
+    """Parser that collects tags, attribute names and text of a page."""
 
     def __init__(self, page: str) -> None:
         super().__init__()

@@ -19,7 +19,7 @@ each_joint = pytest.mark.parametrize("joint", KINDS)
 
 @pytest.fixture
 def file(tmp_path):
-    """Writes a parameter file and gives its path."""
+    """Function that writes a parameter file and returns its path."""
 
     def write(text, name="joint.toml"):
         path = tmp_path / name
@@ -30,7 +30,7 @@ def file(tmp_path):
 
 
 def bolts(old="", new=""):
-    """The default bolted joint as text, with a piece of it replaced."""
+    """Text of the default bolted joint with one passage replaced."""
     text = format_parameter_file(load_default("bolted_joint"))
     assert old in text
     return text.replace(old, new, 1)

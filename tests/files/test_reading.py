@@ -28,7 +28,7 @@ DESCRIPTION += "<ModelVariables/><ModelStructure/></fmiModelDescription>"
 
 
 def archive(path: Path, members: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> Path:
-    """An FMU for co-simulation on this platform, with further members."""
+    """FMU for co-simulation on this platform, with additional members."""
     with zipfile.ZipFile(path, "w", method) as made:
         made.writestr("modelDescription.xml", DESCRIPTION, zipfile.ZIP_DEFLATED)
         made.writestr(f"binaries/{host_platform()}/Bomb.so", b"x")
@@ -44,7 +44,7 @@ def host_platform() -> str:
 
 
 def larger(path: Path, name: str, size: int) -> Path:
-    """The archive with another declared size of a member, in its list and before the member."""
+    """Change the declared size of an archive member, in the directory and before the member."""
     data = bytearray(path.read_bytes())
     with zipfile.ZipFile(path) as made:
         at = made.getinfo(name).header_offset
@@ -161,7 +161,7 @@ INPUTS = {
     for action in one._actions
     if action.type is Path and action.dest not in (*one.output_file_kinds, "fmus")
 }
-"""(command, argument) of every file that is read."""
+"""(command, argument) of every input file."""
 FILES = {
     "assembly.toml": (files("jointfmu_models") / "assemblies" / "box_specimen.toml").read_text("utf-8"),
     "field.csv": "x [m],y [m],area [m2],pressure [Pa]\n0,0,1e-4,1e6\n",

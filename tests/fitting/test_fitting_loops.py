@@ -24,7 +24,7 @@ from jointfmu.quantity.units import unit_sizes
 PRELOAD = measurements.PRELOAD
 K, C = 2e9, 4e13
 PARABOLA = HysteresisLaw(lambda u: K * u - C * u**2, lambda u: K * u**2 / 2.0 - C * u**3 / 3.0)
-"""B = K u - C u^2: everything below about it is worked out by hand."""
+"""Friction law B = K u - C u^2, for which the expected values below are known in closed form."""
 SPRING = NonlinearSpring(lambda u: K * u, lambda u: 0.5 * K * u**2)
 AMPLITUDES = np.array([1e-7, 1e-6, 1e-5])
 
@@ -144,7 +144,7 @@ def test_a_branch_ends_where_it_passes_the_turning_point_before():
 
 
 def swung(law, turns):
-    """Force (n) over motions (n) from rest over turning points, each way within the one before."""
+    """Force (n) over motions (n) from rest through turning points; each branch lies within the one before."""
     motion, force, reached = [], [], 0.0
     for a, b in pairwise(turns):
         way = np.linspace(a, b, 200, endpoint=False)

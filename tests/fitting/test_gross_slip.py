@@ -19,7 +19,7 @@ OPTIONS = ("--params", JOINT, "--preload", "28696")
 
 
 def jenkins_loop(amplitude, samples=400, cycles=2, stiffness=STIFFNESS, slip_force=SLIP_FORCE):
-    """Displacement and force of a spring in series with dry friction, in triangles of the displacement."""
+    """Displacement and force of a Jenkins element under a triangular displacement."""
     motion = amplitude * (np.abs((np.arange(cycles * samples) * 4.0 / samples + 1.0) % 4.0 - 2.0) - 1.0)
     force, now, before = np.empty(motion.size), 0.0, 0.0
     for k, u in enumerate(motion):
@@ -96,7 +96,7 @@ def test_slipped_loops_the_other_way_round_are_refused(change, text):
 
 
 def bearing_loop():
-    """Slip through a clearance of 3 um on each side, then the bolt bears."""
+    """Loop with gross slip through a clearance of 3 um on each side, until the bolt bears."""
     motion, force = jenkins_loop(5e-6, 800)
     return motion, force + 2e10 * np.sign(motion) * np.maximum(np.abs(motion) - 3e-6, 0.0)
 

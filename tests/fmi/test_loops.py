@@ -20,7 +20,7 @@ FINE = loops.CyclicPath(shape="sine", points=400)
 
 @pytest.fixture(scope="module")
 def drive(native):
-    """Loops of a drive with hysteresis."""
+    """Load cycles of a drive with hysteresis."""
     fmu = native / "fmi2" / "HarmonicDriveSpring.fmu"
     return loops.run_loops(fmu, "phi2", AMPLITUDES, FINE, settings=HYSTERESIS)
 

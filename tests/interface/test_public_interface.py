@@ -35,7 +35,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def plate(monkeypatch):
-    """Makes a bolted joint of PLATE, without the finite elements beside it."""
+    """Function that makes the bolted joint of PLATE without the finite elements of its members."""
     monkeypatch.setattr(
         plate_finite_elements,
         "compute_joint_or_warning",

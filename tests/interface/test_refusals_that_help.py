@@ -82,7 +82,7 @@ class Description:
     """Description of an FMU with one input."""
 
     class Input:
-        """A displacement."""
+        """Displacement input."""
 
         name, unit, nominal = "s_rel_x", "m", "1e-6"
 

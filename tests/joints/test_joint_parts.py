@@ -27,7 +27,7 @@ def test_every_part_can_be_loaded(joint: str) -> None:
 
 @pytest.fixture
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A joint's folder with the part `export`, and a module that is no part."""
+    """Folder of a joint with the part `export`, and a module that is no part."""
     folder = tmp_path / "joint_of_a_test"
     folder.mkdir()
     for name in ("__init__", "export", "helper"):

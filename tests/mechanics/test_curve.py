@@ -24,7 +24,7 @@ from jointfmu.parameters import load_default
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
-"""Central difference over seven points, exact up to degree six: on a quintic only round-off is left."""
+"""Central difference with seven points, exact up to degree six: on a quintic only round-off remains."""
 
 SETS = {
     "zhao": ZHAO,
@@ -45,7 +45,7 @@ each_set = pytest.mark.parametrize("law", SETS.values(), ids=SETS)
 
 @pytest.fixture(scope="module")
 def curves():
-    """Every exported kind of table."""
+    """Every exported kind of table: {name: curve}."""
     made = {name: tabulate_approach(law) for name, law in SETS.items()}
     return made | {"drive": torque_curve(load_default("harmonic_drive").values)}
 
@@ -214,7 +214,7 @@ def test_energy_beyond_the_ends_is_that_of_the_tangents():
 
 
 def straight_ends():
-    """y = 1 + 2x + x^2 on [0, 1]: stiffness 2 and 4 at its ends."""
+    """Curve y = 1 + 2x + x^2 on [0, 1], with stiffness 2 and 4 at its ends."""
     return polynomial_curve(Polynomial([1.0, 2.0, 1.0]), np.linspace(0.0, 1.0, 4))
 
 

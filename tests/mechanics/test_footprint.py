@@ -16,9 +16,9 @@ from jointfmu.quantity import flatten_parameters
 
 EPS = np.finfo(float).eps
 SUM = 1e-12
-"""Sums over a thousand nodes of normalised pressures [1]: round-off."""
+"""Round-off of sums over a thousand nodes of normalised pressures [1]."""
 FIT = 1e-8
-"""Relative residual at which the calibration is accepted [1]."""
+"""Relative residual of an accepted calibration [1]."""
 
 JOINT = load_default("bolted_joint").values
 
@@ -77,7 +77,7 @@ def test_bolts_sit_on_the_frame():
 
 
 def mirrored(points, values, sign):
-    """Values at the mirror images of the nodes, in the nodes' own order."""
+    """Values at the mirror images of the nodes, in the order of the nodes."""
     order, image = (np.lexsort(np.round(p * 1e9).T) for p in (points, points * sign))
     out = np.empty_like(values)
     out[image] = values[order]

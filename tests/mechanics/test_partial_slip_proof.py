@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 POINTS = 64
 MANY = cases.heights(0.3, 4, 900, points=POINTS)
 FEW = cases.heights(0.8, 1, 901, points=POINTS)
-"""Rough squares with sixteen hills and with one."""
+"""Heights of rough squares: MANY has sixteen hills, FEW has one."""
 
 
 def compare(z, nu, axis=0, amplitudes=cases.AMPLITUDES):

@@ -21,7 +21,8 @@ CONTACTS = ("frame", "plate", "row")
 
 @cache
 def contact(name: str) -> PressureDistribution:
-    """The default frame, a plate without symmetry, one with bolts at random, one with a row of bolts."""
+    """Pressure distribution: default frame, plate without symmetry, plate with random bolts, one row of
+    bolts."""
     if name == "random":
         return contact_patches.random_plate(4)
     if name == "annulus":
@@ -43,18 +44,18 @@ def contact(name: str) -> PressureDistribution:
 
 @cache
 def reduced(name: str, count: int) -> PressureDistribution:
-    """Few points of it."""
+    """Distribution reduced to few points."""
     return reduce_points(contact(name), count)
 
 
 @cache
 def moved(name: str) -> FrictionPatches:
-    """The patches of its friction."""
+    """Friction patches of a distribution."""
     return reduce_patches(contact(name), 22)
 
 
 def balance(shape: PressureDistribution) -> np.ndarray:
-    """Sums that are exact, each over the sum of its sizes."""
+    """Sums that a reduction keeps exactly, each over the sum of its magnitudes."""
     (x, y), share, equal, tilt = (
         shape.position.T,
         shape.area_share,
@@ -131,7 +132,7 @@ def test_too_few_points_are_refused():
 
 @pytest.fixture(scope="module")
 def spring() -> BoltedJointSpring:
-    """The default joint, whose curve the points do not know."""
+    """Spring of the default joint; the reduction of points did not use its curve."""
     return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
 
 

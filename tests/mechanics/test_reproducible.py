@@ -17,13 +17,14 @@ from jointfmu.mechanics.footprint.reproducible import (
 )
 
 TIMES = 8
-"""Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
+"""Number of perturbations; each changes thousands of numbers, so some are at the limit of rounding."""
 AGREE = 1e-9
 NUMBERS = ("area_share", "position", "preload_pressure_ratio", "moment_pressure_ratio")
 
 
 def shape_of(name: str) -> PressureDistribution:
-    """The default frame, plates without symmetry and with a row, a nodal field, the README's plate."""
+    """Pressure distribution: default frame, plate without symmetry, one row of bolts, nodal field, README
+    plate."""
     if name == "readme":
         bolts = ((x, y) for x in (-0.08, 0.08) for y in (-0.03, 0.03))
         return contact_patches.bolted_plate(*bolts, size=(0.2, 0.1), hole=0.0135, cone=0.0411)
@@ -31,13 +32,13 @@ def shape_of(name: str) -> PressureDistribution:
 
 
 def perturbed(shape: PressureDistribution, rng: np.random.Generator) -> PressureDistribution:
-    """Every number by 1e-15 of itself, up or down."""
+    """Distribution with every number changed by a relative 1e-15, up or down."""
     values = (getattr(shape, name) for name in NUMBERS)
     return PressureDistribution(*(v * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], v.shape)) for v in values))
 
 
 def content(value: object) -> bytes:
-    """What a search depends on, as bytes."""
+    """Inputs of a search as bytes."""
     if isinstance(value, np.ndarray):
         return value.tobytes()
     if isinstance(value, PressureDistribution):
@@ -47,7 +48,7 @@ def content(value: object) -> bytes:
 
 @pytest.fixture
 def searched(monkeypatch):
-    """Inputs of searches; one that begins with the same bits ends with the same and is not done again."""
+    """Cache of searches with the same input bits, and the list of their inputs."""
     done: dict[bytes, object] = {}
 
     def once(search):

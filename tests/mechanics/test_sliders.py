@@ -26,17 +26,17 @@ from jointfmu.mechanics.jenkins import return_map
 APPROACH = 0.4
 LARGEST = FRICTION * float(load(APPROACH))
 GROSS = FRICTION * APPROACH / RATIO
-"""Displacement [m] at which all of the sphere slips."""
+"""Displacement [m] of gross slip of the sphere."""
 
 
 @pytest.fixture(scope="module")
 def sliders() -> Foundation:
-    """246 sliders."""
+    """Foundation of 246 sliders."""
     return foundation(0.05)
 
 
 def along(*ways: float, approach: float = APPROACH) -> np.ndarray:
-    """A path along x under constant load."""
+    """Path along x at constant approach."""
     return np.array([[approach, x, 0.0] for x in ways])
 
 
@@ -226,13 +226,13 @@ def test_combined_motions_follow_many_springs(name):
 
 
 def stored(sliders: Foundation, force: np.ndarray, approach: np.ndarray) -> np.ndarray:
-    """Elastic energy of sliders."""
+    """Elastic energy of the sliders."""
     stiff = sliders.slider_properties(approach).stiffness[..., None, :]
     return np.sum(np.divide(force**2, 2.0 * stiff, out=0.0 * force, where=stiff > 0.0), axis=(-1, -2))
 
 
 def closed_paths(few: Foundation, count: int, steps: int) -> tuple[np.ndarray, ...]:
-    """Least loss of a step, work put in, what is lost and what is left of random closed paths.
+    """Smallest loss of a step, work, total loss and energy remainder of random closed paths.
 
     Two displacements and an approach that closes and opens, three harmonics each; the work is the integral of
     the force by trapezoids.

@@ -7,7 +7,7 @@ from jointfmu.mechanics.stable_steps import MAX_STABLE_STEP, largest_stable_step
 
 
 def largest(zeta, late):
-    """Step [1] at omega = 1 up to which no eigenvalue of a step leaves the unit circle."""
+    """Largest step [1] at omega = 1 with all eigenvalues of the step inside the unit circle."""
 
     def moved(x, v, rate, one_ago, two_ago):
         force = 2.0 * one_ago - two_ago if late else -x - 2.0 * zeta * v

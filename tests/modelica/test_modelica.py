@@ -74,7 +74,7 @@ def gear() -> GearContactSpring:
 def simulate(
     rumoca: Any, text: str, stop: float, step: float, written: Path = COMMITTED, rtol: float = 1e-10
 ) -> Any:
-    """Run `model Top` of a text. The library's root is loaded if the text names it."""
+    """Simulate `model Top` of a text; the library is loaded if the text names it."""
     session = rumoca.Session(roots=[str(MSL), str(written)])
     model = session.loads(text, model="Top", filename="Top.mo")
     return model.simulate(t=(0.0, stop), dt=step, config=rumoca.SimConfig(rtol=rtol, atol=1e-4 * rtol))
@@ -86,7 +86,7 @@ def top(body: str, equations: str = "", before: str = "") -> str:
 
 
 def move(domain: str, angle: str) -> str:
-    """A flange that moves at a constant rate."""
+    """Text of a flange that moves at a constant rate."""
     return f"""
 model Move
   parameter Real at = 0;
@@ -537,7 +537,7 @@ equation
 end StandIn;
 """
 _BLOCK_OUTPUTS = ("phi_rel", "tau", "tau1", "tau2")
-"""Outputs that the block computes; the others are zero."""
+"""Outputs that the block computes; the other outputs are zero."""
 
 
 def test_wrapper_moves_as_the_component(rumoca: Any):

@@ -16,11 +16,11 @@ from jointfmu.parameters import load_default
 
 LAWS = [(name, law, model.name) for name, kind in KINDS.items() for law in kind.laws for model in kind.models]
 SAME = 1e-9
-"""Largest difference [1] over the largest value of an output on a path: that of the FMU and the package."""
+"""Largest difference [1] of FMU and package on a path, over the largest value of the output."""
 
 
 def a_path(python, seed, count=25):
-    """Random inputs that the joint accepts: within its load ramp, and the motions of its load cycle."""
+    """Random inputs that the joint accepts: within its load ramp and the motions of its load cycle."""
     model, random = python.model, np.random.default_rng(seed)
     ramp, start = model.ramp, {v.name: 0.0 for v in model.inputs}
     inputs = start | {ramp.input_name: ramp.end_value * random.uniform(0.1, 0.9)}
@@ -34,7 +34,7 @@ def a_path(python, seed, count=25):
 
 
 def largest_difference(one, other):
-    """Over the largest value of each output."""
+    """Largest difference of two results over the largest value of each output."""
     sizes = {name: float(np.max(np.abs(column))) or 1.0 for name, column in other.columns.items()}
     return max(float(np.max(np.abs(one.columns[n] - other.columns[n]))) / size for n, size in sizes.items())
 

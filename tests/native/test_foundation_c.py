@@ -59,7 +59,7 @@ __attribute__((visibility("default"))) int read_properties(int n, const double (
 
 @dataclass(frozen=True)
 class RandomFoundation:
-    """Foundation of a scaled curve in Python, and in C its heights and its properties on a path.
+    """Foundation of a scaled curve in Python; its heights and its properties on a path in C.
 
     approach : (q) [m] at which the properties are compared: up and down at random, and at each height
     found    : (q, n, 3) stiffness, friction limit and stiffness slope in C
@@ -73,7 +73,7 @@ class RandomFoundation:
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
-    """The C of the bolted joint with a function that calls the static ones of foundation.c."""
+    """Library of the bolted joint's C with a function that calls the static functions of foundation.c."""
     files = {**generate_sources("BoltedJoint", load_default("bolted_joint")), "caller.c": CALLER}
     units = [
         name for name in compiler.select_source_files(files, "3") if name not in ("foundation.c", "windows.c")
@@ -91,7 +91,7 @@ def curve() -> Curve:
 
 
 def scaled(curve: Curve, length: float, pressure: float) -> Curve:
-    """Curve with other units of length and pressure."""
+    """Curve in other units of length and pressure."""
     slope = pressure / length**2
     return Curve(
         length * curve.displacement,
@@ -107,7 +107,8 @@ def pointer(values: np.ndarray) -> object:
 
 
 def draw_foundation(library: CDLL, curve: Curve, rng: np.random.Generator) -> RandomFoundation:
-    """Foundation with random parameters; onset and lift-off lie in the closing, in the table or beyond it."""
+    """Foundation with random parameters; onset and lift-off approach lie in the onset, in the table or beyond
+    it."""
     table = scaled(curve, *np.exp(rng.uniform(-2.0, 2.0, 2)))
     low, high = table.displacement[[0, -1]]
     onset, smallest, *path = low + (high - low) * (1.2 * rng.random(2 + APPROACHES) ** 3 - 0.1)

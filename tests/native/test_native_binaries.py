@@ -40,10 +40,10 @@ BINARIES = {
     },
 }
 LARGEST_FMU = 600_000
-"""Bytes [1]. The proof inside is less than a tenth of them, the own elementary functions are another."""
+"""Size limit of an FMU [bytes]; the experiments inside are less than a tenth of it."""
 SYSTEM_DLL = re.compile(r"api-ms-win-crt-[a-z]+-l1-1-0\.dll|kernel32\.dll", re.IGNORECASE)
 LINKER_MADE = {"__mh_dylib_header", "___dso_handle"}
-"""What zig's linker adds to every macOS library."""
+"""Symbols that zig's linker adds to every macOS library."""
 
 
 def members(fmu: Path) -> dict[str, bytes]:
@@ -60,8 +60,8 @@ def binaries(native: Path, version: str) -> Iterator[tuple[str, bytes]]:
 
 
 def images(content: bytes) -> Iterator[Any]:
-    """The libraries in a file: one, or all of a universal file. lief frees them with the iterator. It takes
-    half a second to load: what does not use it does not wait for it."""
+    """Libraries in a file (several in a universal file). lief, which frees them with the iterator, is
+    imported here because its import takes half a second."""
     import lief
 
     lief.logging.disable()
@@ -83,11 +83,11 @@ def exported(image: Any) -> set[str]:
 
 
 OWN_FUNCTIONS: dict[str, set[str]] = {"fmi2": set(), "fmi3": {"jointfmu_follow_path"}}
-"""{version: functions exported beyond the standard}."""
+"""{version: functions exported in addition to the standard}."""
 
 
 def declared(version: str) -> set[str]:
-    """All functions of fmi2Functions.h or fmi3Functions.h."""
+    """Names of all functions of fmi2Functions.h or fmi3Functions.h."""
     header = Path(fmpy.__file__).parent / "c-code" / f"{version}Functions.h"
     return set(re.findall(rf"^\s*FMI\d_Export\s+\w+\s+({version}\w+);", header.read_text(), re.MULTILINE))
 
@@ -196,7 +196,7 @@ def test_macos_11_and_newer_can_load_it(native: Path, version: str) -> None:
 
 
 def check_signature(library: bytes, at: int) -> None:
-    """The ad-hoc signature without which arm64 refuses a library: a digest of every page before it."""
+    """Assert the ad-hoc signature that arm64 requires: a digest of every page before it."""
     _, _, blobs = struct.unpack_from(">III", library, at)
     offsets = dict(struct.unpack_from(">II", library, at + 12 + 8 * i) for i in range(blobs))
     start = at + offsets[0]

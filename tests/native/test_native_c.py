@@ -48,13 +48,13 @@ HOSTS = Path(__file__).parent / "hosts"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")
 COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m", "ziglang", "cc")}
-"""{name: command}; the last comes with the package and builds the FMUs: it is clang, and warns as that."""
+"""{name: command} of compilers. The last one is zig's clang, which builds the FMUs."""
 SANITIZERS = {
     "clang": "address,undefined,float-cast-overflow",
     "gcc": "address,undefined,float-cast-overflow",
     "zig": "undefined,float-cast-overflow",
 }
-"""The first that is installed is taken. Zig has no runtime of the address sanitizer."""
+"""Compilers with sanitizers, the first installed one is used. Zig has no runtime of the address sanitizer."""
 PLAIN = {
     "gcc": ("-O2", "-fPIC"),  # which finds some faults only where it optimizes
     "zig": ("-O0", "-fPIC", "-fno-sanitize=all", "-target", ZIG_TARGETS[fmpy.platform_tuple]),
@@ -64,22 +64,21 @@ OWN = {
     version: (place, fmpy.sharedLibraryExtension)
     for version, place in zip(VERSIONS, (fmpy.platform, fmpy.platform_tuple), strict=True)
 }
-"""{version: folder and suffix of this machine's libraries}."""
+"""{version: folder and suffix of the libraries for this machine}."""
 FUZZ_CALLS = 250_000 // (len(MODELS) * len(VERSIONS))
 
 SYSTEM = "robot_joint"
 MUTATIONS = dict.fromkeys([*MODELS, SYSTEM], 5_000) | {
     name: 15_000 for name in MODELS if name.startswith("HarmonicDrive")
 }
-"""Serialized states, in each version, the same in every run: more of what is fast. A third of them takes 2 to
-13 % fewer branches."""
+"""Number of changed serialized states of each version, the same in every run."""
 ELASTIC = "BoltedJoint with elastic sides"
-"""Of the fixture `elastic_joint`."""
+"""Name of the FMU of the fixture `elastic_joint`."""
 ELASTIC_MUTATIONS = 300
-"""Each costs ten times one of BoltedJoint."""
+"""Number of changed states of ELASTIC; one costs ten times as much as for BoltedJoint."""
 
 FEW_PARTNERS = ("RotationalInertia", "TorqueProfile")
-"""One with states and one that follows time: the others have the same C but for their equations."""
+"""One partner FMU with states and one with time; the C of the others differs in the equations only."""
 ALONE = {"dummy": (2, 3, 4), "passthrough": (2, 2, 1), "slider": (2, 3, 2)}
 """{joint of tests/native/hosts: numbers of inputs, outputs, parameters}."""
 C_LIBRARY = {
@@ -88,17 +87,17 @@ C_LIBRARY = {
     "pow",  # of zeros and infinities
     "bcmp", "memchr",  # clang's for comparisons with memcmp and strchr
 }  # fmt: skip
-"""All that an FMU may need: no files, no environment, no locale, no time, no way to end the host, and of the
-mathematical library what is exact: the same bits on every machine."""
+"""Functions of the C library that an FMU may use: none for files, environment, locale, time or exit; of the
+mathematical functions only exact ones, so that all machines give the same bits."""
 
 
 def linking(compiler: str) -> tuple[str, ...]:
-    """A compiler's options for a program with its sanitizers."""
+    """Options of a compiler for a program with its sanitizers."""
     return RELEASED if compiler == "zig" else sanitized(compiler)
 
 
 def sanitized(compiler: str) -> tuple[str, ...]:
-    """A compiler's options for its sanitizers. Checks are put in before the compiler optimizes."""
+    """Options of a compiler for its sanitizers, which are inserted before optimization."""
     found = ("-O1", "-g1", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
     # Zig would compile its runtime first, 30 s: without one, the program ends by a signal, which says less.
     alone = (f"-fsanitize-trap={SANITIZERS[compiler]}", "-target", ZIG_TARGETS[fmpy.platform_tuple])
@@ -106,11 +105,11 @@ def sanitized(compiler: str) -> tuple[str, ...]:
 
 
 UNDEFINED = 0
-"""ELF's number of the section that lies in another file."""
+"""Section number of an undefined symbol in ELF."""
 
 
 class Sources(NamedTuple):
-    """C sources of one joint, and what a host must know."""
+    """C sources of one joint, and the numbers that a host needs."""
 
     files: Mapping[str, str]
     inputs: int
@@ -129,12 +128,12 @@ class Sources(NamedTuple):
 
 
 ELASTIC_FILES: list[ParameterFile] = []
-"""The parameter file of ELASTIC, once a test has it."""
+"""Parameter file of ELASTIC, filled by the first test that makes it."""
 
 
 @cache
 def c_of(name: str) -> Sources:
-    """The sources of an FMU, or of the joint in a folder of tests/native/hosts."""
+    """Sources of an FMU, or of the joint in a folder of tests/native/hosts."""
     if name == ELASTIC:
         (file,) = ELASTIC_FILES
         model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
@@ -158,18 +157,18 @@ def c_of(name: str) -> Sources:
 
 
 def shipped(native: Path, name: str, version: str, out: Path, platform: str, suffix: str) -> Path:
-    """The library of an FMU for a platform, unpacked."""
+    """Unpacked library of an FMU for a platform."""
     with zipfile.ZipFile(native / f"fmi{version}" / f"{name}.fmu") as fmu:
         return Path(fmu.extract(f"binaries/{platform}/{name}{suffix}", out))
 
 
 def digest(value: object) -> str:
-    """Of what `repr` shows: the same in every process."""
+    """Digest of the `repr` of a value, the same in every process."""
     return sha256(repr(value).encode()).hexdigest()[:16]
 
 
 class Builder:
-    """Compiles sources and hosts, each once.
+    """Compiler of sources and hosts, each of them once.
 
     work : folder of hosts and programs
     kept : folder of the objects of joints, which later runs with equal sources take from there
@@ -180,7 +179,7 @@ class Builder:
         self.objects, self.host, self.program = map(cache, (self._objects, self._host, self._program))
 
     def _objects(self, compiler: str, name: str, *options: str) -> list[Path]:
-        """Object files of a joint, warnings being errors: only what has none is kept.
+        """Object files of a joint; a warning is an error.
 
         Zig keeps what it compiles itself, if equal sources have equal paths.
         """
@@ -207,7 +206,7 @@ class Builder:
         return [folder / f"{Path(unit).stem}.o" for unit in units]
 
     def _host(self, compiler: str, program: str) -> Path:
-        """Object file of a host that has the FMU in it, with sanitizers."""
+        """Object file of a host that includes the FMU, with sanitizers."""
         out = self.work / f"{compiler}-{program}.o"
         source = str(HOSTS / f"{program}.c")
         options = (*STRICT, *sanitized(compiler), "-D_GNU_SOURCE", "-DLINKED", "-isystem", str(FMI_HEADERS))
@@ -215,7 +214,7 @@ class Builder:
         return out
 
     def _program(self, compiler: str, program: str, name: str) -> Path:
-        """A host and a joint in one, with sanitizers."""
+        """Program of a host and a joint, with sanitizers."""
         objects = [self.host(compiler, program), *self.objects(compiler, name, *sanitized(compiler))]
         out = self.work / f"{compiler}-{program}-{name}"
         libraries = ("-lm", "-lpthread", "-o", str(out))
@@ -224,7 +223,7 @@ class Builder:
 
     @staticmethod
     def call(folder: Path, *command: str) -> str:
-        """What a program prints; fails with what it complains about."""
+        """Run a program and return its output; fails if a sanitizer reports a fault."""
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"
         return done.stdout
@@ -237,7 +236,7 @@ def builder(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Confi
 
 @pytest.fixture(scope="module")
 def sanitizing(builder: Builder) -> str:
-    """A compiler that has its sanitizers."""
+    """Compiler that has its sanitizers."""
     probe = builder.work / "probe.c"
     probe.write_text("int main(void) { return 0; }\n")
     for compiler in SANITIZERS:
@@ -248,7 +247,7 @@ def sanitizing(builder: Builder) -> str:
 
 
 def ramp_points(name: str, count: int) -> str:
-    """Points along the joint's load ramp, the other inputs at their start or near zero."""
+    """Points along the joint's load ramp; other inputs are at their start value or near zero."""
     if name not in MODELS:
         return "\n".join(f"{0.1 * i} {0.2 * i}" for i in range(1, count))
     model = MODELS[name]
@@ -363,7 +362,7 @@ def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> Non
 
 
 def check_mutations(builder: Builder, compiler: str, name: str, version: str, count: int) -> None:
-    """States of an FMU whose fields are changed are refused, or used without harm."""
+    """Check that changed states of an FMU are refused, or used without a fault."""
     run = builder.program(compiler, "states", name)
     found = builder.call(builder.work, str(run), "", version, *c_of(name).arguments, "1", str(count))
     mutations, refused = (int(word) for word in found.replace(",", "").split() if word.isdigit())

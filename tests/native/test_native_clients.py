@@ -15,7 +15,7 @@ from natives import VERSIONS, check_slopes, close, jacobian
 from jointfmu.joints import MODELS
 
 ROUND_OFF = 1e-12
-"""What a client may add [1]: CasADi scales by nominal values."""
+"""Round-off that a client may add [1]: CasADi scales by nominal values."""
 
 
 def check(
@@ -25,7 +25,7 @@ def check(
     changes: Any = None,
     steps: bool = True,
 ) -> None:
-    """Rows of all outputs at states against the package.
+    """Assert that rows of all outputs at states agree with the package.
 
     steps : the first state is the start, the others are steps; or all are tried after a start without input
     """

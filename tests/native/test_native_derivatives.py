@@ -71,7 +71,7 @@ def test_the_adjoint_is_the_transpose(host: Host, name: str, exchange: bool) -> 
 
 
 def sides(instance: Fmu, state: dict[str, float], name: str, h: float) -> dict[str, tuple[float, float]]:
-    """{output: differences of second order above and below an input}."""
+    """One-sided differences of second order above and below an input: {output: differences}."""
     here, at = instance.at(state), {k: instance.at({name: state[name] + k * h}) for k in (-2, -1, 1, 2)}
     instance.at(state)
     return {
@@ -109,16 +109,16 @@ SIZES |= {"theta_x": 1e-5, "theta_y": 1e-5, "theta_z": 2e-5, "v_rel_x": 1e-3, "o
 """Sizes of the inputs [N, N.m, m, rad, m/s, rad/s]."""
 MOMENTS = ("initialization", "tried step", "accepted step")
 STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
-"""Steps of differences over the size of an input [1]."""
+"""Steps of the differences over the size of an input [1]."""
 
 
 JUMPING = ("K_", "C_loop", "step_", "E_loss")
-"""Beginnings of outputs that can jump: stiffnesses at accepted inputs, where spots that slip stick in a
-motion back; the heat, by the third order of a step, where springs begin to touch at its end."""
+"""Prefixes of outputs that may jump: stiffnesses at accepted inputs, where slipping points stick after a
+reversal; the heat, in third order of the step, where springs come into contact at its end."""
 
 
 def random_state(rng: np.random.Generator, preload: float, still: float) -> dict[str, float]:
-    """Inputs at random; each motion is zero with the probability `still`."""
+    """Random inputs; each motion is zero with the probability `still`."""
     motions = {n: s * rng.uniform(-0.5, 0.5) * (rng.random() > still) for n, s in SIZES.items() if s < 1e-4}
     state = dict.fromkeys(SIZES, 0.0) | {"preload": preload} | motions
     if rng.random() < 0.6:
@@ -127,7 +127,7 @@ def random_state(rng: np.random.Generator, preload: float, still: float) -> dict
 
 
 def after_a_history(instance: Fmu, moment: str, seed: int, preload: float) -> dict[str, float]:
-    """Inputs after random motion, at a moment of the simulation; every other motion leaves and meets the
+    """Inputs after random motion, at a moment of the simulation; every other motion passes through the
     tightened state."""
     rng = np.random.default_rng(seed)
     still = 0.3 if seed % 2 else 0.7
@@ -147,7 +147,7 @@ def after_a_history(instance: Fmu, moment: str, seed: int, preload: float) -> di
 
 
 def check_mean_of_sides(instance: Fmu, state: dict[str, float], nominal: dict[str, float]) -> None:
-    """Derivatives of all outputs are the mean of the differences of both sides.
+    """Assert that the derivatives of all outputs are the mean of the one-sided differences.
 
     They agree over one of the STEPS at least: a shorter step has more round-off, a longer one goes over
     other corners. The tolerance is 1e-4 of the larger side (truncation over 1e-4 of the sizes), 1 % of what

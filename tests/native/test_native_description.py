@@ -80,7 +80,7 @@ def pictures(name: str) -> dict[str, bytes]:
 
 
 def fmu(path: Path, xml: bytes, **files: bytes) -> str:
-    """An FMU without binaries."""
+    """FMU without binaries."""
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", xml)
         for inside, content in files.items():
@@ -89,7 +89,7 @@ def fmu(path: Path, xml: bytes, **files: bytes) -> str:
 
 
 def listed(name: str, version: int) -> dict[str, dict[str, str]]:
-    """All attributes of every variable by its name, with `type`; the same form for both versions."""
+    """All attributes of every variable by name, with `type`; in the same form for both versions."""
     nodes = etree.fromstring(description(name, version)).find("ModelVariables")
     if version == 2:
         return {n.get("name"): {**n.attrib, **n[0].attrib, "type": n[0].tag} for n in nodes}
@@ -362,7 +362,7 @@ def test_initial_unknowns_are_the_outputs_and_know_the_parameters_too(name: str,
 
 
 def samples(name: str, n: int) -> list[dict[str, float]]:
-    """Inputs inside the law's range, some with shear, some without."""
+    """Random inputs inside the range of the law, some of them with shear."""
     model, rng = MODELS[name], np.random.default_rng(7)
     scale = {v.name: v.nominal for v in model.inputs} | {model.ramp.input_name: model.ramp.end_value}
     scale |= {"phi1": 0.1, "phi2": 1e-3}
@@ -584,7 +584,7 @@ def test_an_icon_that_is_missing_is_named() -> None:
 
 
 class Page(HTMLParser):
-    """Reads a page strictly: every element is closed in order; collects the text of table rows."""
+    """Strict parser of a page: every element must be closed in order; collects the text of table rows."""
 
     VOID = ("meta", "img", "br", "link")
 

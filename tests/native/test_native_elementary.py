@@ -22,7 +22,7 @@ PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923
 
 @pytest.fixture(scope="module")
 def functions(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Callable[..., float]]:
-    """{name: the C function}."""
+    """{name: function of the C library under test}."""
     folder, here = tmp_path_factory.mktemp("elementary"), fmpy.platform_tuple
     lines = ['#include "elementary.h"']
     for name in NAMES:
@@ -45,7 +45,7 @@ def functions(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Callable[..
 
 
 def series(term: Decimal, ratio: Callable[[int], Decimal]) -> Decimal:
-    """Sum of terms; ratio(n) is that of term n + 1 to term n."""
+    """Sum of a series; ratio(n) is term n + 1 over term n."""
     total, n = term, 0
     while abs(term) > Decimal(10) ** -DIGITS:
         term *= ratio(n)
@@ -84,12 +84,13 @@ EXACT: dict[str, Callable[..., Decimal]] = {
     "cos": lambda x: wave(x, 1),
 }
 ULPS = {"exp": 0.52, "pow": 0.6, "log": 1.0, "log1p": 0.6, "sin": 0.8, "cos": 0.8, "expm1": 1.1}
-"""Half an ulp is the rounding of the result; the others are found with two or three roundings more."""
+"""Largest error [ulp]: half an ulp by rounding the result, more for functions with two or three further
+roundings."""
 USUAL_ULPS = 2.0
 
 
 def arguments(name: str, rng: np.random.Generator, n: int = 400) -> list[tuple[float, ...]]:
-    """At random: usual ones, small ones, and to the ends of the range."""
+    """Random arguments: usual ones, small ones, and up to the ends of the range."""
     usual, small = rng.normal(0.0, 1.5, n), rng.normal(0.0, 1.0, n) * 10.0 ** rng.uniform(-9, -1, n)
     far = {"sin": 1e6, "cos": 1e6, "asinh": 1e12, "erf": 5.9, "tanh": 30.0}.get(name, 700.0)
     wide = rng.uniform(-far, far, n)

@@ -116,7 +116,7 @@ FORBIDDEN: list[tuple[str, dict[str, Any]]] = [
     *((name, {r.parameter: r.value}) for name, case in CASES.items() for r in case.refusals.refused),
     *((name, values) for name, case in CASES.items() for values in case.refusals.forbidden),
 ]
-"""What is refused, for every reason that there is."""
+"""Parameter values that an FMU refuses, one set for every reason: (FMU, {parameter: value})."""
 
 
 @pytest.mark.parametrize(("name", "values"), FORBIDDEN)

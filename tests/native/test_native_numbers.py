@@ -31,7 +31,7 @@ DRIVE, BOLTED, GEAR = "HarmonicDriveSpring", "BoltedJoint", "GearContact"
 
 
 def pairs(*given: ModuleConstants) -> list[tuple[ModuleType, str]]:
-    """(module, name) of each number."""
+    """(module, name) of each number that C repeats."""
     return [(module, name) for one in given for module, names in one.items() for name in names]
 
 
@@ -51,12 +51,12 @@ def c_of(name: str) -> dict[str, str]:
 
 @cache
 def usual(name: str) -> dict[str, str]:
-    """C of the numbers as they are."""
+    """C text with the actual numbers."""
     return c_of(name)
 
 
 def compiles(folder: Path, files: dict[str, str], text: str) -> bool:
-    """Whether C that includes the joint's headers is accepted, by the compiler that builds the FMUs."""
+    """Whether the compiler accepts C text that includes the headers of the joint."""
     for name, content in (files | {"probe.c": text}).items():
         (folder / name).write_text(content, encoding="utf-8")
     command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", "-c", "probe.c", "-o", "probe.o")

@@ -41,7 +41,7 @@ BARE = (
         for headers in ("aarch64-linux-musl", "generic-musl")
     ),
 )  # fmt: skip
-"""An FMU's sources as FMUs are compiled, in a program without a C library: zig would compile one first."""
+"""Compiler options for FMU sources without a C library, which zig would compile first."""
 
 WINDOWS = (
     str(HOSTS / "windows.c"), "-nostdlib", "-Wl,--entry=mainCRTStartup", "-D_UCRT", "-isystem",
@@ -51,11 +51,11 @@ WINDOWS = (
         for part in ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
     ),
 )  # fmt: skip
-"""The system's runtime alone, as FMUs are linked: mingw's would take zig a minute to compile at first."""
+"""Linker options with the system's runtime only; the runtime of mingw takes zig a minute to compile."""
 
 
 class Machine(NamedTuple):
-    """How to build and run a host: `prefix` gives the words before the name of its program."""
+    """Commands that build and run a host on a machine: `prefix` gives the words before the program's name."""
 
     target: str
     options: tuple[str, ...]
@@ -99,7 +99,7 @@ every_machine = pytest.mark.parametrize(
 
 @pytest.fixture(scope="module")
 def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
-    """The environment of a Windows of its own, which runs until the end."""
+    """Environment variables of a Windows in a folder of its own, which runs until the end of the tests."""
     setting = prepare_wine(tmp_path_factory.mktemp("wine"))
 
     def call(*command: str) -> None:
@@ -117,7 +117,7 @@ def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
 
 @pytest.fixture(scope="module")
 def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, str]) -> Run:
-    """Runs a host with an FMU's library on a machine and gives what it prints."""
+    """Function that runs a host with an FMU's library on a machine, and returns its output."""
     work = tmp_path_factory.mktemp("hosts")
 
     @cache
@@ -166,7 +166,7 @@ def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, 
 
 @pytest.fixture(scope="module")
 def run_sources(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Runs the sources of an FMU and a host, one program for aarch64, and gives what it prints."""
+    """Function that runs host and FMU sources as one program for aarch64, and returns its output."""
     work = tmp_path_factory.mktemp("linked")
 
     @cache
@@ -205,7 +205,7 @@ def counts(model: Model) -> tuple[int, int, int]:
 
 
 def points(model: Model, write: Callable[[float], str] = repr) -> str:
-    """Lines of inputs: the driven one along its ramp, the others of any sign and many magnitudes.
+    """Lines of inputs: the ramped one along its ramp, the others with any sign and many magnitudes.
 
     write : text of a number
     """
@@ -222,12 +222,12 @@ def points(model: Model, write: Callable[[float], str] = repr) -> str:
 
 
 def bits(number: float) -> str:
-    """The 64 bits of a number, as `run` reads and writes them."""
+    """The 64 bits of a number, in the format of the host."""
     return struct.pack(">d", number).hex()
 
 
 def table(text: str) -> np.ndarray:
-    """What `run` writes, as numbers."""
+    """Numbers in the output of the host."""
     rows = [bytes.fromhex(line) for line in text.splitlines()]
     return np.array([np.frombuffer(row, ">f8") for row in rows])
 

@@ -16,7 +16,7 @@ from jointfmu.joints import MODELS
 pytestmark = pytest.mark.slow
 
 COMPILER_TOLERANCE = 1e-9
-"""Largest relative difference that another compiler may make, which may contract a*b + c [1]."""
+"""Largest relative difference [1] by a compiler that may contract a*b + c."""
 
 
 @needs("cc and make")

@@ -33,11 +33,11 @@ OPTIONS = (
     "-Walloca",
     "-Werror",
 )
-"""Also refused: a function with more than a page of stack, and room on it that grows."""
+"""Compiler options that also refuse a function with more than a page of stack, and stack of variable size."""
 
 
 def counted(fmu, folder):
-    """The FMU unpacked, with its own sources compiled so that allocations are counted."""
+    """Unpacked FMU with its own sources compiled so that allocations are counted."""
     unzipped = Path(fmpy.extract(str(fmu), str(folder)))
     files = {
         path.name: path.read_text(encoding="utf-8")
@@ -59,7 +59,7 @@ def counted(fmu, folder):
 
 
 def grown(unzipped, spans, step, steps):
-    """Allocations after initialization, over steps with random inputs out of {input: (low, high)}."""
+    """Number of allocations after initialization, over steps with random inputs from {input: (low, high)}."""
     description = fmpy.read_model_description(str(unzipped))
     refs = {v.name: v.valueReference for v in description.modelVariables}
     fmu = fmpy.instantiate_fmu(str(unzipped), description, "CoSimulation")

@@ -81,7 +81,7 @@ def test_each_input_counts_when_it_moves_alone(host: Host, name: str, version: s
 
 
 def varied(name: str, rng: np.random.Generator) -> dict[str, Any]:
-    """Parameters around the defaults, some of them so far that the law or another parameter forbids it."""
+    """Parameters around the defaults, some of them outside their allowed range."""
     changes: dict[str, Any] = {}
     start = flatten_parameters(load_default(MODELS[name].joint).values)
     for parameter, item in MODELS[name].parameter_fields().items():
@@ -187,7 +187,7 @@ def test_parameters_count_until_initialization_ends(host: Host, version: str, ex
 
 
 def reached(instance: Fmu) -> float:
-    """The time that an instance says it has reached."""
+    """Time of the simulation that an instance has reached."""
     last_successful_time = 2
     if instance.version == 2:
         return float(instance.fmu.getRealStatus(last_successful_time))

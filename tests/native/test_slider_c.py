@@ -27,7 +27,7 @@ pytestmark = pytest.mark.slow
 
 MOVES, SLIDERS = 100_000, 40
 ROUND_OFF = 1e-13
-"""Of a sum of some products, over the largest of what is compared: C adds in another order."""
+"""Round-off of a sum of some products over the largest compared value: C adds in another order."""
 POINTER_TO = POINTER(c_double)
 AVX = " avx " in Path("/proc/cpuinfo").read_text(encoding="utf-8")
 """Whether this processor has AVX."""
@@ -41,13 +41,13 @@ PLANE = (
 
 
 class Sliders1D(Structure):
-    """`Sliders1D` of jenkins.h."""
+    """Struct `Sliders1D` of jenkins.h."""
 
     _fields_ = [(name, POINTER_TO) for name in LINE]
 
 
 class Sliders2D(Structure):
-    """The same name there."""
+    """Struct `Sliders2D` of jenkins.h."""
 
     _fields_ = [
         *((name, POINTER_TO) for name in PLANE),
@@ -58,7 +58,7 @@ class Sliders2D(Structure):
 
 
 class SliderRates(Structure):
-    """The same name there."""
+    """Struct `SliderRates` of jenkins.h."""
 
     _fields_ = [
         (name, POINTER_TO)
@@ -67,14 +67,14 @@ class SliderRates(Structure):
 
 
 class SliderResultant(Structure):
-    """`SliderResultant`."""
+    """Struct `SliderResultant` of jenkins.h."""
 
     _fields_ = [("force", c_double * 3), ("tangent", c_double * 6), ("loss", c_double)]
 
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
-    """The C of the sliders, all functions visible."""
+    """Library of the slider C code with all functions exported."""
     g = FunctionGraph({}, None, [])
     before = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
@@ -114,8 +114,9 @@ def pointer(values: np.ndarray) -> "POINTER_TO":
 
 
 def moves(plane: bool) -> Iterator[tuple[np.ndarray, ...]]:
-    """Springs, limits before and after, forces (2, n) within the former, shift x, y and around (3): some
-    at the limit, some without limit or spring, many small shifts and none."""
+    """Random increments: stiffness, limits before and after, forces (2, n) within the earlier limit,
+    displacement along x, y and around (3); with sliders at the limit, without limit or stiffness, small and
+    zero increments."""
     rng = np.random.default_rng(1)
     for _ in range(MOVES // SLIDERS):
         K = rng.uniform(0.1, 2.0, SLIDERS) * (rng.random(SLIDERS) > 0.1)
@@ -128,7 +129,7 @@ def moves(plane: bool) -> Iterator[tuple[np.ndarray, ...]]:
 
 
 def rows_of(K: np.ndarray, before: np.ndarray, after: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
-    """What C gets of sliders whose stiffness stays."""
+    """Arguments of the C functions for sliders of constant stiffness."""
     x, y = force
     per_K = np.divide(1.0, K, out=np.zeros_like(K), where=K > 0.0)
     e_x, e_y = np.ascontiguousarray(torsion_directions(SLIDERS))
@@ -145,7 +146,7 @@ def rows_of(K: np.ndarray, before: np.ndarray, after: np.ndarray, force: np.ndar
 
 
 def in_c(rows: dict[str, np.ndarray]) -> Sliders1D:
-    """The struct; the rows have to stay alive as long as it."""
+    """C struct of the rows; the rows must stay referenced as long as the struct."""
     return Sliders1D(*(pointer(rows[name]) for name in LINE))
 
 
@@ -183,13 +184,13 @@ def test_along_one_direction(library: CDLL) -> None:
 
 
 def of_each(shift: np.ndarray) -> np.ndarray:
-    """Shifts (2, n) of the sliders."""
+    """Displacements (2, n) of the sliders."""
     return np.asarray(shift[:2, None] + shift[2] * torsion_directions(SLIDERS))
 
 
 def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> np.ndarray:
-    """Force, tangent, loss and slip (7, n): sliders before the first at its limit stick, the others may slip;
-    forces alone are the same, and all the bits with AVX; sums are those of all."""
+    """Force, tangent, loss and slip (7, n) in C: sliders before the first one at its limit stick, the others
+    may slip. Asserts that variants of the function agree, with AVX to the bit."""
     s = Sliders2D(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
     tried, sticks = np.empty((2, SLIDERS)), (c_double * 3)()
     out = (POINTER_TO * 2)(*map(pointer, tried))
@@ -231,7 +232,8 @@ def test_in_a_plane(library: CDLL) -> None:
 
 
 def slopes(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """Derivatives (4, 3) of the forces together, by the shift and by what limits and shifts (3, n) follow."""
+    """Derivatives (4, 3) of the resultant with respect to displacement and `rates` (limits, displacements).
+    """
     s = Sliders2D(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
     given = SliderRates(*map(pointer, (rows["torsion_x"], rows["torsion_y"], *rates)))
     found, fours = np.empty((2, 4, 3))
@@ -244,7 +246,7 @@ def slopes(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray, rates:
 def forces_together(
     rows: dict[str, np.ndarray], shift: np.ndarray, rates: np.ndarray, motion: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Forces (3) after a shift and a motion (4) more, the last of it of what follows; which of them slip."""
+    """Resultant (3) after a displacement and a further motion (4), and mask of the slipping sliders."""
     force, K = [rows["force_x"], rows["force_y"]], rows["K"]
     after = rows["limit_end"] + motion[3] * rates[0]
     each = list(of_each(shift + motion[:3]) + motion[3] * rates[1:])

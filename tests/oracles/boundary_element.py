@@ -19,7 +19,7 @@ else:
 
 @dataclass(frozen=True)
 class Contact:
-    """A rough contact under a mean pressure p (of E*).
+    """Rough contact under a mean pressure p (over E*).
 
     area, plastic : real area over nominal, share of it at the hardness
     separation    : of the mean planes (of the side); stiffness, tangential : per nominal area (E* over side)
@@ -36,7 +36,7 @@ class Contact:
 
 
 def half_space(points, nu=None):
-    """Periodic half-space, E* = 1; with a Poisson ratio nu for traction in three directions."""
+    """Periodic half-space with E* = 1; a Poisson ratio nu is needed for tractions in three directions."""
     kind = tm.model_type.basic_2d if nu is None else tm.model_type.surface_2d
     model = tm.ModelFactory.createModel(kind, [1.0, 1.0], [points, points])
     model.nu = nu or 0.0
@@ -45,7 +45,7 @@ def half_space(points, nu=None):
 
 
 def displaced(model, traction, free=False):
-    """Displacement of the surface under a traction; `free`: of a lone half-space, without periodicity."""
+    """Displacement of the surface under a traction; `free`: of a single half-space that is not periodic."""
     if free:
         tm.ModelFactory.registerNonPeriodic(model, "dcfft")
         displacement = np.zeros_like(traction)
@@ -57,7 +57,8 @@ def displaced(model, traction, free=False):
 
 
 def press(heights, pressures, hardness=np.inf, iterations=200):
-    """Contacts of a rigid surface (of the side) with the half-space, under growing mean pressures.
+    """Contacts of a rigid rough surface (heights over the side) with the half-space, at increasing mean
+    pressures.
 
     Elastic by Polonsky and Keer's conjugate gradients. Where that exceeds the hardness, the pressure is cut
     off there, from the elastic solution on (Kato's solver: perfectly plastic spots, whose flow does not lift
@@ -104,7 +105,7 @@ def _contact(model, surface, p, hardness):
 
 
 def bonded(touching, nu=None, axis=2, free=False):
-    """Stiffness per nominal area (E* over side) of small motions at a fixed contact.
+    """Stiffness per nominal area (E* over side) for small motions that do not change the contact area.
 
     What vibration and ultrasound see, and a plastic contact on unloading: all that touches moves by one.
     With nu, along an axis (0, 1 tangential, 2 normal) of one elastic body against a rigid one, other
@@ -126,7 +127,7 @@ def bonded(touching, nu=None, axis=2, free=False):
 
 
 def refined(heights, factor):
-    """The same periodic surface on a grid that is finer by a whole factor."""
+    """The same periodic surface on a grid refined by an integer factor."""
     n = heights.shape[0]
     waves, size = np.fft.fftshift(np.fft.fft2(heights)), n * factor
     pad = (size - n) // 2
@@ -144,7 +145,7 @@ def slope(heights):
 
 
 def hertz(points, contact=0.25, radius=10.0):
-    """Relative errors (area, peak pressure, approach, stiffness) for a sphere, no periodicity.
+    """Relative errors (area, peak pressure, approach, stiffness) for a sphere (Hertz), not periodic.
 
     Closed form: a^3 = 3 F R/(4 E*), p_0 = 2 E* a/(pi R), delta = a^2/R, dF/ddelta = 2 E* a.
     """
@@ -170,7 +171,7 @@ def hertz(points, contact=0.25, radius=10.0):
 
 
 def westergaard(points, loads=(0.1, 0.3, 0.6), amplitude=0.01):
-    """Relative errors (width, mean gap, stiffness) for a sinusoid, the largest over loads of p*.
+    """Relative errors (width, mean gap, stiffness) for a sinusoidal surface, the largest over loads in p*.
 
     Closed form with p* = pi E* amplitude and s = p/p*: s = sin^2(pi width/2), k = -p*/(amplitude ln s),
     mean gap = amplitude (1 - s + s ln s); all of the unit wavelength.

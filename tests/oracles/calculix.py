@@ -33,9 +33,9 @@ E, NU = 150e3, 0.28
 PLAN, HEIGHT, CELLS = (200.0, 191.0), 50.0, (4, 4, 2)
 """Width, depth and height [mm] of a meshed block, and its elements along them; the joint's A_0."""
 FORCE = 10e3
-"""What pulls at the meshed blocks [N]."""
+"""Tensile force on the meshed blocks [N]."""
 Case = tuple[str, float, float]
-"""Description, value by CalculiX, value by the package."""
+"""Comparison: description, value by CalculiX, value by the package."""
 
 
 def find_calculix() -> str | None:
@@ -74,7 +74,7 @@ def export(*arguments: object) -> None:
 
 
 def rigid_bodies(folder: Path, preload: float, moment: float, normal: str = "z") -> list[Case]:
-    """Motion [mm, rad] of two rigid bodies on the springs, turned and shifted one at a time.
+    """Motion [mm, rad] of two rigid bodies on the springs, for one displacement or rotation at a time.
 
     normal : axis of the model along the joint's normal; x, y, z of what is returned are the joint's
     """
@@ -102,7 +102,7 @@ def rigid_bodies(folder: Path, preload: float, moment: float, normal: str = "z")
 
 
 def meshed_blocks(folder: Path) -> list[Case]:
-    """Two elastic blocks on springs between their meshes, under an even pressure, pulled apart.
+    """Results of two elastic blocks on springs between their meshes, pulled apart by a uniform traction.
 
     Everything is uniform, so the pull moves the top by F/K_zz and the stretch F 2 h/(E A).
     """
@@ -168,7 +168,7 @@ def mesh_blocks() -> tuple[str, list[tuple[int, int, float, float]], np.ndarray]
 
 
 def contact_blocks(folder: Path, joint: str, pressures: Sequence[float] = PRESSURES) -> list[Case]:
-    """Two elastic blocks pressed together [MPa] with the tabular law between them.
+    """Results of two elastic blocks pressed together [MPa] with the tabulated contact law between them.
 
     The top moves by the compression p 2 h/E and by the law's approach from first touch.
     """
@@ -185,7 +185,7 @@ def contact_blocks(folder: Path, joint: str, pressures: Sequence[float] = PRESSU
 
 
 def cases(folder: Path) -> list[Case]:
-    """All cases."""
+    """All comparisons of CalculiX with the package."""
     found = [case for state in STATES for case in rigid_bodies(folder, *state)]
     found += meshed_blocks(folder)
     return found + [
@@ -212,7 +212,8 @@ def c3d20(body: ElasticBody) -> np.ndarray:
 
 
 def body_lines(body: ElasticBody, name: int, nodes: int, elements: int, down: float) -> Iterator[str]:
-    """A body in mm and MPa, moved down by `down` [m]; 12 digits, as CalculiX reads 20 characters."""
+    """Lines of the deck for a body in mm and MPa, displaced by `down` [m]; 12 digits, because CalculiX reads
+    20 characters."""
     yield f"*NODE, NSET=N{name}"
     for i, (x, y, z) in enumerate(body.nodes.T * 1e3):
         yield f"{nodes + i + 1}, {x:.12g}, {y:.12g}, {z - 1e3 * down:.12g}"

@@ -27,7 +27,7 @@ FIELD_NODES = 400
 """Number of nodes of the nodal field."""
 SEED = 3
 FINE = load_levels(1e-6, (1e-5, 2e-2), 0.12)
-"""Loads at the slider heights on all nodes, over the hardness [1]."""
+"""Loads at the slider heights of the fine reference on all nodes, over the hardness [1]."""
 DISPLACEMENTS = 1.5 * np.linspace(0.0, 1.0, 25)[1:] ** 2
 AMPLITUDES = (0.15, 0.3, 0.6, 1.2)
 """Amplitudes of loops over the displacement of gross slip under the largest pressure [1]: the friction force
@@ -36,7 +36,7 @@ is 0.6 to 1 times its limit."""
 
 @dataclass(frozen=True, slots=True)
 class StateRange:
-    """StateRange of random states of a joint.
+    """Range of random states of a joint.
 
     moment  : largest factor of the moment shape of the pressure [1]
     opening : smallest and largest normal motion over the largest approach [1]
@@ -77,7 +77,7 @@ POLE_COUNT = 400
 
 
 def ranges(moment: float) -> dict[str, StateRange]:
-    """Ranges of states; at `moment` the first node in contact opens."""
+    """Ranges of states; `moment` is the one at which the first node in contact opens."""
     return {
         "no tilt": StateRange(0.9 * moment),
         "tilt 0.1": StateRange(0.9 * moment, tilt=0.1),
@@ -100,7 +100,8 @@ def deviation(
     states: StateRange,
     count: int = 64,
 ) -> tuple[float, float]:
-    """Largest deviations [1] of forces and moments, and of stiffnesses, of points from those of a shape.
+    """Largest deviations [1] of the points from the full distribution: of forces and moments, and of
+    stiffnesses.
 
     The sums of share times p, p x, p y and k, k x, k y, k x^2, k x y, k y^2, each over the sum of its sizes
     now or at tightening, whichever is larger, at `count` random states with 0.5 to 1.5 times the mean

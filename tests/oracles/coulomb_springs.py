@@ -23,7 +23,7 @@ WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.04
 
 @dataclass(frozen=True)
 class Springs:
-    """Springs of a curve: one for each interval between edges (n + 1) [m], at its mean height.
+    """Springs that discretise a curve: one for each interval between edges (n + 1) [m], at its mean height.
 
     pressure_curve : pressure [Pa] over approach [m]; `ratio` K_T/K_N [1], `friction` mu [1]
     """
@@ -35,7 +35,7 @@ class Springs:
 
     @classmethod
     def of(cls, curve: Curve, ratio: float, friction: float) -> "Springs":
-        """Close where joints work."""
+        """Springs with small intervals in the range of working pressures."""
         end = curve.end_point[1]
         level = load_levels(LOWEST, (WORKING[0] / end, WORKING[1] / end), STEP)
         return cls(curve, ratio, friction, curve.inverse(level * end))

@@ -15,7 +15,7 @@ from .rough_surfaces import periodic
 
 SEEDS = range(4)
 POINTS, FINEST = 256, 8
-"""Grid points along a side; spacings in the shortest wave."""
+"""Number of grid points along a side; number of spacings in the shortest wave."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Case:
 
 
 def cases():
-    """Cases of the three default parameter sets; the longer side is that of the nominal area of the joint."""
+    """Cases of the three default parameter sets; the longer side is the side of the joint's nominal area."""
     zhao, hu, yu = (load_default(j).values for j in ("bolted_joint", "harmonic_drive", "gear_contact"))
     hu = hu.law
     profile, flank = zhao.surface, yu.surface1
@@ -92,7 +92,7 @@ def heights(D, G, side, seed, points=POINTS, finest=FINEST, roll_off=1):
 
 
 def exponent(x, y):
-    """Slope of ln y over ln x, by least squares."""
+    """Exponent of a power law: slope of ln y over ln x, by least squares."""
     return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 
@@ -154,7 +154,7 @@ def elastic(H, roll_off, loads, seeds=SEEDS, **grid):
 
 
 def tangential_ratio(nu, load=0.02, seeds=SEEDS, points=128):
-    """K_T/K_N of bonded elastic contacts, both directions of every seed (2 seeds,) [1]."""
+    """Ratio K_T/K_N of elastic contacts without slip, both directions of every seed (2 seeds,) [1]."""
     ratios = []
     for seed in seeds:
         z = heights(2.5, 1e-6, 1.0, seed, points=points)
@@ -165,7 +165,8 @@ def tangential_ratio(nu, load=0.02, seeds=SEEDS, points=128):
 
 
 def resolution(factors=(1, 2, 4), loads=(0.01, 0.03, 0.1)):
-    """One elastic surface (64 points, shortest wave two spacings) refined: alpha, kappa (factors, loads)."""
+    """Results for one elastic surface (64 points, shortest wave two spacings) on refined grids: alpha, kappa
+    (factors, loads)."""
     coarse = heights(2.42, 1e-6, 1.0, 3, points=64, finest=2)
     rows = []
     for factor in factors:
@@ -176,7 +177,8 @@ def resolution(factors=(1, 2, 4), loads=(0.01, 0.03, 0.1)):
 
 
 def measured_stiffness(joint, pressure):
-    """Least and largest stiffness [N/m3] of a measured joint at pressures [Pa], over its printed ranges."""
+    """Smallest and largest stiffness [N/m3] of a measured joint at pressures [Pa], from the printed ranges.
+    """
     p = pressure / joint["pressure_unit"]
     if "C" in joint:
         values = [p ** (1.0 - m) / (C * m) for C in joint["C"] for m in joint["m"]]
@@ -187,6 +189,6 @@ def measured_stiffness(joint, pressure):
 
 
 def mean_measured_stiffness(joint, pressure):
-    """Stiffness [N/m3] of a measured joint in the middle of its printed ranges."""
+    """Stiffness [N/m3] of a measured joint at the middle of the printed ranges."""
     middle = {name: [float(np.mean(joint[name]))] for name in ("C", "m")}
     return measured_stiffness(joint | middle, pressure)[0]

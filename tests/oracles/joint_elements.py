@@ -100,8 +100,8 @@ RELATIVE_RISE = 1e-6
 
 @dataclass(frozen=True)
 class PlateJoint:
-    """Joint of two plates between its attachments, with elastic plates and with rigid ones, and finite
-    elements.
+    """Joint of two plates between its attachments: reduced models with elastic and with rigid plates, and
+    finite elements.
 
     file, rigid : parameters with elastic plates, with rigid plates
     linear      : finite elements, linear about the preloaded state
@@ -168,7 +168,7 @@ class PlateJoint:
         return BoltedJointSpring.for_joint(self.file.values)
 
     def load(self) -> Array:
-        """Forces and moments (6) of gross slip, or of the loss of the clamping force."""
+        """Forces and moments (6) at gross slip, or at the loss of the clamping force."""
         values, spring = self.file.values, self.spring
         clamping = values.n_bolts * self.preload
         radius = float(np.sqrt(spring.points.area_share @ np.sum(spring.points.position**2, axis=1)))
@@ -208,7 +208,8 @@ def joint_on_cells(joint: PlateJoint, count: int) -> CellwiseJoint:
 
 
 def pole_deviations(spring: BoltedJointSpring, preload: float, count: int) -> Array:
-    """Deviation of the force in gross slip about poles, over the friction limit [1]: 95 % quantile, largest.
+    """Deviation of the force in gross slip for rotations about poles, over the friction limit [1]: 95 %
+    quantile, largest.
 
     The reference has all nodes with the pressure after tightening.
     """
@@ -225,7 +226,7 @@ def pole_deviations(spring: BoltedJointSpring, preload: float, count: int) -> Ar
 
 @dataclass(frozen=True)
 class FrictionElements:
-    """Joint by finite elements with Coulomb friction at every element, moved along one motion.
+    """Joint by finite elements with Coulomb friction at every element, loaded along one motion.
 
     loops     : the elements of the contact on Coulomb springs; the load is the scale of the motion [1]
     motion    : (6) [m, rad] of side 2 per load
@@ -276,13 +277,13 @@ class FrictionElements:
 
     @classmethod
     def clamped(cls, joint: PlateJoint, wrench: Array) -> "FrictionElements":
-        """Joint under the preload of its bolts; the load 1 is the linear motion at the friction limit."""
+        """Joint under the preload of its bolts; load 1 is the linear response at the friction limit."""
         spring = BoltedJointSpring.for_joint(joint.rigid.values)
         pressure = spring.curve.derivatives(approach_at_stiffness(spring, joint.normal), 0)[0]
         return cls.of(joint.linear.joint_model, pressure, spring, joint.load()[0], wrench)
 
     def follow(self, loads: Sequence[float]) -> tuple[Array, Array]:
-        """Generalized force (n) [N.m] and heat so far (n) [J] along a sequence of loads from rest."""
+        """Generalized force (n) [N.m] and accumulated heat (n) [J] along a sequence of loads from rest."""
         state, rows, heat = self.loops.at_rest(), [], 0.0
         for load in loads:
             state = self.loops.apply_load(state, load)
@@ -295,7 +296,7 @@ class FrictionElements:
 def compliance(
     matrix: sp.csr_matrix, apart: Sequence[sp.csr_matrix], held: tuple[Array, Array], first: int
 ) -> Array:
-    """Compliance (3 P, 3 P) [m/N] of the patches under pairs of forces; the attachments are held."""
+    """Compliance (3 P, 3 P) [m/N] of the patches for pairs of opposite forces, with fixed attachments."""
     count = apart[0].shape[0]
     free = np.setdiff1d(np.arange(matrix.shape[0]), np.concatenate([held[0], first + held[1]]))
     factor = Cholesky(matrix[free][:, free])
@@ -314,7 +315,7 @@ def follow_loads(
 
 
 def cycle_loads(amplitude: float) -> Array:
-    """Loads from zero to an amplitude, then of a full cycle."""
+    """Loads of one full cycle: from zero to an amplitude, then to the opposite load and back."""
     down = amplitude * np.linspace(1.0, -1.0, STEPS + 1)[1:]
     return np.concatenate([amplitude * np.linspace(0.0, 1.0, STEPS + 1)[1:], down, -down])
 
@@ -345,7 +346,7 @@ def linear_curve(stiffness: float, approach: float) -> Curve:
 
 @dataclass(frozen=True)
 class Lap:
-    """Lap joint of two thin plates, each held at one end and kept plane, on a linear interface."""
+    """Lap joint of two thin plates, each fixed at one end and kept plane, on a linear interface."""
 
     assembly: Assembly
     bodies: JointFiniteElements
@@ -384,7 +385,7 @@ class Lap:
         return cls(assembly, joint, values)
 
     def linear(self, reach: float) -> tuple[float, BoltedJointSpring, LinearJoint]:
-        """Tangential stiffness [Pa/m], interface alone and finite elements.
+        """Tangential stiffness [Pa/m], spring of the interface alone, linear solution by finite elements.
 
         reach : length of the lap over that of shear lag [1]
         """
@@ -397,7 +398,7 @@ class Lap:
         return shear, spring, self.bodies.linearize(springs, 0.0)
 
     def reduced(self, spring: BoltedJointSpring, linear: LinearJoint, normal: float) -> BoltedJointSpring:
-        """Lap on the modes of its plates."""
+        """Lap joint reduced to the modes of its plates."""
         stiffness = np.full(self.bodies.contact_interface.quadrature_area.size, normal)
         bodies = reduce_bodies(linear, spring, stiffness, LAP_LOAD)
         whole = BoltedJointSpring.for_joint(replace(self.values, sides="elastic", bodies=bodies))

@@ -23,13 +23,13 @@ DECAY_NOISE, RESPONSE_NOISE = 3e-3, 1e-2
 
 
 def file(kind, values):
-    """The default parameter file with the true values."""
+    """Default parameter file with the true values of the synthetic measurements."""
     return load_default(kind).with_values(values, "user", "synthetic")
 
 
 @cache
 def joint_law():
-    """Loops of the joint in shear, with the true parameters."""
+    """Law of the loops of a joint in shear, with the true parameters."""
     return loop.make_shear_loop_law(file("bolted_joint", JOINT).values, PRELOAD)[0]
 
 
@@ -99,7 +99,7 @@ def forced(law, inertia, force, frequency, reach, periods=60, steps=400):
 
 @cache
 def joint_decay():
-    """Decay of a mass on the joint with the true parameters."""
+    """Decay of a mass on the joint, with the true parameters."""
     return decay(joint_law(), MASS, 3e-6)
 
 

@@ -11,11 +11,12 @@ from jointfmu.contact.laws.roughness import RoughnessLaw
 from jointfmu.contact.surface import ElasticConstants
 
 HARDNESS, SLOPE, FRICTION = 2e9, 0.15, 0.15
-"""Assumed properties of the joints [Pa, 1, 1]; the stiffness of small motions does not depend on them."""
+"""Assumed hardness [Pa], rms slope [1] and friction coefficient [1]; the stiffness of small motions does not
+depend on them."""
 GAMMA = 0.45
 """Constant gamma of the law `roughness` [1]."""
 LONGEST, MACHINED = 1e-3, 0.8
-"""Estimated longest wave [m] and Hurst exponent [1] of the machined joints."""
+"""Estimated longest wave [m] and Hurst exponent [1] of the machined surfaces."""
 
 
 def measured(name="measured_joints"):
@@ -25,7 +26,7 @@ def measured(name="measured_joints"):
 
 
 def joint_law(joint, **changes):
-    """Law `roughness` for an entry of models/reference with the roughness `Rq` of each side."""
+    """Law `roughness` for a measured joint with the stated roughness `Rq` of each side."""
     body = ElasticConstants(E=joint["E"], nu=joint["nu"])
     law = RoughnessLaw(
         h=np.sqrt(2.0) * joint["Rq"],

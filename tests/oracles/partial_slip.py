@@ -131,7 +131,7 @@ class Contact:
 
     @property
     def load(self):
-        """Mean pressure of the square; also the friction limit of the whole contact."""
+        """Mean pressure over the square; as friction is 1, also the friction limit of the whole contact."""
         return float(np.mean(self.pressure))
 
     @property
@@ -140,7 +140,7 @@ class Contact:
         return float(np.mean(self.pressure > 0.0))
 
     def loads_unloaded(self, drops):
-        """Loads (n) at approaches that are smaller by `drops` (n)."""
+        """Loads (n) at approaches that are smaller than the present one by `drops` (n)."""
         loads, pressure, touching = np.empty(len(drops)), self.pressure, self.pressure > 0.0
         for i in np.argsort(drops):
             gap = self.heights + self.approach - drops[i]
@@ -149,12 +149,13 @@ class Contact:
         return loads
 
     def unsheared(self):
-        """State without shear."""
+        """Contact state without shear."""
         nothing = np.zeros((2, *self.pressure.shape))
         return Sheared(np.zeros(2), nothing, nothing)
 
     def shear_to(self, before, shift):
-        """Shear after a straight path to `shift` (2): each point sticks, or slips along its traction."""
+        """State of shear after a straight path to `shift` (2): each point sticks, or slips along its
+        traction."""
         pull = before.displacement + (np.asarray(shift) - before.shift)[:, None, None]
 
         def allowed(traction):
@@ -194,7 +195,8 @@ def _pressure(space, overlap, start, where, step):
 
 
 def _minimize(compliance, load, project, start, step, min_compliance):
-    """Minimize x.Cx/2 - x.load over the range of `project`; eigenvalues of C are >= `min_compliance`."""
+    """Minimum of x.Cx/2 - x.load on the set onto which `project` projects; eigenvalues of C are >=
+    `min_compliance`."""
     root = np.sqrt(step * min_compliance)
     momentum = (1.0 - root) / (1.0 + root)
     old = ahead = project(start)

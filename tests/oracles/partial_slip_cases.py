@@ -27,7 +27,7 @@ FORCES = (0.1, 0.2, 0.3, 0.5, 0.7, 0.9)
 AMPLITUDES = (0.1, 0.2, 0.5, 0.9)
 """Amplitudes of the loops over the friction limit [1]; a subset of FORCES."""
 APPROACHES = 24
-"""Points of the normal curve, from first touch to the load."""
+"""Number of points of the normal curve, from first contact to the load."""
 SPACINGS_PER_WAVE = 4
 """Grid spacings in the shortest wave."""
 POINTS = 128
@@ -36,7 +36,7 @@ POINTS = 128
 
 @dataclass(frozen=True)
 class Prediction:
-    """Shear of a contact as predicted from its normal curve.
+    """Prediction of the shear of a contact from its normal curve.
 
     ratio             : K_T/K_N [1]; load : mean pressure
     initial_stiffness : tangential stiffness of small displacements
@@ -62,7 +62,7 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A contact sheared by boundary elements, and predictions over these results.
+    """Results for a contact sheared by boundary elements, and predictions over these results.
 
     area, load     : real over nominal area [1], mean pressure on the nominal area [E*]
     shift          : (forces) displacements over the side
@@ -105,7 +105,7 @@ class Loop:
 
 
 def masing_loop_area(force, u, stations=STATIONS):
-    """Area of a loop of amplitude u whose branches are twice the backbone force(u)."""
+    """Area of a loop with amplitude u whose branches double the backbone force(u) (Masing)."""
     x, weight = stations
     back = force(np.array([u])) - 2.0 * force(0.5 * u * (1.0 + x))
     return -2.0 * u * float(weight @ back)
@@ -147,7 +147,7 @@ def slider_loop_areas(curve, ratio, amplitudes):
 
 
 def heights(hurst, roll_off, seed, points=POINTS, stretch=1):
-    """Rough square with waves from side/roll_off on; `stretch` times shorter along x."""
+    """Heights of a rough square with waves up to side/roll_off, `stretch` times shorter along x."""
     band = (1.0 / roll_off, SPACINGS_PER_WAVE * stretch / points)
     z = rough_surfaces.periodic(1.0, points, 3.0 - hurst, 1e-6, band, seed).z
     return z[(stretch * np.arange(points)) % points]
@@ -159,8 +159,8 @@ def rough_contact(z, nu, separation=1.0):
 
 
 def sphere_errors(points, nu, radius=0.4, curvature=0.1):
-    """Relative errors of a sphere against Cattaneo and Mindlin: load, displacements (forces), loop areas
-    (amplitudes).
+    """Relative errors of a sphere against Cattaneo and Mindlin: load, displacements (at forces), loop areas
+    (at amplitudes).
 
     radius, curvature : of the contact and of the sphere, in sides of the square
     """

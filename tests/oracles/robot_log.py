@@ -31,25 +31,25 @@ TRUE = {
     "hysteresis_loss": 0.8 * np.pi / 10800.0,
 }
 ARM, ROTOR, GRAVITY = 2.0, 1e-4, 60.0
-"""Inertias [kg.m2] of the arm and of the rotor, torque of the arm's weight held level [N.m]."""
+"""Inertias [kg.m2] of arm and rotor; gravity torque of the horizontal arm [N.m]."""
 STEP, TIME = 2e-3, 60.0
 """Sampling interval and duration of the log [s]."""
 BITS = 2.0 * np.pi / 2**17
 """Resolution of the encoder [rad]."""
 CONSTANT, NOISE = 0.1, 0.1
-"""Torque over current of the motor [N.m/A]; standard deviation of a current [A], 20 % of the dry friction."""
+"""Torque constant of the motor [N.m/A]; standard deviation of a current [A], 20 % of the dry friction."""
 SPEEDS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 1.5, 2.2, 3.2)
 """Steady speeds of the joint [rad/s]."""
 
 
 def drive():
-    """Parameter file with the true values."""
+    """Parameter file of the drive with the true values."""
     given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": "CSG-25-100"}
     return NEW_JOINT_COMMAND.make_joint(given).file.with_values(TRUE, "user", "made up")
 
 
 def start():
-    """Start values of the fit: the same drive with another friction."""
+    """Parameter file with the start values of the fit: the same drive with another friction."""
     other = {name: 1.4 * value for name, value in TRUE.items() if name != "stribeck_speed"}
     other |= {name: 1.2 * TRUE[name] for name in ("K1", "K2", "K3")}
     return drive().with_values(other, "user", "start")
@@ -57,7 +57,7 @@ def start():
 
 @cache
 def motion():
-    """Time [s], joint's angle [rad], motor's torque [N.m], temperature [K], motor's angle [rad], no noise."""
+    """Exact signals: time [s], joint angle [rad], motor torque [N.m], temperature [K], motor angle [rad]."""
     t = np.arange(0.0, TIME, STEP)
     waves = ((0.7, 0.31, 0.0), (0.4, 0.83, 1.0), (0.05, 2.3, 2.0))
     q, dq, ddq = (

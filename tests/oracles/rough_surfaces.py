@@ -6,18 +6,19 @@ from jointfmu_tools.inputs.surfaces.heights import ArealMap
 
 
 def rms_height(H, G, longest, shortest):
-    """h_rms [m] of the waves between two wavelengths [m]: the integral of Phi over ln(frequency)."""
+    """rms height [m] of the waves between two wavelengths [m]: the integral of Phi over ln(frequency)."""
     return np.sqrt((wave_power(1.0 / longest, H, G) - wave_power(1.0 / shortest, H, G)) / (2.0 * H))
 
 
 def rms_slope(H, G, longest, shortest):
-    """h'_rms [1], root mean square gradient: the integral of (2 pi frequency)^2 Phi over ln(frequency)."""
+    """rms gradient [1] of the waves between two wavelengths [m]: the integral of (2 pi frequency)^2 Phi over
+    ln(frequency)."""
     high, low = (wave_power(1.0 / wave, H, G) / wave**2 for wave in (shortest, longest))
     return 2.0 * np.pi * np.sqrt((high - low) / (2.0 - 2.0 * H))
 
 
 def periodic(size, points, D, G, band, seed):
-    """Isotropic surface with all the waves of a band that fit a periodic square, and no others.
+    """Heights of an isotropic surface with all waves of a band that fit a periodic square, and no others.
 
     size   : [m]  side of the square; points : along a side
     D      : 1    fractal dimension of the surface, 2 < D < 3

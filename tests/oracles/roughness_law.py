@@ -19,7 +19,7 @@ from .boundary_element import press, slope
 from .measured_joints import FRICTION, GAMMA, joint_law, level, measured
 
 DEVELOPMENT = (*range(8), *range(100, 106), *range(200, 212))
-"""Seeds with which the constants of the law were chosen; the comparison uses none of them."""
+"""Seeds used to choose the constants of the law; the comparison uses none of them."""
 SEEDS = {1: range(300, 316), 4: range(300, 306), 16: range(300, 302)}
 """{roll-off: seeds} of surfaces with waves up to side/1, side/4 and side/16."""
 POINTS = {1: 256, 4: 256, 16: 512}
@@ -28,14 +28,14 @@ HURST = (0.3, 0.55, 0.8)
 LOADS = {1: (0.1, 0.3, 0.5, 0.9, 1.5), 4: (0.02, 0.06, 0.18, 0.5, 1.5), 16: (0.001, 0.003, 0.01, 0.03, 0.1)}
 """{roll-off: loads y [1]}."""
 MIN_LOAD, MIN_PRESSURE, MAX_PRESSURE, MAX_AREA = 0.3, 0.01, 1.5, 0.15
-"""Range of validity of the law [1]: least x, least and largest y, largest real area."""
+"""Range of validity of the law [1]: smallest x, smallest and largest y, largest real area share."""
 NO_HARDNESS = 1e30
 """Hardness [Pa] of an elastic contact."""
 MEASURED = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
 
 
 def dimensionless_law(H, roll_off, h, gradient, hardness=NO_HARDNESS):
-    """Law on the unit square of boundary_element.py, whose contact modulus is 1."""
+    """Law `roughness` on the unit square of boundary_element.py, with contact modulus 1."""
     body = ElasticConstants(E=2.0, nu=0.0)
     return RoughnessLaw(
         h=h,
@@ -53,7 +53,8 @@ def dimensionless_law(H, roll_off, h, gradient, hardness=NO_HARDNESS):
 
 
 def elastic_contacts(H, roll_off, seeds=None, points=None):
-    """Boundary elements and the law, elastic: {quantity: (seeds, loads)}; k, law, tail [E* over side]."""
+    """Elastic results of boundary elements and of the law: {quantity: (seeds, loads)}; k, law, tail [E* over
+    side]."""
     found = {name: [] for name in ("p", "k", "law", "tail", "area")}
     y = np.array(LOADS[roll_off])
     for seed in seeds or SEEDS[roll_off]:
@@ -78,7 +79,7 @@ def in_valid_range(roll_off, area):
 
 
 def exponents(one, roll_off):
-    """Exponents of k over p in the range of validity, (seeds) of boundary elements and of the law."""
+    """Exponents of k over p in the range of validity, (seeds) by boundary elements and by the law."""
     use = in_valid_range(roll_off, one["area"].max(axis=0))
     return tuple(
         np.array([compare.exponent(p[use], k[use]) for p, k in zip(one["p"], one[name], strict=True)])
@@ -87,7 +88,7 @@ def exponents(one, roll_off):
 
 
 def plastic(H, roll_off, hardness, load, seeds, points=64):
-    """Law over boundary elements with a hardness (of E* h'_rms) at a load (of it).
+    """Law over boundary elements for a hardness over E* h'_rms, at a load over the hardness [1].
 
     Rows of K_loading, K_N and A_r, (seeds,) each.
     """
@@ -110,12 +111,13 @@ def joints_with_roughness():
 
 
 def filtered_wave(sigma):
-    """Wavelength [m] that a Gaussian filter of standard deviation sigma [m] halves."""
+    """Wavelength [m] whose amplitude a Gaussian filter with standard deviation sigma [m] halves."""
     return float(np.pi * np.sqrt(2.0 / np.log(2.0)) * sigma)
 
 
 def brake_reuss(**changes):
-    """{name: law over published} for the contact law of the Brake-Reuss beam; changes of the law."""
+    """Ratios {name: law over published value} for the contact law of the Brake-Reuss beam, with changes of
+    the law."""
     data = measured("brake_reuss")
     law = joint_law(data | {"Rq": data["h"] / np.sqrt(2.0)}, H=data["H"], **changes)
     state = evaluate_at_pressure(law, data["pressure"])
@@ -129,7 +131,7 @@ def two_scale_stiffness(law, p, h, wave):
 
 
 def stiffness_with_tail(law, p):
-    """Stiffness per area [N/m3] of the law with the tail of the height distribution for many hills.
+    """Stiffness per area [N/m3] of the law with the tail of the height distribution that many hills have.
 
     1/gamma (y/0.2)^-0.08 for 1/gamma: what boundary elements of up to 1024 hills have from y = 0.001 to 1.
     """

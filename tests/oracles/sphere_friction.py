@@ -32,12 +32,12 @@ def load(approach: ArrayLike) -> Array:
 
 
 def stiffness(approach: ArrayLike) -> Array:
-    """Derivative of the load [N/m]."""
+    """Normal stiffness of the sphere [N/m]: derivative of the load with respect to the approach."""
     return np.asarray(1.5 * np.sqrt(np.maximum(approach, 0.0)))
 
 
 def sphere() -> Curve:
-    """Tabulated load of the sphere."""
+    """Tabulated load of the sphere over the approach."""
     x = np.concatenate([[0.0], np.geomspace(FIRST, 1.0, NODES)])
     bend = 0.75 / np.sqrt(x[1:])
     return Curve(x, load(x), stiffness(x), np.concatenate([2.0 * bend[:1], bend[:-1]]), bend)
@@ -68,7 +68,8 @@ def foundation(step: float) -> Foundation:
 
 
 def backbone(approach: float, along: ArrayLike) -> Array:
-    """Force [N] at a displacement [m] from rest under constant load (Cattaneo 1938, Mindlin 1949)."""
+    """Tangential force [N] at a displacement [m] from rest under constant load (Cattaneo 1938, Mindlin 1949).
+    """
     return FRICTION * (load(approach) - load(approach - RATIO * np.asarray(along) / FRICTION))
 
 
@@ -78,7 +79,8 @@ def displacement(approach: float, part: ArrayLike) -> Array:
 
 
 def loop_area(approach: float, part: ArrayLike) -> Array:
-    """Loss [J] of a loop to +- a fraction `part` [1] of the friction limit (Mindlin, Deresiewicz 1953)."""
+    """Loss [J] of a loop with a fraction `part` [1] of the friction limit as amplitude (Mindlin, Deresiewicz
+    1953)."""
     x = np.asarray(part)
     bracket = 1.0 - (1.0 - x) ** (5.0 / 3.0) - 5.0 / 6.0 * x * (1.0 + (1.0 - x) ** (2.0 / 3.0))
     return np.asarray(4.8 * FRICTION**2 * load(approach) * approach / RATIO * bracket)
@@ -86,7 +88,7 @@ def loop_area(approach: float, part: ArrayLike) -> Array:
 
 @dataclass(slots=True)
 class Springs:
-    """Foundation of many springs of the sphere, which touch one after the other.
+    """Foundation of many springs of the sphere that come into contact one after the other.
 
     height, normal : (n) [m], [N/m] approach at which a spring touches, its normal stiffness
     force          : (2, n) [N] tangential forces
@@ -103,7 +105,7 @@ class Springs:
 
     @classmethod
     def of(cls, count: int) -> "Springs":
-        """Distribute the springs, dense where the sphere touches first."""
+        """Foundation of `count` springs, dense near first contact."""
         edge = np.linspace(0.0, 1.0, count + 1) ** 2
         return cls(0.5 * (edge[1:] + edge[:-1]), np.diff(stiffness(edge)))
 
@@ -118,7 +120,7 @@ class Springs:
         return self.work - float(np.sum(self.force**2 / (2.0 * RATIO * self.normal)))
 
     def move(self, before: float, after: float, shift: Sequence[float]) -> None:
-        """Move along a short straight path: new approach [m], increment (2) [m]."""
+        """Move along a short straight path: new approach [m], tangential increment (2) [m]."""
         old, now = before > self.height, after > self.height
         part = np.where(
             old, 1.0, np.divide(after - self.height, after - before, where=now & ~old, out=0.0 * self.normal)
@@ -151,7 +153,7 @@ def follow_path(
 
 
 def combined_motion(phase: float, mean: float, swing: float, along: float, cycles: int = 2) -> Array:
-    """Path (m, 3) [m]: the approach oscillates about its mean, the displacement with a phase [rad]."""
+    """Path (m, 3) [m]: oscillating approach, and tangential displacement with a phase lag [rad]."""
     angle = np.linspace(0.0, 2.0 * np.pi * cycles, cycles * STEPS_PER_CYCLE + 1)
     x = along * FRICTION * mean / RATIO * np.sin(angle + phase)
     return np.column_stack([mean + swing * np.sin(angle), x - x[0], np.zeros_like(x)])

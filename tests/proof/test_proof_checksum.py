@@ -17,7 +17,7 @@ HEAD = (
 
 
 def fmu(path: Path, attributes: str) -> Path:
-    """An FMU of an empty description, a manifest and its experiments."""
+    """FMU with an empty description, a manifest and its experiments."""
     related = f'<Related source="smoke.exp" role="experiment" {attributes}/><Related source="absent.ssv" '
     related += 'role="parameter" checksum="00"/><Related source="http://a.b/c" role="other" checksum="00"/>'
     with zipfile.ZipFile(path, "w") as archive:

@@ -58,7 +58,7 @@ def members(name: str) -> dict[str, bytes]:
 
 
 class Local(etree.Resolver):
-    """The schemas that another one names by address, as fmpy has them."""
+    """Resolver of the schemas that another schema names by address, from the files of fmpy."""
 
     def resolve(self, address: str, public: Any, context: Any) -> Any:
         return self.resolve_filename(str(SCHEMAS / Path(address).name), context)

@@ -37,9 +37,9 @@ RUNS = [
     for version in VERSIONS
     if version.removeprefix("fmi") in known and (name, importer) != ("BoltedJoint", "fmpy")
 ]
-"""One without a memory and, but in fmpy, one with it. There the main job proves all
-(tests/builders/test_fmu_build.py); in the others all give the package's numbers
-(tests/native/test_native_clients.py)."""
+"""FMUs that are proved in each importer: one without history and, except in fmpy, one with history. For fmpy
+the main job proves all FMUs; tests/native/test_native_clients.py compares the other importers with the
+package."""
 
 
 def assert_all_pass(found: dict) -> None:
@@ -290,8 +290,8 @@ def test_an_fmu_of_another_version_than_the_importer_takes_is_refused(
 
 
 def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
-    """A copy of an FMU with another value of a parameter in the description, and references that the package
-    computes of it: all that can be changed without a compiler, so that it agrees with itself."""
+    """Copy an FMU with another value of a parameter, and references that the package computes for it.
+    Description, data and references agree, as if it were built so, without a compiler."""
     model = MODELS[source.stem]
     file = load_default(model.joint).with_values({parameter: value}, "user", "test")
     made = make_proof_files(model.with_parameters(file.joint, file.values), file)
@@ -458,7 +458,7 @@ class Counter(Fmi2Slave):
 
 @pytest.fixture(scope="module")
 def counter(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An FMU that is none of ours, with states and whole numbers.
+    """FMU of another tool with states and integers.
 
     Built in a process of its own: an FMU of the python flavour that ran in this one has left a pythonfmu
     without libraries.

@@ -23,7 +23,7 @@ SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 
 @pytest.fixture(scope="module")
 def neuron(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Compiled for this machine, in both interfaces."""
+    """FMU of another author, compiled for this machine, with both interfaces."""
     folder = tmp_path_factory.mktemp("neuron")
     library = folder / f"Neuron{fmpy.sharedLibraryExtension}"
     headers = Path(fmpy.__file__).parent / "c-code"
@@ -39,7 +39,7 @@ Columns = dict[str, NDArray[np.float64]]
 
 
 def exact(time: NDArray[np.float64], u: float = 2.0, gain: float = 1.0, period: float = 0.25) -> Columns:
-    """x from rest by its exponential, to the limit 1 again and again; sampled at each period."""
+    """Exact solution x(time) from rest with resets at the limit 1, sampled once per period."""
     rest = gain * u
     cycle = -np.log(1.0 - 1.0 / rest)
 
@@ -159,7 +159,7 @@ def test_a_label_says_for_which_interface_an_experiment_is(
 
 
 def exchange_only(neuron: Path, tmp_path: Path) -> Path:
-    """An FMU with one experiment, without co-simulation."""
+    """FMU with one experiment, for model exchange only."""
     files = {"u.csv": INPUT, "y.csv": csv(TIME, exact(TIME))}
     path = other_manifest(neuron, tmp_path / "all.fmu", experiment("one", FILES), **files)
     line = b'<CoSimulation modelIdentifier="Neuron" canHandleVariableCommunicationStepSize="true"/>'

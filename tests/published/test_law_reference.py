@@ -39,7 +39,7 @@ def test_every_choice_of_a_law_has_a_case():
 
 
 def scale_term(term, factor):
-    """The term of a spot with its value times a factor."""
+    """Term of a contact spot with its value multiplied by a factor."""
     if isinstance(term, PowerTerm | SlipTerm):
         return replace(term, coefficient=factor * term.coefficient)
     assert isinstance(term, SmoothTerm)

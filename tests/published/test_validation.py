@@ -34,8 +34,8 @@ from jointfmu.parameters import load_default
 from jointfmu.quantity import flatten_fields, flatten_parameters
 
 REPRODUCED = 1e-6
-"""Relative tolerance of a value fitted again [1]: the fit stops at residuals of 1e-8, and the worst of
-its parameters moves about ten times as much."""
+"""Relative tolerance of a repeated fit [1]: it stops at residuals of 1e-8, and its least determined parameter
+changes about ten times as much."""
 
 PAPERS = [paper for kind in KINDS.values() for paper in load_published_numbers(kind).papers]
 OBSERVABLES = {
@@ -402,7 +402,7 @@ def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
 
 
 def refitted(monkeypatch, fits):
-    """Let the calibration use other fits."""
+    """Replace the calibration fits by others."""
     monkeypatch.setattr(
         calibration,
         "load_published_numbers",

@@ -77,7 +77,7 @@ def test_waves_up_to_the_side_stiffen_the_contact_at_small_load():
 
 @pytest.fixture(scope="module")
 def pressed():
-    """Law and boundary elements on the joints' own area, one seed, 128 points, three pressures."""
+    """Law and boundary elements on the nominal area of the joints: one seed, 128 points, three pressures."""
     found = {}
     for name, case in interface_laws.cases().items():
         few = replace(case, pressures=case.pressures[1::2])

@@ -67,7 +67,7 @@ TENS = {
     "kgf.m/arcmin": (constants.g / constants.arcmin, "N.m/rad"),
     "Nm/deg": (1.0 / constants.degree, "N.m/rad"),
 }
-"""As columns of catalogues are headed."""
+"""Units with powers of ten, as in column headings of catalogues."""
 EXPONENTS = {  # of kg, m, s, rad, K
     "1": (0, 0, 0, 0, 0),
     "s": (0, 0, 1, 0, 0),
@@ -206,7 +206,8 @@ def test_sets_are_consistent():
 
 
 def declared():
-    """Every SI unit that a parameter, a variable, a system or a file declares, by where."""
+    """Every SI unit that a parameter, a variable, a system or a file declares, with its place of declaration.
+    """
     for cls in (*(kind.default_parameter_class for kind in KINDS.values()), Layer, Plate, BoxSection):
         for name, item in flatten_fields(cls):
             if "unit" in item.metadata:

@@ -33,15 +33,16 @@ needed = needs("Chromium")
 EVERY = list_modules()
 FOLDER = KINDS["bolted_joint"].default_file().parents[1]
 FOLDERS = (*KINDS, "catalogue")
-"""Of parameter files of joints."""
+"""Folders with parameter files of joints."""
 SHIPPED = {path.stem: path for name in FOLDERS for path in sorted((FOLDER / name).glob("*.toml"))}
 FOREIGN = sorted(path for path in FOLDER.glob("*/*.toml") if path.parent.name not in FOLDERS)
 OTHER_MODEL = {"bolted_joint": "GearMesh"}
-"""{joint: a model of another one}; the bolted joint's for all without an entry."""
+"""{joint: a model of another joint}; the bolted joint's for joints without an entry."""
 COMPILED, ROUND_OFF = 1e-9, 1e-12
-"""Tables by another mathematical library, and terms that cancel over the nominal value [1]."""
+"""Difference between two mathematical libraries in tables; round-off of cancelling terms over the nominal
+value [1]."""
 STEPS = 120
-"""Of the ramps that the page shows."""
+"""Number of steps of the ramps that the page shows."""
 STEEL = ("--material", "steel", "--Ra", "0.8")
 PLATE = ("bolted-joint", "--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", *STEEL)
 DRAWINGS = {
@@ -53,28 +54,28 @@ DRAWINGS = {
 }
 """{name: words of `jointfmu new`}."""
 BOUND = {"A_0", "n_bolts", "row_bolts", "row_distance"}
-"""Parameters of the bolted joint that follow from where its bolts are: the page has one value."""
+"""Parameters of the bolted joint that follow from the bolt positions; the page has fixed values for them."""
 
 
 def entry(name: str, value: object, unit: str = "1") -> str:
-    """A line of a parameter file."""
+    """Line of a parameter file."""
     return f'{name} = {{ value = {value}, unit = "{unit}", kind = "user", source = "x" }}\n'
 
 
 def roughness(Ra: float) -> str:
-    """A section of a parameter file, without the height of both sides."""
+    """Section `roughness` of a parameter file, without the height of both sides together."""
     return "\n[roughness]\n" + entry("Ra1", Ra, "m") + entry("Ra2", Ra, "m")
 
 
 def with_entry(text: str, name: str, value: object, unit: str = "1") -> str:
-    """A file's text with another value of a parameter at the top."""
+    """Text of a parameter file with another value of a parameter at the top."""
     found, count = re.subn(rf"(?m)^{name} = .*\n", entry(name, value, unit), text)
     assert count == 1
     return found
 
 
 def with_text(text: str, old: str, new: str) -> str:
-    """A file's text with another piece in the place of one that is there once, or more often."""
+    """Text of a parameter file with one passage replaced; the passage must exist."""
     assert old in text
     return text.replace(old, new, 1)
 
@@ -91,7 +92,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 @pytest.fixture(scope="session")
 def drawings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """{name: text} of the files that `jointfmu new` writes."""
+    """Texts of the files that `jointfmu new` writes: {name: text}."""
 
     def write(folder: Path) -> None:
         folder.mkdir()
@@ -126,13 +127,14 @@ _OPEN = """(async () => {
 
 
 def drop(shown: Browser, text: str) -> dict[str, Any]:
-    """Open a file as a reader does: what the page says, and whether it shows what it showed before."""
+    """Open a file as a user does: message of the page, and whether the page shows what it showed before."""
     found: dict[str, Any] = shown.run(_OPEN.replace("TEXT", json.dumps(text)))
     return found
 
 
 def refusal(shown: Browser, text: str) -> str:
-    """Why the page does not show a file; what it showed before stays, also when it is drawn again."""
+    """Message with which the page refuses a file. Asserts that the page keeps the joint that it showed
+    before."""
     found = drop(shown, text)
     assert found["refused"], found["said"]
     assert found["kept"]
@@ -159,7 +161,8 @@ _STATE = """laboratory.then((lab) => {
 
 
 def check_shown(shown: Browser, text: str, folder: Path) -> None:
-    """The page shows the joint of a file: values, outputs at the sliders, the end of the ramp, the map."""
+    """Assert that the page shows the joint of a file: values, outputs at the sliders, end of the ramp,
+    pressure map."""
     file = load_parameter_file(write(folder / "mine.toml", text))
     found = drop(shown, text)
     assert not found["refused"], found["said"]
@@ -287,7 +290,7 @@ DRIVE = format_parameter_file(load_default("harmonic_drive"))
 
 
 def field_text() -> str:
-    """The shipped bolted joint with a field of nodal pressures in place of its pattern."""
+    """Text of the shipped bolted joint with a field of nodal pressures instead of its pattern."""
     head, _, rest = BOX.partition("[pattern]\n")
     rows = {"share": [0.5, 0.5], "x": [-0.1, 0.1], "y": [0.0, 0.0], "equal": [1.0, 1.0], "tilt": [0.0, 0.0]}
     lines = "".join(entry(name, row, "m" if name in "xy" else "1") for name, row in rows.items())
@@ -311,7 +314,7 @@ OTHERS = {
     ),
     "the area": (with_entry(BOX, "A_0", "0.0381", "m2"), "A_0 = 0.0381 m2"),
 }
-"""{what: (text, what the refusal names)}: joints that the page does not have."""
+"""Joints that the page does not have: {case: (text, expected part of the refusal)}."""
 
 
 @needed
@@ -350,7 +353,7 @@ FAULTS = {
     "a table in a list": (f"{BOX}\n[[more]]\na = 1\n", "line "),
     "nothing": ("", "schema is missing"),
 }  # fmt: skip
-"""{what: (text, what the refusal names)}: files that no command takes, either."""
+"""Files that no command accepts: {case: (text, expected part of the refusal)}."""
 
 
 @needed

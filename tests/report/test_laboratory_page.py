@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow
 
 needed = needs("Chromium")
 LARGEST = 1.5e6
-"""Of the page [bytes]."""
+"""Size limit of the page [bytes]."""
 PHONE, DESKTOP = (390, 800), (1400, 1000)
 
 
@@ -45,7 +45,7 @@ def choose(shown: Browser, model: str, index: int = 0) -> None:
 
 
 def drop(shown: Browser, name: str, text: str) -> str:
-    """Open a file as a reader does; what the page says of it."""
+    """Open a file as a user does: message of the page."""
     script = f"""(async () => {{
       const lab = await laboratory;
       await lab.read(new File([{json.dumps(text)}], {json.dumps(name)}));

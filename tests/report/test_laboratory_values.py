@@ -23,14 +23,14 @@ pytestmark = pytest.mark.slow
 
 needed = needs("Chromium")
 SETS, REFUSED, STEPS = 22, 2, 4
-"""Parameter sets that are accepted but for the few whose law has no table, those that are not, and steps."""
+"""Numbers of accepted parameter sets (a few of them may have no table), of refused ones, and of steps."""
 ACCEPTED = 20
 EVERY = {f"{m.model.name}, {m.parameter_files[0].law}": m for m in list_modules()}
 
 
 @dataclass(frozen=True)
 class Case:
-    """A parameter set and a path from rest; what the native FMU gives along it, or its refusal."""
+    """Parameter set and path from rest, with the outputs of the native FMU along it, or its refusal."""
 
     values: dict[str, Any]
     path: list[dict[str, float]]
@@ -45,7 +45,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module", params=EVERY)
 def module(request: pytest.FixtureRequest) -> PageModule:
-    """Every module of the page."""
+    """Every WebAssembly module of the page."""
     return EVERY[request.param]
 
 
@@ -58,7 +58,7 @@ def fmu(module: PageModule, folder: Path) -> Iterator[Fmu]:
 
 @pytest.fixture(scope="module")
 def cases(module: PageModule, fmu: Fmu) -> list[Case]:
-    """What the native FMU gives: numbers at random, then Booleans as well."""
+    """Cases with results of the native FMU: random numbers, then with random Booleans too."""
     rng = np.random.default_rng(15)
     values = [random_values(module, rng, switched=i % 3 == 2) for i in range(SETS)]
     values += [refused_values(module, rng) for _ in range(REFUSED)]

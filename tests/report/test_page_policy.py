@@ -32,13 +32,13 @@ INTRUDERS = """(() => { const image = "<img src=https://example.org/a onerror=se
 
 
 def policy(page: str) -> dict[str, list[str]]:
-    """The directives of a page."""
+    """Directives of the content security policy of a page."""
     (content,) = re.findall(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', page)
     return {words[0]: words[1:] for words in (part.split() for part in unescape(content).split(";"))}
 
 
 def check(page: str) -> None:
-    """The policy stands before all that it is to hold for, and names the page's own script by its digest."""
+    """Assert that the policy precedes scripts and styles, and names the page's own script by its digest."""
     found = policy(page)
     assert found["default-src"] == found["base-uri"] == found["form-action"] == ["'none'"]
     scripts = re.findall(r"<script>(.*?)</script>", page, flags=re.DOTALL)
@@ -52,7 +52,7 @@ def check(page: str) -> None:
 
 
 def pages(folder: Path) -> dict[str, Path]:
-    """A page of each template of FMUs, and a report."""
+    """Pages: one of each FMU template, and a report."""
     found = {}
     for name, kind in KINDS.items():
         model, file = kind.models[0], load_default(name)

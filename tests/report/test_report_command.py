@@ -30,7 +30,7 @@ def written(folder: Path, file: ParameterFile, fmu: str | None = None) -> str:
 
 
 def figures(page: str) -> list[list[dict]]:
-    """Panels of each figure."""
+    """Data of the panels of each figure of a report."""
     return [json.loads(text) for text in re.findall(r'<script type="application/json">(.*?)</script>', page)]
 
 

@@ -31,12 +31,12 @@ FEW = (
     "from jointfmu_tools.pages.report import load_history; load_history._RAMP_POINTS = 11;"
     "load_history._LOAD_CYCLE = load_history.CyclicPath(points=8);"
 )
-"""A page's ramp and loops of few points are drawn as those of many are."""
+"""Options for few points of ramp and loops on a page, to save time."""
 MAIN = "from jointfmu_tools.cli import main; sys.exit(main(sys.argv[1:]))"
 
 
 def bare(folder: Path, *words: str, first: str = "") -> subprocess.CompletedProcess[str]:
-    """A command where the packages of the extras are missing."""
+    """Result of a command in an environment without the packages of the extras."""
     start = [sys.executable, "-W", "ignore", "-c", PROGRAM + first + MAIN, *words]
     return subprocess.run(
         start, cwd=folder, env=dict(os.environ), capture_output=True, text=True, timeout=100

@@ -48,7 +48,7 @@ def without_code(text: str) -> str:
 
 
 def blocks(path: Path, language: str) -> list[str]:
-    """Fenced blocks of a language, also inside lists."""
+    """Fenced code blocks in a language, also inside lists."""
     found = re.findall(
         rf"^( *)```{language}\n(.*?)^\1```", path.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE
     )
@@ -56,7 +56,7 @@ def blocks(path: Path, language: str) -> list[str]:
 
 
 def commands(path: Path) -> list[str]:
-    """Command lines of all blocks; a line that ends in a backslash goes on."""
+    """Command lines of all blocks; a line that ends with a backslash continues on the next one."""
     lines = "".join(blocks(path, "sh")).replace("\\\n", " ").splitlines()
     return [part.strip() for line in lines if line.strip() for part in line.split("&&")]
 
@@ -135,18 +135,19 @@ def test_the_house_is_drawn_as_it_is_built() -> None:
 
 FOLDERS = ("benchmarks", "core", "docs", "examples", "fmu_src", "models", "studies", "tests", "tools")
 ELSEWHERE = ("dist/", "sources/", "documentation/", "law.", "variables.c", "fmpy/", "fmpy.", "simulate.py")
-"""Beginnings of paths that are not the repository's: built or generated, fmpy's, the tutorial's."""
+"""Prefixes of paths that are not in the repository: built or generated files, files of fmpy or of the
+tutorial."""
 
 
 @functools.cache
 def tracked() -> str:
-    """All files of the repository, a line each, with a slash in front."""
+    """Paths of all files of the repository, one per line, with a leading slash."""
     paths = [*ROOT.glob("*.*"), *(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.*"))]
     return "".join(f"/{shown(path)}\n" for path in paths)
 
 
 def named_files(path: Path) -> list[str]:
-    """Files that a text names in `code`: all of code, and data by a path (a bare name is the user's)."""
+    """Files that a text names in backticks: code files by name, data files by path."""
     text = re.sub(r"^( *)```.*?^\1```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
     words = [word for code in re.findall(r"`([^`\n]*)`", text) for word in re.split(r"[\s,;()]+", code)]
     code = [word for word in words if re.fullmatch(r"[\w./*-]+\.(py|c|h|mo)", word)]
@@ -243,7 +244,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Links(HTMLParser):
-    """What a page links to, loads and offers as anchors."""
+    """Parser of a page: its links, loaded files and anchors."""
 
     def __init__(self, page: Path) -> None:
         super().__init__()
@@ -330,7 +331,7 @@ setTimeout(() => {
   document.title = found.map((e) => e.href).join(" ")
 }, 6000)
 </script>"""
-"""Asks the site's search, and puts into the title where it leads."""
+"""Script that searches the site and puts the first result into the title."""
 
 
 @needs("Chromium")
@@ -375,7 +376,7 @@ def test_python_compiles(path: Path) -> None:
 
 
 class Tutorial(NamedTuple):
-    """Where the tutorial ran, and what each command said."""
+    """Result of the tutorial's commands: folder, and output of each command."""
 
     folder: Path
     said: dict[str, str]
@@ -383,7 +384,7 @@ class Tutorial(NamedTuple):
 
 @pytest.fixture(scope="module")
 def tutorial(tmp_path_factory: pytest.TempPathFactory) -> Tutorial:
-    """Every command of the tutorial in an empty folder, for this machine; installing aside."""
+    """Run of every command of the tutorial, except installation, in an empty folder, for this machine."""
     page, folder = DOCS / "tutorial.md", tmp_path_factory.mktemp("tutorial")
     (program,) = blocks(page, "python")
     (folder / "simulate.py").write_text(program, encoding="utf-8")

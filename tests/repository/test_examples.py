@@ -18,10 +18,10 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = sorted((ROOT / "examples").glob("*.py"))
 NEEDED = {"bracket": needs("gmsh")}
-"""{script: what it needs beside the extra `test`}."""
+"""{script: packages or programs that it needs in addition to the extra `test`}."""
 ALONE = {"mujoco_arm", "sweep"}
-"""Scripts in a process of their own: MuJoCo takes a plugin of a name once, and a sweep starts processes. The
-others run in this one, where bodies that other tests have solved are found."""
+"""Scripts that run in a process of their own: MuJoCo loads a plugin only once, and a sweep starts processes.
+The others run in this process and share the finite-element solutions of other tests."""
 IMAGES = ROOT / "docs" / "images"
 PAGE = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
 
@@ -34,8 +34,8 @@ START_PROCESS = subprocess.run
 
 
 def run_in_this_process(command: list[str], **options: Any) -> Any:
-    """Replace `subprocess.run`: `python -m jointfmu ...` runs here, for this platform alone, as what a
-    script builds itself; other commands, such as the compiler, run in processes of their own."""
+    """Replace `subprocess.run`: `python -m jointfmu ...` runs in this process, for this platform only. Other
+    commands, such as the compiler, run in processes of their own."""
     if command[:3] != [sys.executable, "-m", "jointfmu"]:
         return START_PROCESS(command, **options)
     assert options == {"check": True}

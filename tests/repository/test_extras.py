@@ -43,7 +43,7 @@ FIRST_COMMANDS = {
 }
 """{extra: first command of its page, with the smallest input}."""
 NO_COMMAND = {"cluster", "sweep", "test", "check", "release"}
-"""Extras without a command that runs here: dask's needs a cluster, the others are of those who develop."""
+"""Extras without a command to test here: dask needs a cluster, the others are for developers."""
 BLOCKER = """
 import os, sys
 
@@ -57,7 +57,7 @@ sys.meta_path.insert(0, Blocked())
 
 
 def installed_with(extra: str) -> set[str]:
-    """Names of the packages that `pip install 'jointfmu[extra]'` installs, as far as they are here."""
+    """Names of the installed packages that `pip install 'jointfmu[extra]'` installs."""
     found: set[str] = set()
     waiting = [Requirement(text) for text in PROJECT["dependencies"]]
     waiting += [Requirement(text) for text in PROJECT["optional-dependencies"][extra]]
@@ -87,7 +87,7 @@ def installed_with(extra: str) -> set[str]:
 
 
 def modules_without(packages: set[str]) -> set[str]:
-    """Modules of installed packages that are not among these, without those of every environment."""
+    """Modules of installed packages outside `packages` and outside those that every environment has."""
     everywhere = {"jointfmu", "pip", "setuptools"}
     return {
         module

@@ -25,13 +25,13 @@ from numbers_of_all import components, texts
 pytestmark = pytest.mark.slow
 
 AVX = "X86_V3,AVX2,FMA3,X86_V4,AVX512_ICL,AVX512F,AVX512CD,AVX512_SKX"
-"""What numpy calls them from 2.4 on, and before; a name that it does not know does nothing."""
+"""Names of the instruction sets for numpy 2.4 and for earlier versions; numpy ignores unknown names."""
 OLD = {"OPENBLAS_CORETYPE": "Prescott", "NPY_DISABLE_CPU_FEATURES": AVX}
-"""Variables of one without any of them: the code that is furthest from what runs here. All processors of the
-last ten years have AVX2, so that this one runs another."""
+"""Environment variables that select code for a processor without AVX2. Processors of the last ten years have
+AVX2, so this is other code."""
 AGREE, PROOF = 1e-9, 1e-7
-"""Numbers of C and Modelica, each over itself; results of a proof over the largest of their column. Beside
-limits of the law its terms cancel: they differ by 1e-8."""
+"""Relative tolerance of numbers in C and Modelica, and of proof results over the largest value of their
+column. Near the limits of the law, terms cancel, and the numbers differ by 1e-8."""
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.\d*|\.\d+|\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 TOKEN = re.compile(r"\{[0-9a-f-]{36}\}")
 COARSE = """import sys
@@ -50,13 +50,13 @@ PLATES = {
 
 
 def drawing(name: str, folder: Path) -> list[str]:
-    """Arguments of the command that makes a plate's file in a folder."""
+    """Arguments of the command that writes the parameter file of a plate into a folder."""
     out = ["--out", str(folder / f"{name}.toml")]
     return ["new", "bolted-joint", *PLATES[name], "--grip", "40", *SURFACE, *out]
 
 
 def elsewhere(folder: Path, paths: list[Path]) -> dict[str, str]:
-    """{what: text} as the old processor has it."""
+    """Texts {case: text} computed with the instruction set of an old processor."""
     script = [sys.executable, numbers_of_all.__file__, str(folder)]
     run = subprocess.run([*script, *map(str, paths)], env=os.environ | OLD, stdout=PIPE)
     assert run.returncode == 0
@@ -65,7 +65,7 @@ def elsewhere(folder: Path, paths: list[Path]) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def paths(tmp_path_factory) -> list[Path]:
-    """Parameter files of a plate with four bolts, with its bodies, and of one with a row of three."""
+    """Parameter files: plate with four bolts and its bodies, plate with a row of three bolts."""
     folder = tmp_path_factory.mktemp("files")
     with pytest.MonkeyPatch.context() as patch:
         for name in PLATES:
@@ -80,7 +80,8 @@ def paths(tmp_path_factory) -> list[Path]:
 
 @pytest.fixture(scope="module")
 def here(paths) -> dict[str, str]:
-    """As this process has it; the library is the committed one, which tests/modelica generates again."""
+    """Texts computed in this process; the library is the committed one, which tests/modelica compares with
+    the generator."""
     return texts(paths) | components(COMMITTED)
 
 

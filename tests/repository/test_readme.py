@@ -118,10 +118,10 @@ commands = [
 
 
 ELSEWHERE = ("jointfmu build --systems ", "jointfmu system six_axis_robot ", "jointfmu report ")
-"""Commands that make what tests/systems/test_systems.py looks at, that examples/robot.py runs, and that stand
-in the README as well, above."""
+"""Commands that other tests run: tests/systems/test_systems.py, examples/robot.py, or the README itself
+above."""
 MESHED = ("jointfmu footprint compute ", "jointfmu modes ", "jointfmu new bolted-joint ")
-"""Commands that mesh bodies."""
+"""Commands that mesh bodies with gmsh."""
 
 
 @pytest.mark.slow
@@ -173,7 +173,7 @@ def rows():
 
 
 def predicted(count):
-    """So many predictions, as words."""
+    """Number of predictions in words."""
     return "1 is a prediction" if count == 1 else f"{count} are predictions"
 
 

@@ -17,7 +17,7 @@ SCRIPTS = [path for folder in ("benchmarks", "studies") for path in sorted((ROOT
 
 
 def run(script: str, *words: str) -> str:
-    """Standard output of a script; each has its own process, as users run it."""
+    """Standard output of a script, run in a process of its own as users run it."""
     done = subprocess.run(
         [sys.executable, str(ROOT / script), *words], capture_output=True, text=True, env=os.environ
     )

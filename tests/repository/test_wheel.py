@@ -25,8 +25,7 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 NAME = "GearContact"
-"""The wheel of the test carries a part of this FMU alone, of its default law; that code of every law compiles
-is shown beside WebAssembly."""
+"""The only FMU with compiled parts in the wheel of the test, with its default law."""
 
 
 def brought_along() -> set[str]:
@@ -47,7 +46,7 @@ def brought_along() -> set[str]:
 
 
 def link_packages(names: set[str], folder: Path) -> None:
-    """Put what distributions have at their top into a folder."""
+    """Link the top-level files of distributions into a folder."""
     folder.mkdir()
     for name in names:
         files = distribution(name).files or []
@@ -58,7 +57,8 @@ def link_packages(names: set[str], folder: Path) -> None:
 
 
 def built_wheel(out: Path) -> Path:
-    """A wheel of this tree with a part of one FMU; built in a copy, which pip would fill with files."""
+    """Wheel of this tree with compiled parts of one FMU, built in a copy because pip writes files into the
+    tree."""
     tree, ignored = out / "tree", ignore_patterns("__pycache__", "*.egg-info", "parts")
     for folder in ("core", "fmu_src", "models", "tools"):
         copytree(ROOT / folder, tree / folder, ignore=ignored)
@@ -76,7 +76,7 @@ def built_wheel(out: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def clean(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the wheel and an environment `env` where it is installed, with what it needs alone."""
+    """Folder with the wheel, and an environment `env` with the wheel and its dependencies only."""
 
     def make(out: Path) -> None:
         out.mkdir()
@@ -91,7 +91,7 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(clean: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """A command of the environment, which has no compiler and no part but those of the wheel."""
+    """Run a command of the environment, which has no compiler and only the compiled parts of the wheel."""
     return subprocess.run(
         [clean / "env" / "bin" / "python", "-W", "ignore", *words],
         cwd=folder,

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-"""Chromium on this machine, or None; Debian's package is chromium."""
+"""Path of Chromium on this machine, or None; Debian's package is chromium."""
 _TIMEOUT = 120.0
 
 
 class Browser:
-    """One page of a running Chromium; `call` is a command of the devtools protocol."""
+    """Page of a running Chromium; `call` sends a command of the devtools protocol."""
 
     def __init__(self, write: int, read: int) -> None:
         self.write, self.read, self.rest = write, read, b""
@@ -50,13 +50,13 @@ class Browser:
         return json.loads(line)
 
     def open(self, page: Path) -> None:
-        """Show a file."""
+        """Open a file."""
         self.call("Page.navigate", url=page.absolute().as_uri())
         while not self.run("document.readyState === 'complete' && location.protocol === 'file:'"):
             time.sleep(0.05)
 
     def run(self, script: str) -> Any:
-        """The value of an expression, awaited; an exception fails the test."""
+        """Evaluate an expression and await its value; an exception fails the test."""
         found = self.call(
             "Runtime.evaluate",
             expression=script,
@@ -68,7 +68,7 @@ class Browser:
         return found["result"].get("value")
 
     def shape(self, width: int, height: int, dark: bool = False, phone: bool = False) -> None:
-        """Size of the window, and the colours that the reader prefers."""
+        """Set window size and preferred colour scheme."""
         self.call(
             "Emulation.setDeviceMetricsOverride",
             width=width,
@@ -87,7 +87,7 @@ class Browser:
 
 @contextlib.contextmanager
 def browser() -> Iterator[Browser]:
-    """A Chromium of its own, ended with the block."""
+    """Chromium process that ends with the block."""
     assert PROGRAM
     to_it, ours = os.pipe()
     theirs, from_it = os.pipe()

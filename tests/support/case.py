@@ -8,7 +8,7 @@ Inputs = dict[str, float]
 
 
 class Beyond(NamedTuple):
-    """Where the table ends: an input far beyond it, what answers, its stiffness, what the warning says.
+    """Input far beyond the end of the table: its output, its stiffness and the warning.
 
     inverse : the stiffness is that of the input over the answer, not of the answer over the input
     lever   : of the input, by which the answer's slope is larger than the stiffness
@@ -24,7 +24,7 @@ class Beyond(NamedTuple):
 
 
 class Refused(NamedTuple):
-    """A parameter outside its interval, and both as the refusal shows them."""
+    """Parameter value outside its interval, and how the refusal shows value and interval."""
 
     parameter: str
     value: float
@@ -33,7 +33,8 @@ class Refused(NamedTuple):
 
 
 class Study(NamedTuple):
-    """Distributions of parameters and inputs, and how many samples are compared with the spring."""
+    """Uncertainty study: distributions of parameters and inputs, number of samples compared with the spring.
+    """
 
     given: Mapping[str, str]
     samples: int
@@ -41,7 +42,7 @@ class Study(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Description:
-    """What its model description says.
+    """Expected content of an FMU's model description.
 
     inputs, results, parameters : the contract, {variable: unit}; the FMU may have more
     calibration : some of the parameters that say they are calibrated
@@ -67,7 +68,7 @@ class Description:
 
 @dataclass(frozen=True, kw_only=True)
 class Numbers:
-    """States in which its outputs are compared, and how smooth they are.
+    """States in which the outputs of an FMU are compared, and smoothness of the outputs.
 
     outputs : (spring, inputs) -> outputs, by the spring's own function
     ranges  : inputs of random states, all inside the tables
@@ -95,7 +96,7 @@ class Numbers:
 
 @dataclass(frozen=True, kw_only=True)
 class Tuning:
-    """Which parameters act, and how far they are changed.
+    """Parameters that act in an FMU, and how far the tests change them.
 
     base           : parameters with which every other one has its effect
     also           : further ones, with which outputs depend on inputs that they do not depend on with `base`
@@ -117,7 +118,7 @@ class Tuning:
 
 @dataclass(frozen=True, kw_only=True)
 class Refusals:
-    """What it refuses, and where it warns.
+    """Expected refusals and warnings of an FMU.
 
     beyond    : ends of tables
     refused   : parameters outside their intervals
@@ -135,7 +136,7 @@ class Refusals:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """An FMU, by what the shared tests of a kind need of it."""
+    """Properties of an FMU that the shared tests need, by kind of test."""
 
     name: str
     description: Description
@@ -146,7 +147,7 @@ class Case:
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """A joint.
+    """Properties of a joint that the shared tests need.
 
     cases   : of its FMUs
     varied  : a parameter of its surface that may change a little

@@ -24,13 +24,13 @@ import pytest
 from filelock import FileLock
 
 needs = pytest.mark.needs
-"""Marks a test with the names of the clients without which it is skipped."""
+"""Mark that names the clients of a test, without which it is skipped."""
 
 SYSROOT = Path("/usr/aarch64-linux-gnu")
-"""C library of aarch64 Linux, as Debian's libc6-arm64-cross installs it."""
+"""Folder of the C library for aarch64 Linux, as Debian's libc6-arm64-cross installs it."""
 
 WINE_FOLDERS = ("usr/lib*/wine", "usr/lib*/*/wine", "opt/wine*/lib*/wine")
-"""Where Wine may have its own libraries of Windows."""
+"""Folders in which Wine may have its own Windows libraries."""
 
 CHROMIUM_OPTIONS = (
     "--headless", "--no-sandbox", "--no-first-run", "--disable-gpu", "--disable-quic", "--disable-sync",
@@ -68,7 +68,7 @@ ONE_ELEMENT = """*NODE
 
 @dataclass(frozen=True, slots=True)
 class Client:
-    """Something that only some machines have.
+    """Program, package or system that only some machines have.
 
     probe   : does the smallest task of the client; raises OSError, ImportError or SubprocessError on failure
     proves  : what the tests with the client prove
@@ -105,7 +105,7 @@ def program(*names: str) -> str:
 
 
 def require(holds: object, otherwise: str) -> None:
-    """Raise OSError unless a condition holds."""
+    """Raise OSError with the text `otherwise` unless a condition holds."""
     if not holds:
         raise OSError(otherwise)
 

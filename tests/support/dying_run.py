@@ -9,7 +9,8 @@ from jointfmu_tools.studies.uncertainty.worker import FmuRamp, LoadRamp
 
 
 class DiesAtFive(FmuRamp):
-    """Four runs make a job, so that three others are lost with run 5."""
+    """Evaluator that ends its process at run 5; four runs make a job, so three other runs are lost with it.
+    """
 
     runs_per_job = 4
 
@@ -21,7 +22,7 @@ class DiesAtFive(FmuRamp):
 
 
 def run_until_five_dies(fmu: Path, out: Path, **execution: Any) -> tuple[int, int, dict[int, str]]:
-    """Number of rows and of new runs, and the errors, of a study of 24 runs."""
+    """Number of rows and of new runs, and errors, of a study of 24 runs with this evaluator."""
     evaluator = DiesAtFive(fmu, LoadRamp("tau", 5.0, 1.0))
     done = evaluate_runs(evaluator, [{"surface.D": 2.5}] * 24, ["K_WTS"], 2, Execution(out, **execution))
     return done.accepted.size, done.new_run_count, dict(done.errors)

@@ -16,9 +16,10 @@ from jointfmu.quantity import build_parameter_set as make
 from jointfmu.quantity import flatten_parameters
 
 SAME = 1e-12
-"""The python flavour calls the package with the same numbers: round-off of another order of sums at most."""
+"""Relative tolerance [1] of the python flavour, which runs the package's code: round-off of sums in another
+order."""
 TABLE = 5.0 * MAX_ERROR
-"""FMU against a law that is not tabulated: what a table may err, times 5 where errors add up."""
+"""Relative tolerance [1] of an FMU against a law without table: five times the error of a table."""
 
 
 def load(kind: str) -> Joint:
@@ -36,9 +37,9 @@ def load(kind: str) -> Joint:
 
 
 JOINTS: dict[str, Joint] = {kind: load(kind) for kind in KINDS}
-"""{joint: what the tests know of it}."""
+"""{joint: its properties for the tests}."""
 CASES: dict[str, Case] = {case.name: case for joint in JOINTS.values() for case in joint.cases}
-"""{FMU: what the tests know of it}."""
+"""{FMU: its properties for the tests}."""
 NAMES = list(MODELS)
 GOOD: dict[str, Inputs] = {name: case.numbers.good for name, case in CASES.items()}
 STATE: dict[str, Inputs] = {name: case.numbers.state for name, case in CASES.items()}
@@ -51,20 +52,20 @@ PUBLIC: dict[str, dict[str, dict[str, str]]] = {
     }
     for name, case in CASES.items()
 }
-"""The contract: {FMU: {causality: {variable: unit}}}; an FMU may have more."""
+"""Public contract: {FMU: {causality: {variable: unit}}}; an FMU may have more variables."""
 BEYOND = [(name, beyond) for name, case in CASES.items() for beyond in case.refusals.beyond]
 TUNED = {name: case.tuning.tuned for name, case in CASES.items()}
 
 
 def random_inputs(name: str, count: int, seed: int) -> list[Inputs]:
-    """Inputs at random, inside the tables."""
+    """Random inputs inside the tables."""
     rng, ranges = np.random.default_rng(seed), CASES[name].numbers.ranges
     drawn = [{k: float(rng.uniform(*limits)) for k, limits in ranges.items()} for _ in range(count)]
     return [CASES[name].numbers.place(inputs) for inputs in drawn]
 
 
 def parameters(name: str, changes: dict[str, Any] | None = None) -> Any:
-    """The default parameter set behind an FMU, changed."""
+    """Default parameter set of an FMU, with changes."""
     values = load_default(MODELS[name].joint).values
     return make(type(values), flatten_parameters(values) | (changes or {}))
 
@@ -76,7 +77,7 @@ def _tabulated(joint: str, p: Any) -> Any:
 
 @dataclass(frozen=True)
 class Law:
-    """The joint of the package behind an FMU: outputs as a function of inputs, from rest or a memory."""
+    """Outputs of the package's joint behind an FMU, as a function of inputs, from a history."""
 
     name: str
     spring: Any
@@ -90,7 +91,8 @@ class Law:
         return {k: float(x) for k, x in found.items()}
 
     def after(self, inputs: Inputs | None = None) -> "Law":
-        """When these inputs (the others zero) were accepted, as at the end of initialization or by a step."""
+        """The same joint after these inputs were accepted (others zero), as at the end of initialization or
+        of a step."""
         model = MODELS[self.name]
         if model.advance is None:
             return self
@@ -100,5 +102,5 @@ class Law:
 
 
 def law(name: str, p: Any) -> Law:
-    """The package's joint behind an FMU, at rest."""
+    """Joint of the package behind an FMU, in the virgin state."""
     return Law(name, _tabulated(MODELS[name].joint, p))

@@ -23,7 +23,7 @@ from jointfmu.quantity import build_parameter_set, flatten_parameters
 T = TypeVar("T")
 
 QUAD = 1e-9
-"""Relative tolerance against `over_spots`: 100 times what it asks of the adaptive quadrature."""
+"""Relative tolerance against `over_spots`: 100 times the requested tolerance of the adaptive quadrature."""
 
 # Table 1 and section 2 of Zhao 2018; friction, area and mass are not published.
 ZHAO = Zhao2018(
@@ -69,7 +69,7 @@ LAWS = {"zhao": ZHAO, "hu": HU, "yu": YU}
 
 
 def changed(law: T, values: Mapping[str, Any]) -> T:
-    """The law with other values, by structured name."""
+    """Copy of a law with other values, by structured name."""
     return build_parameter_set(type(law), flatten_parameters(law) | dict(values))
 
 
@@ -140,7 +140,7 @@ def over_spots(
     edges: list[float],
     largest: float,
 ) -> float:
-    """Sum of spot(a) over all spots: adaptive quadrature in ln a between the edges, up to the largest.
+    """Sum of spot(a) over all spots: adaptive quadrature in ln a between the edges, up to the largest spot.
 
     count : a n(a), the number of spots per unit of ln a
     """
@@ -155,5 +155,5 @@ def over_spots(
 
 
 def open_end(edge: float, exponent: float) -> float:
-    """Area below which exp(exponent ln a) adds less than 1e-16 of the integral up to the edge."""
+    """Area below which exp(exponent ln a) contributes less than 1e-16 of the integral up to the edge."""
     return edge * exp(-37.0 / exponent)

@@ -24,7 +24,7 @@ GENERATED = ("data.c", "law.c", "law.h", "variables.c")
 
 
 def texts(paths: list[Path]) -> dict[str, str]:
-    """{what: text} of sources and of the proofs' results.
+    """Texts {file: text} of sources and of proof results.
 
     The proofs of the files that are not shipped have the load ramp and loops alone: elastic plates take 20 ms
     a point, and the shipped files have all varied parameters.
@@ -38,7 +38,7 @@ def texts(paths: list[Path]) -> dict[str, str]:
 
 
 def texts_of(paths: list[Path]) -> dict[str, str]:
-    """{what: text} of sources and of the results of all experiments."""
+    """Texts {file: text} of sources and of the results of all experiments."""
     found: dict[str, str] = {}
     for path in paths:
         file = load_parameter_file(path)
@@ -51,7 +51,7 @@ def texts_of(paths: list[Path]) -> dict[str, str]:
 
 
 def components(folder: Path) -> dict[str, str]:
-    """{path: text} of the Modelica library in a folder."""
+    """Texts {path: text} of the Modelica library in a folder."""
     return {str(p.relative_to(folder)): p.read_text(encoding="utf-8") for p in sorted(folder.rglob("*.mo"))}
 
 

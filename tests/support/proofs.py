@@ -19,16 +19,16 @@ from jointfmu_tools import cli
 Change = Callable[[str, bytes], bytes | None]
 BOTH = ["co-simulation", "model exchange"]
 MEASURED = 2e-3
-"""Part of the tolerance that the FMUs use. Measured: 8.4e-4 of it, 8e-9, at a neighbour of a refusal;
-elsewhere 5e-10, from the digits of the files, and 4e-10 by the solver of model exchange."""
+"""Largest error over tolerance of the FMUs' experiments [1]. Measured: 8.4e-4 next to a refusal (absolute
+8e-9); elsewhere 5e-10 from the digits of the files, 4e-10 from the solver of model exchange."""
 
 
 ECOS, LIBCOSIM = (pytest.param(name, marks=needs(name)) for name in ("ecos", "libcosim"))
-"""Importers that only some machines have, as cases of a test."""
+"""Importers that only some machines have, as test cases."""
 
 
 def copy(source: Path, target: Path, change: Change, **more: bytes) -> Path:
-    """A copy of an FMU with members changed, left out (None) or added."""
+    """Copy an FMU with members changed, removed (None) or added."""
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
         for name in old.namelist():
             data = change(name, old.read(name))
@@ -40,7 +40,7 @@ def copy(source: Path, target: Path, change: Change, **more: bytes) -> Path:
 
 
 def replaced(part: str, old: bytes, new: bytes) -> Change:
-    """A change of one text in the members whose path ends with `part`."""
+    """Change for `copy`: replace a text in the members whose path ends with `part`."""
 
     def change(name: str, data: bytes) -> bytes:
         if not name.endswith(part):
@@ -52,7 +52,7 @@ def replaced(part: str, old: bytes, new: bytes) -> Change:
 
 
 def other_manifest(source: Path, target: Path, experiments: str, **files: bytes) -> Path:
-    """A copy of an FMU with a manifest of one file of experiments, in place of what it carries."""
+    """Copy an FMU with a manifest of one file of experiments instead of its own."""
     head = f'xmlns:fmi-ls="{ATTRIBUTE_NAMESPACE}" fmi-ls:fmi-ls-name="{STANDARD_NAME}" '
     head += 'fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
     related = '<Related type="application/x-ma-ls-experiments" source="own.exp" role="experiment"/>'
@@ -70,7 +70,7 @@ def other_manifest(source: Path, target: Path, experiments: str, **files: bytes)
 
 
 def proved(capsys: pytest.CaptureFixture[str], fmu: Path, *words: str, status: int = 0) -> dict[str, Any]:
-    """What `jointfmu prove --json` prints, with the exit status that it must have."""
+    """JSON object that `jointfmu prove --json` prints; asserts the exit status."""
     found = cli.main(["prove", str(fmu), *words, "--json"])
     out, err = capsys.readouterr()
     assert (found, err) == (status, ""), (err, out[-2000:])

@@ -45,7 +45,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
 
 
 def read(*folders: Path) -> Any:
-    """All classes in files .mo of folders, packages before what they hold."""
+    """All classes in .mo files of folders, packages before their contents."""
     from pymoca import ast, parser
 
     root = ast.Tree()
@@ -56,7 +56,7 @@ def read(*folders: Path) -> Any:
 
 
 class Read:
-    """The equations of a component with a record `data`, on values of its variables over time.
+    """Evaluator of a component's equations with a record `data`, at values of its variables over time.
 
     Scalars are numbers or arrays over time, Modelica's arrays are lists of them.
 
@@ -78,7 +78,7 @@ class Read:
         self.time, self.values, self.changes = time, {**_SMALL, **values}, changes
 
     def errors(self) -> dict[str, float]:
-        """Largest difference of both sides over the largest value, by what stands on the left."""
+        """Largest difference of both sides over the largest value, for each left side: {left side: error}."""
         most: dict[str, float] = {}
         size: dict[str, float] = {}
         with np.errstate(all="ignore"):  # in the branch of a condition that is not taken
@@ -90,7 +90,7 @@ class Read:
         return {name: difference / (size[name] or 1.0) for name, difference in most.items()}
 
     def _sides(self, equation: Any, local: Env) -> Iterator[tuple[str, Any, Any]]:
-        """Name, left and right side of every equation; of x = der(y) the integral of x, and y."""
+        """Name, left and right side of every equation. For x = der(y), both sides are integrated."""
         kind = type(equation).__name__
         if kind == "ForEquation":
             (index,) = equation.indices
@@ -116,7 +116,7 @@ class Read:
                 yield _name(left), self.value(left, local), self.value(right, local)
 
     def _integrals(self, state: Any, rate: Any, local: Env) -> Iterator[tuple[str, Any, Any]]:
-        """The way of a state, or of a list of them, and the integral of its rate by trapezia."""
+        """Change of a state, or of a list of states, and the integral of its rate by the trapezoidal rule."""
         states, rates = self.value(state, local), self.value(rate, local)
         if not isinstance(states, list):
             states, rates = [states], [rates]
@@ -161,7 +161,7 @@ class Read:
         return self._call(name.rpartition(".")[2], operands)
 
     def _call(self, name: str, operands: list[Any]) -> Any:
-        """A function of the library."""
+        """Value of a call of a library function."""
         function = self.library["Functions"].classes[name]
         inputs = [n for n, s in function.symbols.items() if "input" in s.prefixes]
         local: Env = {n: self.value(_binding(s), {}) for n, s in function.symbols.items() if _fixed(s)}
@@ -201,7 +201,7 @@ class Read:
 
 
 def _set(found: Any, at: list[int], value: Any) -> Any:
-    """An array with an item in a place, which may be the one after its last."""
+    """Array with an item set at an index, which may be one after the last."""
     if not at:
         return value
     items = list(found or [])
@@ -210,7 +210,7 @@ def _set(found: Any, at: list[int], value: Any) -> Any:
 
 
 def _binding(symbol: Any) -> Any:
-    """What a declaration sets equal to its variable."""
+    """Expression to which a declaration binds its variable."""
     changes = symbol.class_modification.arguments if symbol.class_modification else []
     values = [c.value.modifications for c in changes if c.value.component.name == "value"]
     return values[0][0] if values else symbol.value
@@ -253,7 +253,7 @@ def _each(function: Callable[[Any], Any], x: Any) -> Any:
 
 
 def _combined(name: str, a: Any, b: Any) -> Any:
-    """An operator; of two lists the product is that of vectors."""
+    """Result of a binary operator; of two lists the product is the scalar product."""
     if isinstance(a, list) and isinstance(b, list):
         items = [_combined(name, x, y) for x, y in zip(a, b, strict=True)]
         return reduce(operator.add, items) if name == "*" else items
@@ -265,7 +265,7 @@ def _combined(name: str, a: Any, b: Any) -> Any:
 
 
 def solution(found: Any, component: str, first: Array) -> Env:
-    """A component's variables in a result, its arrays as lists; also those of its flanges."""
+    """Variables of a component in a result, arrays as lists, with the variables of its flanges."""
     out: Env = {}
     for name in found.names:
         own = name.removeprefix(f"{component}.")
@@ -275,7 +275,7 @@ def solution(found: Any, component: str, first: Array) -> Env:
 
 
 def _put(out: Env, name: str, values: Array) -> None:
-    """A variable; q[2,3] becomes the third item of the second list of q."""
+    """Add a variable to nested lists: q[2,3] becomes the third item of the second list of q."""
     stem, _, rest = name.partition("[")
     if not rest:
         out[name] = values

@@ -23,7 +23,7 @@ from jointfmu.quantity import flatten_parameters
 
 
 def native_fmu(module: PageModule, folder: Path) -> Path:
-    """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
+    """FMI 3.0 FMU for the first parameter file of a module, for this machine only."""
     name, file, here = module.model.name, module.parameter_files[0], fmpy.platform_tuple
     given = split_parameters(module.model, file)
     with here_alone("3"):
@@ -40,7 +40,7 @@ def native_fmu(module: PageModule, folder: Path) -> Path:
 
 
 class Instance:
-    """An instance in wasmtime, with the methods of `conftest.Fmu`."""
+    """Instance of a module in wasmtime, with the methods of `conftest.Fmu`."""
 
     def __init__(self, module: PageModule, binary: bytes, file: ParameterFile | None = None) -> None:
         """file : whose numbers that no tool may set stand in the data, instead of the module's own"""
@@ -64,7 +64,7 @@ class Instance:
         return self.exports[function](self.store, *arguments)
 
     def start(self, values: Mapping[str, Any]) -> bool:
-        """From rest with parameters and inputs; whether they are accepted."""
+        """Start in the virgin state with parameters and inputs; returns whether they are accepted."""
         self("lab_reset", self.it)
         self.set(values)
         return self("lab_initialize", self.it) == 0
@@ -83,21 +83,21 @@ class Instance:
         return self("lab_derivative", self.it, self.references[output], self.references[known])
 
     def map(self) -> Any:
-        """Rows (n, 4) of x, y, share and value over the contact."""
+        """Rows (n, 4) of the pressure map: x, y, share and value."""
         at, memory = self("lab_map", self.it), self.exports["memory"]
         n = self("lab_map_size")
         return np.frombuffer(memory.read(self.store, at, at + 32 * n)).reshape(n, 4)
 
     @property
     def said(self) -> list[str]:
-        """Messages since they were last asked for."""
+        """Messages since the last call."""
         at, memory = self("lab_take_messages"), self.exports["memory"]
         return bytes(memory.read(self.store, at, at + 768)).split(b"\0")[0].decode().splitlines()
 
 
 def random_values(module: PageModule, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
-    """Parameters around those of the first file, inside their intervals and the limits that they set each
-    other; Booleans too if `switched`."""
+    """Random parameters near those of the first file, inside their intervals and limits; with Booleans if
+    `switched`."""
     values = module.parameter_files[0].values
     while True:
         found = _drawn(module, rng, switched)
@@ -107,7 +107,7 @@ def random_values(module: PageModule, rng: np.random.Generator, switched: bool) 
 
 
 def refused_values(module: PageModule, rng: np.random.Generator) -> dict[str, Any]:
-    """The same, but for one number on the wrong side of its interval."""
+    """Random parameters with one number on the wrong side of its interval."""
     fields = module.model.parameter_fields()
     bounded = [name for name, item in fields.items() if np.isfinite(_ends(item)[0])]
     name = str(rng.choice(bounded))
@@ -115,7 +115,7 @@ def refused_values(module: PageModule, rng: np.random.Generator) -> dict[str, An
 
 
 def _ends(item: Field[Any]) -> tuple[float, float]:
-    """Of a parameter's interval; none of a Boolean."""
+    """Ends of the interval of a parameter; none for a Boolean."""
     interval = item.metadata.get("interval")
     return (interval.low, interval.high) if interval else (-np.inf, np.inf)
 

@@ -100,7 +100,7 @@ def test_command_reads_a_matrix(capsys):
 
 
 def new_joint(*words):
-    """Words of a bolted joint whose faces are the scan VR."""
+    """Command that makes a bolted joint with the scan VR as both faces."""
     plate = "--plate 80x40 --bolts 2xM10 --at 40x0 --grip 25 --sides rigid --material steel --preload 20e3"
     return ("new", "bolted-joint", *plate.split(), "--surface", str(VR), *words)
 

@@ -386,7 +386,7 @@ def test_synthesize_refuses_by_name(folder, capsys, change, says):
 
 
 def columns(folder, x, z, decimals, unit="um"):
-    """A profile with rounded x."""
+    """Profile file with rounded x."""
     rows = "".join(f"{a:.{decimals}f},{b:.6g}\n" for a, b in zip(x, z, strict=True))
     (folder / "c.csv").write_text(f"# profile: x [{unit}], z [um]\n{rows}")
     return read_heights("c.csv")

@@ -31,7 +31,7 @@ def waves(points):
 
 
 def gaussian_profile(points, H, G, seed, dx=1e-6):
-    """Gaussian self-affine profile, cut out of a periodic one four times as long."""
+    """Gaussian self-affine profile: a quarter of a periodic one."""
     n = 4 * points
     f = np.fft.rfftfreq(n, dx)
     f[0] = np.inf
@@ -162,7 +162,7 @@ def test_short_range_warns():
 
 
 def smooth_profile(points):
-    """A profile whose amplitudes fall like f^-2, faster than any with D > 1: D ends at its bound."""
+    """Profile with amplitudes proportional to f^-2, steeper than for any D > 1: D is at its bound."""
     f = np.fft.rfftfreq(points, 1e-6)
     f[0] = np.inf
     z = np.fft.irfft(np.fft.rfft(np.random.default_rng(1).standard_normal(points)) / f**2)
@@ -323,7 +323,7 @@ def test_intervals_apart_leave_the_dimension_open():
 
 
 def spectral_profile(points, power, seed, dx=1e-6):
-    """A Gaussian profile of a power spectral density, cut out of a periodic one four times as long."""
+    """Gaussian profile with a given power spectral density: a quarter of a periodic one."""
     f = np.fft.rfftfreq(4 * points, dx)[1:]
     noise = np.fft.rfft(np.random.default_rng(seed).standard_normal(4 * points))
     noise[0] = 0.0
@@ -333,7 +333,7 @@ def spectral_profile(points, power, seed, dx=1e-6):
 
 
 def running(f):
-    """Local Hurst exponent from 0 at 100 um to 1 at 10 um, evenly in ln(frequency)."""
+    """Local Hurst exponent that rises linearly in ln(frequency), from 0 at 100 um to 1 at 10 um."""
     x, decade = np.log(f / 1e4) / np.log(10.0), np.log(10.0)
     return np.exp(-2.0 * decade * np.where(x < 0.0, 0.0, np.where(x < 1.0, 0.5 * x**2, x - 0.5))) / f
 

@@ -60,12 +60,12 @@ def six(tmp_path_factory):
 
 @pytest.fixture
 def few_poses(monkeypatch):
-    """A coarser grid, where any will do."""
+    """Use a coarser grid of poses, for tests that need no fine one."""
     monkeypatch.setattr(pictures, "ANGLES_PER_GRID_AXIS", 7)
 
 
 def held(spec, payload):
-    """The elastic robot at its pose with motors held and a payload at the tip, in motion from there."""
+    """Elastic robot at its pose with fixed motors and a payload at the tip; it starts to move from there."""
     body = spec.body("flange")
     body.mass, body.inertia, body.explicitinertial = max(payload, 1e-9), [1e-9] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
@@ -226,7 +226,7 @@ def test_the_longest_step_is_where_the_file_diverges(six):
 
 
 def fallen(model, step, friction="bristles"):
-    """Angles of the links after falling for 0.4 s, motors free but for their friction."""
+    """Angles of the links after 0.4 s of free fall, motors free except for friction."""
     model.opt.timestep, data = step, mujoco.MjData(model)
     for i, angle in enumerate((0.1, 0.7, 0.8, 0.1, 0.5, 0.2), 1):
         data.joint(f"joint{i}").qpos[0] = angle
@@ -314,11 +314,11 @@ OTHERS = {
     "openarm-mujoco": [("v2/openarm_bimanual.xml", 7)],
     "robosuite": [(f"robots/{n}/robot.xml", 7) for n in ("panda", "iiwa", "kinova3", "sawyer", "xarm7")],
 }
-"""{wheel: files of robots with their axes}."""
+"""{wheel: robot files with their axes}."""
 
 
 def robot_files(wheel):
-    """Files of robots in an installed wheel."""
+    """Paths of the robot files in an installed wheel."""
     return [file for file in metadata.files(wheel) or [] if file.suffix in (".xml", ".urdf")]
 
 

@@ -15,7 +15,7 @@ NAME = "HarmonicDriveSpring"
 STEP = 5e-4
 INERTIA = 0.05
 LOCKED = 1e9
-"""Armature of a motor that stands still [kg m2]."""
+"""Rotor inertia (armature) of a locked motor [kg m2]."""
 DAMPING = 0.5
 """`d` of the default drive [N.m.s/rad]."""
 LOOP = {"hysteresis_loss": 3e-4}
@@ -48,7 +48,8 @@ def loaded(native: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
 
 @pytest.fixture
 def robot(loaded: None) -> Robot:
-    """Makes model and data of drives side by side, motors locked; a mapping of parameters for each drive."""
+    """Function that makes model and data of drives side by side with locked motors, from parameters of each
+    drive."""
 
     def make(*drives: dict[str, Any], integrator: str = "Euler") -> tuple[Any, Any]:
         configs = ["".join(f'<config key="{k}" value="{v}"/>' for k, v in one.items()) for one in drives]
@@ -67,7 +68,7 @@ def robot(loaded: None) -> Robot:
 
 
 def push(time: float) -> float:
-    """Torque at the link [N.m]: up to rated torque, once a second."""
+    """Torque at the link [N.m]: up to the rated torque, one period per second."""
     return 5.0 * np.sin(2.0 * np.pi * time)
 
 
@@ -85,7 +86,8 @@ def run(model: Any, data: Any, steps: int, link: int = 1) -> np.ndarray:
 
 
 def beside(fmu: Fmu, steps: int) -> np.ndarray:
-    """The same by the FMU in co-simulation, with MuJoCo's scheme for the inertia (speed, then angle)."""
+    """Results as `run`, by the FMU in co-simulation, with MuJoCo's scheme for the inertia (speed, then
+    angle)."""
     angle = speed = 0.0
     rows = []
     for i in range(steps):
@@ -106,13 +108,13 @@ def apart(rows: np.ndarray, expected: np.ndarray) -> float:
 
 
 def area(x: np.ndarray, y: np.ndarray) -> float:
-    """Inside a closed polygon."""
+    """Area of a closed polygon."""
     return 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))))
 
 
 @pytest.fixture
 def drive(host: Callable[..., Fmu]) -> Iterator[Callable[..., Fmu]]:
-    """The FMU in co-simulation, with all its outputs at rest."""
+    """FMU in co-simulation, with all its outputs at rest."""
 
     def make(**parameters: Any) -> Fmu:
         fmu = host(NAME)

@@ -16,7 +16,7 @@ from jointfmu_tools.exchange.robots import pictures
 import jointfmu
 
 RATIO = -100.0
-"""Of the drive: motor and link turn in opposite directions."""
+"""Speed ratio of the drive: motor and link rotate in opposite directions."""
 ARM = """<mujoco model="arm"><compiler meshdir="assets/m &amp; m" angle="radian"/>
 <option timestep="0.0002" gravity="0 0 0"/>
 <asset><mesh name="cube" file="cube.stl"/></asset><worldbody>
@@ -27,7 +27,7 @@ ARM = """<mujoco model="arm"><compiler meshdir="assets/m &amp; m" angle="radian"
 
 
 def cube():
-    """A cube of 0.1 m as binary STL."""
+    """Cube with 0.1 m edges as binary STL."""
     corners = 0.1 * np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)])
     faces = ["021", "123", "456", "657", "014", "154", "276", "237", "042", "246", "153", "357"]
     triangles = [[corners[int(c)] for c in face] for face in faces]
@@ -57,7 +57,8 @@ def made(capsys, *words):
 
 
 def motor_friction(drive, speed):
-    """Friction torque [N.m] of the drive's law at a steady motor speed [rad/s], far beyond presliding."""
+    """Friction torque [N.m] by the law of the drive at a steady motor speed [rad/s], far beyond presliding.
+    """
     spring = drive.spring
     _, memory = spring.advance_motion((0.0, 0.0, 0.0, 0.0), spring.initial_history())
     for x in (0.05, 0.1):

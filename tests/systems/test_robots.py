@@ -16,7 +16,7 @@ from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 import jointfmu
 
 STEPS = 4000
-"""Of a quarter of the loop."""
+"""Number of steps per quarter of the loop."""
 
 
 @pytest.fixture(autouse=True)
@@ -31,7 +31,8 @@ def exported(capsys, source, *words):
 
 
 def pulled(model, torques):
-    """Wind-ups under torques at the link, motor locked, each held for several periods at a high damping."""
+    """Wind-ups under torques at the link with locked motor, each held for several periods at a high damping.
+    """
     model.opt.gravity[:], model.opt.timestep = 0.0, 1e-4
     model.dof_armature[model.joint("motor").dofadr[0]] = 1e9
     link = model.joint("link").dofadr[0]

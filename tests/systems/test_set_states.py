@@ -24,7 +24,7 @@ STATES = {
     "TranslationalMass": {"s": 2e-3, "v": 0.25},
     "robot_joint": {"motor.phi": 0.1, "link.phi": 1e-3, "motor.w": 0.5, "link.w": -0.02},
 }
-"""{FMU: values of its continuous states that are not their start values}"""
+"""{FMU: values of its continuous states other than the start values}."""
 START = {"RotationalInertia": {"J": 0.5, "m": 2.0, "l": 0.1, "tau_a": 0.3}}
 
 SetStates = Callable[[Fmu, dict[str, float]], None]
@@ -50,7 +50,7 @@ def file_of(folder: Path, name: str, version: str) -> Path:
 
 
 def vector(fmu: Fmu, getter: str) -> list[float]:
-    """The continuous states, or their derivatives."""
+    """Continuous states of an FMU, or their derivatives."""
     n = fmu.description.numberOfContinuousStates
     values = (ctypes.c_double * n)()
     getattr(fmu.fmu, getter)(values, n)
@@ -142,7 +142,7 @@ def integrate(
     inputs: dict[str, float],
     times: np.ndarray,
 ) -> np.ndarray:
-    """Continuous states at times, by CasADi: it sets the states by value reference."""
+    """Continuous states at times, integrated by CasADi, which sets states by value reference."""
     case = {"parameters": parameters, "states": states, "inputs": inputs, "times": times.tolist()}
     found = run_client(CASADI, tmp_path, unpack(path, path.stat().st_mtime_ns)[0], **case)
     assert found["x"] == list(states)

@@ -263,7 +263,8 @@ ROBOT: Arm = load_system("six_axis_robot").arm
 
 
 def energies(arm: Arm, q: Array, speed: Array) -> tuple[Array, Array]:
-    """Kinetic and potential energy by Jacobians from differences of the places of the centres of mass."""
+    """Kinetic and potential energy of an arm; Jacobians are differences of the positions of the centres of
+    mass."""
     step = 1e-6
 
     def centres(angles: Array) -> Array:
@@ -436,7 +437,7 @@ def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
 
 
 def fmu_with_parameters(path: Path, file) -> Path:
-    """An archive with the parameters of an FMU where an FMU has them; nothing else of it is read."""
+    """Archive with only the parameters of an FMU."""
     path.parent.mkdir(parents=True)
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", "<fmiModelDescription/>")

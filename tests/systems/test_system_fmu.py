@@ -31,11 +31,11 @@ DRIVE = ("link.phi", "link.w", "drive.tau", "drive.E_loss")
 
 
 TURNED = 0.029
-"""The bolted column has turned within the last step [s]."""
+"""Time [s] after which the bolted column reversed within the last step."""
 
 
 STOP = {"six_axis_robot": 0.6}
-"""Until the middle of the motion [s]: friction has broken away on all axes, and they are fast."""
+"""Stop time [s] in the middle of the motion: all axes slip and move fast."""
 
 
 def made(name, out):
@@ -48,7 +48,7 @@ def made(name, out):
 
 @pytest.fixture(scope="module")
 def files_of(tmp_path_factory):
-    """Files of a shipped system by its name, {version of FMI: path}; each system is built once."""
+    """Function: name of a shipped system -> {FMI version: path}; each system is built once."""
     return cache(lambda name: made(name, tmp_path_factory.mktemp(name)))
 
 
@@ -163,7 +163,7 @@ def test_variables_are_those_of_the_components(joint):
 
 
 class Opened:
-    """An instance of the FMU in a mode after initialization."""
+    """Instance of the system FMU in a mode after initialization."""
 
     def __init__(self, file, exchange=False):
         self.messages = []

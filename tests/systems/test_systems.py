@@ -72,18 +72,18 @@ SCHEMAS = {
     "1.0": Path(fmpy.__file__).parent / "ssp" / "schema",
     "2.0": Path(__file__).parent / "ssp2",
 }
-"""The schemas of SSP, 2.0 as published (2.0.1-rc.2)."""
+"""Schemas of SSP 2.0 as published (2.0.1-rc.2)."""
 
 
 @cache
 def bolted() -> BoltedJointSpring:
-    """Not while tests are collected: its patches take a second."""
+    """Bolted column; a function, because its friction patches take a second to compute."""
     return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="session")
 def built(system_files: Path) -> Path:
-    """The same under a shorter name."""
+    """Shorter name of the fixture `system_files`."""
     return system_files
 
 
@@ -398,7 +398,7 @@ def test_a_reader_of_both_versions_opens_the_archives(
 
 
 def stated(text: str) -> float:
-    """A value of a parameter set: a number, or whether it is true."""
+    """Value of a parameter set in text: a number, or a Boolean."""
     return float(text == "true") if text in ("true", "false") else float(text)
 
 
@@ -462,11 +462,11 @@ def simulated_once(path: str, step: float, stop: float, changes: tuple[tuple[str
 
 
 STEPS = 800
-"""In which importers are compared: the robot's axes are on their way."""
+"""Number of steps in which importers are compared; the robot's axes are in motion then."""
 
 
 def in_fmpy(built: Path, name: str) -> Any:
-    """So many steps of a system's own size."""
+    """Rows of a system in fmpy, for a number of the system's own steps."""
     step = load_system(name).interval
     return simulated(built, name, step, (STEPS - 0.5) * step)
 
@@ -585,12 +585,12 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 
 @cache
 def moved(folder: Path) -> dict[str, Array]:
-    """The robot of six axes through its motion."""
+    """Folder with results of the robot with six axes along its motion."""
     return simulate_system(load_system("six_axis_robot"), folder)
 
 
 def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
-    """The rows of a run up to a time [s]."""
+    """Rows of a run up to a time [s]."""
     count = np.searchsorted(run["time"], stop, "right")
     return {name: column[:count] for name, column in run.items()}
 
@@ -630,13 +630,13 @@ def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Pa
 
 
 def sliding(force: Array, stiffness: Array, limit: Array, rate: float) -> Array:
-    """Rates of sliders' forces: a spring each, but none beyond its friction."""
+    """Rates of the slider forces: stiffness times rate, or zero at the friction limit."""
     held = (np.abs(force) < limit) | (force * rate < 0.0)
     return np.where(held, stiffness * rate, 0.0)
 
 
 def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Array]:
-    """Stiffness and friction of the sliders that touch at a preload, of all patches."""
+    """Stiffness and friction limits of the sliders in contact at a preload, of all patches."""
     joint, patches = spring.joint, spring.patches
     approach = spring.curve.inverse(preload_pressure(joint, patches, preload, 0.0))
     carried = spring.friction_law.foundation(approach).slider_properties(approach)
@@ -647,7 +647,7 @@ def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Ar
 
 
 def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[float]:
-    """Rates of motor, link and the sliders of the drive by the package's midline and sliders alone."""
+    """Rates of motor, link and drive sliders, from the package's midline and sliders."""
     ratio, friction = ROBOT.joint.ratio, x[4:]
     drive = DRIVE.evaluate_motion(x[0], x[1], x[2], x[3])
     drive = {"tau1": drive["tau1"] + friction.sum() / ratio, "tau2": drive["tau2"] - friction.sum()}
@@ -740,7 +740,7 @@ def test_the_modelica_example_moves_as_the_archive(
 def ring(
     built: Path, step: float, count: int, angle: float, damping: float, late: bool = False, **more: float
 ) -> Array:
-    """Free motion of the link; `late` as in masters that step all side by side."""
+    """Free vibration of the link; `late` for masters that step all components at once."""
     start = {"J": LINK, "phi": angle, "lag_b": float(late)} | more
     drive, inertia = built / "fmi2" / "HarmonicDriveSpring.fmu", built / "fmi2" / "RotationalInertia.fmu"
     with (
@@ -832,7 +832,7 @@ def test_the_largest_stable_step_with_late_forces(built: Path) -> None:
 
 
 def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop: float) -> dict[str, Array]:
-    """States at the end of model-exchange FMUs as one system under CVode.
+    """Final states of model-exchange FMUs integrated as one system by CVode.
 
     wires : (FMU, output, FMU, input), in the order in which values are passed on
     """
@@ -1051,7 +1051,7 @@ def test_a_joint_that_does_not_ring_is_refused() -> None:
 
 @pytest.fixture(scope="module")
 def rung(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of a run with table and picture."""
+    """Folder of a run of the vibration command, with table and picture."""
     out = tmp_path_factory.mktemp("ring")
     arguments = [
         "--fmus",

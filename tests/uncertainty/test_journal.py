@@ -75,7 +75,7 @@ def written(folder: Path, *lines: bytes) -> Path:
 
 
 def refused(folder: Path) -> str:
-    """What both readers of a journal say, one printable line."""
+    """Error message of both readers of a journal: one printable line."""
     with pytest.raises(ValueError, match=r"runs\.jsonl") as said:
         journal.Journal(folder, 8).__enter__()
     text = str(said.value)

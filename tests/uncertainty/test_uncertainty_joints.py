@@ -26,7 +26,7 @@ pytestmark = pytest.mark.slow
 
 
 def sample_of(task, points, i):
-    """Columns of sample i, and the parameter set and factor of the load, built with all checks."""
+    """Values of sample i by column, and its parameter set and load factor, built with all checks."""
     settings = dict(task.list_runs(points)[i])
     columns = task.evaluator.evaluate(settings)
     settings.pop(task.ramped_input.name, None)

@@ -95,7 +95,7 @@ def test_design_is_seeded_and_balanced():
 
 @pytest.fixture
 def linear_gear(monkeypatch):
-    """Gear contact whose K_N is linear in mu, traction_ratio and load: its distribution is known."""
+    """Gear contact whose K_N is linear in mu, traction_ratio and load, so that its distribution is known."""
 
     def evaluate(self, settings):
         values = {**self.file.values_by_name, **settings}
@@ -163,7 +163,7 @@ def ishigami(x):
 
 
 ISHIGAMI_FIRST, ISHIGAMI_TOTAL = (0.31390519, 0.44241114, 0.0), (0.55758886, 0.44241114, 0.24368366)
-"""Analytic indices for a = 7, b = 0.1 (Saltelli et al. 2008)."""
+"""Analytic Sobol' indices of the Ishigami function for a = 7, b = 0.1 (Saltelli et al. 2008)."""
 
 
 def designs(n, d, seed):

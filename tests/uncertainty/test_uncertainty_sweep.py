@@ -44,7 +44,7 @@ def fmu(native):
 
 @pytest.fixture(scope="module")
 def cluster():
-    """Address of a dask scheduler; its workers are copies of a process that has loaded what they need."""
+    """Address of a dask scheduler whose workers are forked from a process with all imports done."""
     import dask
     from distributed import LocalCluster
 
@@ -65,7 +65,7 @@ DEPRECATED = (
 
 
 def do_runs(task, runs, out, **execution):
-    """Runs of an FMU, kept in a folder."""
+    """Runs of an FMU that are stored in a folder."""
     return evaluate_runs(task.evaluator, runs, task.units, task.loads.size, Execution(out, **execution))
 
 
@@ -78,7 +78,7 @@ def indices(out):
 
 
 def processes_of(group):
-    """{pid: fields of its status} of a process group, without those that are dead and not yet waited for."""
+    """Living processes of a process group: {pid: fields of its status}."""
     found = {}
     for path in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):

@@ -15,7 +15,7 @@ RANGES = {
 
 
 def outputs(spring: Any, v: Inputs) -> Any:
-    """The spring's motion."""
+    """Outputs of the spring at a motion."""
     kinds = ("s_rel", "v_rel", "theta", "omega")
     return spring.evaluate(
         v["preload"], v["moment"], *(tuple(v[f"{kind}_{axis}"] for axis in "xyz") for kind in kinds)

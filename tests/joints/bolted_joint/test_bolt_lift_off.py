@@ -22,7 +22,8 @@ from jointfmu.parameters import load_default, load_parameter_file
 
 PRELOAD, EMBEDDING = 15e3, 800.0
 STIFFNESS = 1.28e10
-"""Of a bolt [N/m]: fifty times that of an M8, so that it lifts off where the contact is far from its end."""
+"""Stiffness of a bolt [N/m]: fifty times that of an M8, so that it lifts off while the contact is still
+closed."""
 STILL = (0.0,) * 6
 FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
 MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
@@ -36,7 +37,7 @@ def plate(x=(-0.08, 0.08, -0.08), y=(-0.03, -0.03, 0.03)):
 
 
 def rigid_file(**changes):
-    """Three bolts on a plate, between rigid sides: nothing about them is symmetric."""
+    """Parameter file of a joint between rigid sides, with three bolts and no symmetry."""
     file, pattern = load_default("bolted_joint"), plate()
     row_bolts, row_distance = pattern.equivalent_bolt_rows
     numbers = {
@@ -48,7 +49,8 @@ def rigid_file(**changes):
 
 @pytest.fixture(scope="module")
 def elastic_file(tmp_path_factory):
-    """Four M8 on a plate of 80 x 80 mm, whole: the plate of test_elastic_sides.py, which is solved once."""
+    """Parameter file of a plate 80 x 80 mm with four M8 and elastic sides, the same as in
+    test_elastic_sides.py."""
     path = tmp_path_factory.mktemp("lift_off") / "joint.toml"
     drawing = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", "--material", "steel"]
     stated = ["--Ra", "0.8", "--embedding", "0", "--preload", str(PRELOAD), "--out", str(path)]
@@ -75,7 +77,7 @@ def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
 
 
 def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):
-    """Force of each bolt [N]: outputs of elastic sides, the law at their places of rigid ones."""
+    """Force of each bolt [N]: outputs for elastic sides, bolt law at the bolt positions for rigid sides."""
     if spring.joint.has_elastic_members:
         return np.array([out[f"F_bolt[{j + 1}]"] for j in range(round(spring.joint.n_bolts))])
     x, y = spring.bolts.position.T
@@ -86,7 +88,7 @@ def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):
 
 
 def without_bolts(spring):
-    """The same joint whose bolts have no stiffness."""
+    """Copy of the joint with zero bolt stiffness."""
     return BoltedJointSpring.for_joint(replace(spring.joint, bolt_stiffness=0.0))
 
 
@@ -138,9 +140,9 @@ SWEEPS = {
     "about y": np.array([0.0, 0.0, 0.0, 0.0, 4.0 / 0.03, 0.0]),
     "both": np.array([0.0, 0.0, -1.0, 1.0 / 0.05, -1.0 / 0.06, 0.0]),
 }
-"""Motions over LIFT_OFF."""
+"""Motions over LIFT_OFF that are followed."""
 MIXED = np.array([0.0, 0.0, -1.0, 4.0, -8.0, 0.0])
-"""A motion over LIFT_OFF that takes the bolts off their seats one after the other."""
+"""Motion over LIFT_OFF at which the bolts lift off one after the other."""
 
 
 @pytest.mark.parametrize("sweep", SWEEPS)
@@ -248,7 +250,7 @@ def test_a_moment_that_unloads_a_row_takes_no_more_than_its_force(spring):
 
 
 def random_motions(rng, steps):
-    """Preload, moment and motion into slip, opening and lift-off of some bolts or all."""
+    """Random preload, moment and motion, with slip, opening, and lift-off of some or all bolts."""
     unit = np.array([2e-6, 2e-6, 1.0, 1.0 / 0.04, 1.0 / 0.04, 2e-5])
     unit[2:5] *= LIFT_OFF
     for step in range(steps):

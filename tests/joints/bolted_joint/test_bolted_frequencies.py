@@ -39,7 +39,7 @@ MASS = np.diag([100.0, 100.0, 100.0, 4.0, 3.0, 5.0])
 
 
 def all_nodes(preload: float, moment: float) -> Array:
-    """Stiffness (6, 6) of all nodes in full stick, each with the law's own stiffness."""
+    """Stiffness (6, 6) in full stick, summed over all nodes with the stiffness of the law."""
     nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     shape = nodes.points
     k = (
@@ -56,7 +56,7 @@ def all_nodes(preload: float, moment: float) -> Array:
 
 
 def force_of(fmu: Fmu) -> Force:
-    """Force and moment (6) at a place (6); with `done` the place is accepted."""
+    """Function: force and moment (6) of an FMU at a displacement (6), which is accepted if `done`."""
     inputs = [fmu.variables[name].valueReference for name in AXES]
     outputs = [fmu.variables[name].valueReference for name in FORCES]
 
@@ -72,7 +72,7 @@ def force_of(fmu: Fmu) -> Force:
 
 
 def leapfrog(force: Force, mass: Array, place: Array, speed: Array, step: float, count: int) -> Array:
-    """Places (count + 1, n) of a block, by the leapfrog scheme."""
+    """Displacements (count + 1, n) of a block on the joint, by the leapfrog scheme."""
     inverse, places = np.linalg.inv(mass), [place]
     speed = speed + 0.5 * step * inverse @ force(place, True)
     for _ in range(count):
@@ -123,11 +123,11 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
 
 PERIOD = 2.0 * np.pi * np.sqrt(100.0 / 1.0249e10)
 FIRST = 1e-6
-"""Where the block is let go along x [m]: 63 % of the friction is used."""
+"""Initial displacement of the block along x [m], at 63 % of the friction limit."""
 
 
 GUIDED = np.diag([100.0, *5 * [1e30]])
-"""A block that moves along x alone."""
+"""Block that can move along x only."""
 
 
 def ring_down(force: Force, per_period: int, periods: float) -> Array:
@@ -137,7 +137,7 @@ def ring_down(force: Force, per_period: int, periods: float) -> Array:
 
 
 def cvode(fmu: Fmu, stop: float) -> float:
-    """Where the block is after a time, the joint as model exchange under CVode."""
+    """Displacement of the block at time `stop`: joint as model-exchange FMU, integrated by CVode."""
     from fmpy.sundials import CVodeSolver
 
     force, state = force_of(fmu), np.array([FIRST, 0.0])
@@ -188,13 +188,13 @@ def test_co_simulation_and_cvode_agree(native: Path) -> None:
 
 
 def gone_on(fmu: Fmu, places: list[float]) -> list[float]:
-    """Forces along x at places, one step each."""
+    """Forces along x at displacements, one step each."""
     force = force_of(fmu)
     return [float(force(place * np.eye(6)[0], True)[0]) for place in places]
 
 
 def continued(file: str, state: bytes, places: list[float], time: float) -> list[float]:
-    """The same of an instance that goes on from a serialized state."""
+    """Forces of an instance that continues from a serialized state."""
     fmu = Fmu(Path(file)).start()
     saved = fmu.fmu.deserializeFMUState(state)
     fmu.fmu.setFMUState(saved)
@@ -246,7 +246,7 @@ def test_flavours_agree(native: Path, fmus: Path) -> None:
 
 
 def swings(first: float, least: float) -> Array:
-    """How far a block that is let go at a displacement moves from turn to turn.
+    """Distances between successive turning points of a block that is released at the displacement `first`.
 
     By the theorem of Jaeger and Ciavarella and Masing's rule over all nodes, to a least part of the friction:
     from a turn with the force q to the next one the force falls twice as far as it rose on half the way at
@@ -290,7 +290,7 @@ def test_a_ring_down_loses_what_the_loop_does(native: Path) -> None:
 
 
 COARSE = 0.2
-"""Refinement at which a frequency is still within some percent: enough for how it varies."""
+"""Refinement at which a frequency is accurate to some percent."""
 
 
 def ringing(lengths, **options):

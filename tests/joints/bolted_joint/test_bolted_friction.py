@@ -19,7 +19,7 @@ MOTION = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 FORCE = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
 TIGHT = dict.fromkeys((v.name for v in MODEL.inputs), 0.0) | {"preload": 9e3}
 SIZE = np.array([1e-6, 1e-6, 2e-6, 1e-5, 1e-5, 1e-5])
-"""Of random motions [m, rad]: shear to gross slip, tilt and pull that open some of the patches."""
+"""Size of random motions [m, rad]: shear to gross slip, tilt and tension that open some patches."""
 LOADS = [(9e3, 0.0), (15e3, 4500.0), (3e3, -900.0)]
 each_load = pytest.mark.parametrize(("preload", "moment"), LOADS)
 
@@ -31,12 +31,12 @@ def spring():
 
 @pytest.fixture(scope="module")
 def elastic():
-    """Without memory, on all nodes."""
+    """Joint without history, on all nodes."""
     return BoltedJointSpring.for_interface_nodes(replace(JOINT, memory=False))
 
 
 def at(place, **inputs):
-    """Inputs at a place (6)."""
+    """Inputs of the model at a displacement (6)."""
     return TIGHT | inputs | dict(zip(MOTION, map(float, place), strict=True))
 
 
@@ -50,7 +50,7 @@ def rest(spring, place, **inputs):
 
 
 def walk(spring, path, memory=None, **inputs):
-    """Outputs along a path (n, 6)."""
+    """Outputs along a path of displacements (n, 6)."""
     memory, found = spring.initial_history() if memory is None else memory, []
     for place in path:
         out, memory = MODEL.advance(spring, at(place, **inputs), memory)
@@ -59,14 +59,14 @@ def walk(spring, path, memory=None, **inputs):
 
 
 def polygon(rng, corners, steps):
-    """A random path (n, 6) from the tightened state back to it, in straight steps."""
+    """Random path (n, 6) in straight steps, from the tightened state and back to it."""
     ends = [np.zeros(6), *(SIZE * rng.normal(size=(corners, 6))), np.zeros(6)]
     parts = [a + (b - a) * np.linspace(0.0, 1.0, steps + 1)[1:, None] for a, b in pairwise(ends)]
     return np.vstack([np.zeros((1, 6)), *parts])
 
 
 def stiffness(spring, place, step, **inputs):
-    """-d(force, moment)/d(shift, turn) (6, 6) by central differences."""
+    """Tangent stiffness (6, 6): -d(force, moment)/d(displacement, rotation), by central differences."""
     columns = []
     for unit, size in zip(np.eye(6), step, strict=True):
         up, down = (six(rest(spring, place + d * size * unit, **inputs)) for d in (1.0, -1.0))
@@ -241,7 +241,7 @@ def stored(spring, memory):
 
 
 def missing(spring, steps, taken):
-    """What is missing of the friction's work over some steps, over the work and the energy at their end.
+    """Error of the energy balance over some steps, relative to the work and the stored energy.
 
     All six motions, preload and moment swing; the work of a step is the integral of the force that trials
     from the accepted state show along the straight path, by Gauss's rule of order 8 in 6 parts.

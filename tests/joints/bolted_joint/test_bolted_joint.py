@@ -19,7 +19,7 @@ from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
-"""Central difference over five points: error h^4/30 times the fifth derivative."""
+"""Central difference with five points; its error is h^4/30 times the fifth derivative."""
 FIVE = np.arange(-2, 3)
 STEP = 3e-10
 """Of the differences [m]: 3e-4 of the shear at which the friction of the joint is used up (1 um). Nodes that
@@ -46,13 +46,13 @@ def spring():
 
 @pytest.fixture(scope="module")
 def plastic(spring):
-    """With the paper's normal damping."""
+    """Joint with the normal damping of the paper."""
     return replace(spring, joint=replace(JOINT, plastic_damping=True))
 
 
 @pytest.fixture(scope="module")
 def even(spring):
-    """The same joint under a uniform pressure: three nodes of unequal share."""
+    """The same joint under a uniform pressure, with three nodes of unequal area share."""
     position = np.array([[0.1, 0.02], [-0.05, 0.1], [-0.025, -0.2]])
     share = np.array([0.4, 0.4, 0.2])
     shape = PressureDistribution(share, position, np.ones(3), np.zeros(3))
@@ -134,7 +134,7 @@ def forces(spring, load, s):
 
 
 def potential(spring, load, s):
-    """U(s) of the class: V is the exact integral of the table, piece by piece."""
+    """Potential U(s) of the joint; V is the exact integral of the table on each interval."""
     curve, area, rho = spring.curve, JOINT.A_0 * spring.points.area_share, JOINT.shear_stiffness_ratio()
     start = spring.preloaded_approach(*load)
     a, h = curve._coefficients, np.diff(curve.displacement)

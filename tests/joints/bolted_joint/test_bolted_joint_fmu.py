@@ -295,7 +295,7 @@ def test_an_accepted_state_tells_the_tangent_of_a_further_motion(fmu: Host, host
 
 
 COMPILED = 1e-9
-"""The same table with another mathematical library [1]."""
+"""Difference between two mathematical libraries for the same table [1]."""
 
 
 @pytest.mark.slow
@@ -326,7 +326,7 @@ def test_the_map_is_the_pressure_at_the_points(law):
 
 SVG = "{http://www.w3.org/2000/svg}"
 YELLOW = "#fde725"
-"""The end of the colours."""
+"""Colour at the end of the colour scale."""
 
 
 @pytest.mark.slow

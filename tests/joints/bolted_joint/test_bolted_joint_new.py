@@ -40,7 +40,8 @@ STILL = (0.0, 0.0, 0.0)
 
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
-    """The finite elements of the complete joint take seconds; test_bolted_plate.py looks at them."""
+    """Replace the finite elements of the complete joint, which take seconds; test_bolted_plate.py tests them.
+    """
     monkeypatch.setattr(
         plate_finite_elements,
         "compute_joint_or_warning",
@@ -49,7 +50,7 @@ def interface_alone(monkeypatch):
 
 
 def made(capsys, *words, path=None):
-    """What the command finds, as its JSON."""
+    """JSON object that the command prints."""
     out = ["--out", str(path)] if path else []
     assert cli.main(["new", "bolted-joint", *map(str, words), *out, "--json"]) == 0
     return json.loads(capsys.readouterr().out)

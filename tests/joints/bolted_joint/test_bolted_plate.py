@@ -29,7 +29,7 @@ from jointfmu.parameters import format_parameter_file, load_default, load_parame
 
 STILL = (0.0, 0.0, 0.0)
 SUM = 1e-12
-"""Sums of a thousand nodes; Newton's method of a bolt's balance ends at 1e-13."""
+"""Round-off of sums over a thousand nodes; Newton's method for the balance of a bolt ends at 1e-13."""
 CIRCLE = 2.0 * np.pi * np.arange(6) / 6
 LAYOUTS = {
     "one bolt": ([0.0], [0.0]),
@@ -219,7 +219,7 @@ def test_one_row_says_what_to_do():
 
 
 def normal(pattern, **changes):
-    """The joint on the points of its normal force, on which its friction is too: no bolt knows of it."""
+    """Joint with friction on the points of the normal force, as for rigid sides."""
     return BoltedJointSpring.for_interface_nodes(joint(pattern, **changes), contact_points(pattern))
 
 
@@ -310,7 +310,7 @@ def test_the_default_joint_takes_one_row(x):
 
 M16 = ["--plate", "80x80", "--bolts", "M16", "--grip", "40", "--material", "steel", "--Ra", "0.8"]
 LOAD = ["--preload", "60e3", "--embedding", "0"]
-"""These and the four bolts below are plates of test_elastic_sides.py, which are solved once."""
+"""Options of the load; with it and with four bolts, the plates are those of test_elastic_sides.py."""
 
 
 def test_the_bolt_that_gets_most_decides_when_the_interface_opens():

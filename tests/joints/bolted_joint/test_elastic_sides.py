@@ -47,8 +47,8 @@ MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Joints that the command makes, with the compliances that finite elements gave it; those that
-    are not compared with VDI 2230, loaded at their faces, of coarse ones."""
+    """Joints from the command with the compliances of their finite elements; meshes are coarse where no
+    comparison with VDI 2230 follows."""
     found, seen = {}, {}
     real = plate_finite_elements.compute_joint
 
@@ -74,7 +74,7 @@ def made(tmp_path_factory):
 
 
 def embedded(joint, path):
-    """The same joint whose bolts lose 800 N, in a file of its own."""
+    """Parameter file of the same joint with 800 N embedding loss per bolt."""
     file = joint.file.with_values({"embedding": 800.0}, "user", "test")
     path.write_text(format_parameter_file(file))
     return SimpleNamespace(path=path, file=file, spring=BoltedJointSpring.for_joint(file.values))
@@ -86,7 +86,7 @@ def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
 
 
 def stiffness(spring):
-    """Whole stiffness (6, 6) at tightening, from the forces of small motions."""
+    """Stiffness (6, 6) of the complete joint at tightening, from the forces of small motions."""
     names, step = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z"), 1e-11
     columns = []
     for axis in np.eye(6):
@@ -357,7 +357,7 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
 
 
 def random_preloads(rng, preload, embedding, steps):
-    """Preload and motion of random steps, of which many leave the joint without preload, or pull it apart."""
+    """Random steps of preload and motion, many of them without preload or with an open joint."""
     unit, six = np.array([1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 2e-5]), np.zeros(6)
     for _ in range(steps):
         parts = (0.0, rng.uniform(0.0, 1.0), 1.0, 1.0 + 10.0 ** rng.uniform(-9.0, -1.0))
@@ -424,7 +424,7 @@ def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavou
 
 
 def accept(fmu):
-    """End a step at the inputs that were set."""
+    """Accept the inputs: end a step."""
     if not fmu.is_model_exchange:
         fmu.step()
         return

@@ -8,9 +8,9 @@ import pytest
 from jointfmu.joints.bolted_joint import equilibrium
 
 K = np.array([[4.0, 1.0], [-1.0, 3.0]])
-"""Stiffness [N/m] of two modal coordinates, not symmetric."""
+"""Stiffness [N/m] for two modal coordinates, not symmetric."""
 LOAD = np.array([1.0, 2.0])
-"""Force [N] on them at the end of the load step."""
+"""Force [N] on the modal coordinates at the end of the load step."""
 
 
 def state(a, residual):
@@ -23,7 +23,7 @@ def state(a, residual):
 
 
 def load_step(residual, tangent=K):
-    """Load step with a residual [N] at a step fraction and modal coordinates, from rest."""
+    """Load step from rest with this residual [N] as a function of step fraction and modal coordinates."""
     return SimpleNamespace(
         displacement_at=lambda step_fraction: step_fraction,
         evaluate_trial=lambda step_fraction, a: state(a, residual(step_fraction, a)),

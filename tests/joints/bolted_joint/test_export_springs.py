@@ -40,7 +40,8 @@ def found(joint):
 
 
 def grid(size, nodes):
-    """A frame like the joint's, meshed: node pairs, places and areas, corners and edges with their part."""
+    """Mesh of a frame like that of the joint: node pairs, positions and areas (smaller at edges and corners).
+    """
     ticks = [np.linspace(-half, half, n) for half, n in zip(size, nodes, strict=True)]
     width = [np.convolve(np.diff(t), [0.5, 0.5]) for t in ticks]
     x, y = (v.ravel() for v in np.meshgrid(*ticks, indexing="ij"))
@@ -254,7 +255,7 @@ def test_ansys_is_read_by_mapdl_archive(found, tmp_path, normal):
 
 
 def symmetric(upper):
-    """The 12 x 12 matrix of C1 to C78: C1 to C12 its first row, C13 to C23 the second from its diagonal."""
+    """Symmetric 12 x 12 matrix of the constants C1 to C78, in rows from the diagonal on."""
     matrix = np.zeros((12, 12))
     values = iter(upper)
     for i in range(12):
@@ -319,7 +320,8 @@ def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
 
 
 def deck_cards(text):
-    """{set: its elements}, {set: (SPRING or DASHPOT, degrees of freedom, value)} of a CalculiX deck."""
+    """Elements of each set of a CalculiX deck, and (SPRING or DASHPOT, degrees of freedom, value) of each
+    set."""
     elements, values, name, card = {}, {}, "", ""
     for line in text.splitlines():
         if line.startswith("**") or not line.strip():

@@ -40,7 +40,8 @@ OFFSET = np.array([0.2, -0.1])
 
 
 def field(closed=0.0, moment=0.0):
-    """Nodes of the default frame with its pressure; below `closed` of the mean they are open."""
+    """Pressure field at the nodes of the default frame; nodes below `closed` times the mean pressure are
+    open."""
     shape = get_bolted_frame(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     p = np.maximum(shape.preload_pressure_ratio - closed, 0.0)
@@ -60,7 +61,7 @@ def reduced(request):
 
 
 def direct(joint, shape, load):
-    """Force, K_zz, K_xx, K_rx, K_ry of the spring itself over all nodes, and those at tightening."""
+    """Force, K_zz, K_xx, K_rx, K_ry summed over all nodes, and their values at tightening."""
     elastic = replace(joint, memory=False)
     curve = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).pressure_curve
     spring = replace(BoltedJointSpring.for_interface_nodes(elastic, shape), curve=curve)

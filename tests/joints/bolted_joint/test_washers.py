@@ -13,9 +13,9 @@ HOLE, RADIUS, THICKNESS, E_PLATE, NU = 17.5e-3, 40e-3, 20e-3, 210e9, 0.3
 
 
 def compliance(load_diameter, washer=None):
-    """Compliance [m/N] of a plate, with a bonded washer on it, under an even pressure from the hole to a
-    diameter [m], against a frictionless rigid plane that it may leave. The deflection is the mean over the
-    load."""
+    """Compliance [m/N] of a plate with a bonded washer under uniform pressure, on a frictionless rigid plane
+    from which it may separate. The pressure acts from the hole to `load_diameter` [m]; the deflection is the
+    mean over this area."""
     outer, height = (0.5 * washer.outer_diameter, washer.thickness) if washer else (0.0, 0.0)
     r = [np.linspace(0.5 * HOLE, 20e-3, 45), np.linspace(20e-3, RADIUS, 12), [0.5 * load_diameter, outer]]
     z = [np.linspace(0.0, THICKNESS, 24), np.linspace(THICKNESS - 4e-3, THICKNESS, 13)]

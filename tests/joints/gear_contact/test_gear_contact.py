@@ -21,7 +21,7 @@ from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
-"""Central difference over five points: error h^4/30 times the fifth derivative."""
+"""Central difference with five points; its error is h^4/30 times the fifth derivative."""
 FIVE = np.arange(-2, 3)
 
 CONTACT = load_default("gear_contact").values
@@ -42,7 +42,7 @@ each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
 
 
 def closing_end(spring):
-    """Force [N] and approach from first touch [m] at the end of the closing."""
+    """Force [N] and approach from first contact [m] at the end of the onset of contact."""
     i = int(np.searchsorted(spring.curve.displacement, 0.0))
     return spring.joint.A_0 * float(spring.curve.load[i]), -float(spring.curve.displacement[0])
 

@@ -7,13 +7,14 @@ from case import Beyond, Case, Description, Inputs, Joint, Numbers, Refusals, Re
 from jointfmu.parameters import load_default
 
 TURN = 8.0 * math.pi / 29.0
-"""Angle [rad] of wheel 1 far beyond the table; half of it is a whole mesh cycle, which keeps the pairs."""
+"""Angle [rad] of wheel 1 far beyond the table; half of it is a whole number of mesh cycles."""
 
 R_B1, R_B2 = (getattr(load_default("gear_mesh").values, name) for name in ("r_b1", "r_b2"))
 
 
 def rolled(inputs: Inputs) -> Inputs:
-    """With wheel 2 rolled on by wheel 1, so that any phase of the mesh cycle stays inside the table."""
+    """Inputs with wheel 2 rolled along with wheel 1, so that any phase of the mesh cycle stays inside the
+    table."""
     return inputs | {"phi2": inputs["phi2"] - inputs["phi1"] * R_B1 / R_B2}
 
 

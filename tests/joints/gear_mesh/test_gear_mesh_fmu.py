@@ -26,7 +26,7 @@ SETS: dict[str, dict[str, Any]] = {
     "whole ratio": {"contact_ratio": 2.0, "teeth1": 17.0, "d": 0.0},
     "two bodies": {"surface1.D": 1.6, "rigid_flat": False, "r_b2": 0.05, "A_0": 2e-5, "e": 0.5},
 }
-"""Parameters whose tables have other nodes: soft teeth need them denser."""
+"""Parameter sets whose tables have different nodes; soft teeth need a denser table."""
 
 
 @cache
@@ -35,7 +35,8 @@ def spring(name: str) -> GearMeshSpring:
 
 
 def angles(of: GearMeshSpring, s: float, phase: float) -> Inputs:
-    """Wheels at a deflection (0: in the middle of the backlash) and a phase of the mesh cycle, at rest."""
+    """Angles of both wheels at a deflection (0: middle of the backlash) and a phase of the mesh cycle, at
+    rest."""
     mesh = of.joint
     along = s + 0.5 * mesh.backlash * np.sign(s)
     way = phase * float(base_pitch(mesh))
@@ -48,7 +49,7 @@ def angles(of: GearMeshSpring, s: float, phase: float) -> Inputs:
 
 
 def states(of: GearMeshSpring, count: int) -> list[Inputs]:
-    """Both flanks from nanometres to beyond the table, and a tenth between them."""
+    """Motions from nanometres to beyond the table on both flanks, and a tenth of them in the backlash."""
     rng, found = np.random.default_rng(1), []
     for _ in range(count):
         size = 10.0 ** rng.uniform(-9.0, np.log10(1.2 * of.curve.end_point[0]))

@@ -24,7 +24,7 @@ ratios = st.floats(1.0, 2.999)
 engagements = st.floats(1e-3, 1.0)
 phases = st.floats(-1e3, 1e3)
 CYCLE = (np.arange(4000) + 0.5) / 4000
-"""Phases of a cycle; the midpoint rule of a periodic function that is even about its jumps."""
+"""Phases of a mesh cycle, for the midpoint rule of a periodic function that is symmetric about its jumps."""
 
 
 @given(ratio=ratios, engagement=engagements)
@@ -135,7 +135,7 @@ def test_a_vanishing_overlap_is_a_spur_mesh():
 
 
 def contact_of(mesh):
-    """The flanks of one pair alone."""
+    """Contact of the flanks of one pair without the other compliances."""
     names = flatten_parameters(load_default("gear_contact").values)
     return GearContactSpring.tabulate(
         build_parameter_set(GearContactParameters, {name: flatten_parameters(mesh)[name] for name in names})

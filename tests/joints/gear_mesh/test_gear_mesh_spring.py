@@ -12,7 +12,7 @@ from jointfmu.quantity import replace_values
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
-"""Central difference over five points: error h^4/30 times the fifth derivative."""
+"""Central difference with five points; its error is h^4/30 times the fifth derivative."""
 FIVE = np.arange(-2, 3)
 GAUSS = np.polynomial.legendre.leggauss(5)
 
@@ -31,13 +31,14 @@ each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
 
 
 def at(spring, s, roll):
-    """Angles [rad] of both wheels for a deflection s (...) [m] and a rolling way (...) [m]."""
+    """Angles [rad] of both wheels for deflections s (...) [m] and rolling distances (...) [m]."""
     along = s + 0.5 * spring.joint.backlash * np.sign(s)
     return (roll + 0.5 * along) / spring.joint.r_b1, (0.5 * along - roll) / spring.joint.r_b2
 
 
 def motion(spring, s, roll, rate=0.0):
-    """The spring at a deflection and a rolling way [m], both flanks closing with `rate` [m/s]."""
+    """Outputs of the spring at a deflection and a rolling distance [m]; both flanks close with `rate` [m/s].
+    """
     phi1, phi2 = at(spring, s, roll)
     return spring.evaluate(phi1, rate / spring.joint.r_b1, phi2, 0.0)
 
@@ -86,7 +87,8 @@ def test_torques_are_the_gradient_of_the_energy(spring):
 
 
 def closed_path(spring, seed, t):
-    """Motion phi1, w1, phi2, w2 at times t of a period: both flanks and three mesh cycles, back and forth."""
+    """Closed motion phi1, w1, phi2, w2 at times t of a period: both flanks and three mesh cycles, back and
+    forth."""
     generator = np.random.default_rng(seed)
     n = np.array([1, 3, 5, 7])  # the second half of the period is the first one, reversed
     size, shift = generator.normal(size=(2, 4)) / n**2, generator.uniform(0.0, 2.0 * np.pi, (2, 4))
@@ -109,14 +111,14 @@ def closed_path(spring, seed, t):
 
 
 def period(panels=40_000):
-    """Times and weights of five Gauss points in every panel of a period."""
+    """Times and weights of a Gauss quadrature over a period, five points per panel."""
     x, weights = GAUSS
     t = (np.arange(panels)[:, None] + 0.5 * (1.0 + x)) / panels
     return t.ravel(), np.tile(0.5 * weights / panels, panels)
 
 
 def undamped(spring):
-    """The same tables without damping."""
+    """Same spring without damping."""
     return GearMeshSpring(replace_values(spring.joint, {"d": 0.0}), spring.curve, spring.closing_end)
 
 

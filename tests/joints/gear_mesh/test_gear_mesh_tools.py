@@ -66,7 +66,7 @@ def test_the_patch_is_hertz(capsys):
 
 STEEL = (206e9, 206e9)
 LOADED = 1e4
-"""A torque [N.m] beyond 100 N/mm."""
+"""Torque [N.m] with a specific load above 100 N/mm."""
 
 
 @pytest.mark.parametrize(("helix", "c_gamma"), [(20.0, 18.8), (24.0, 17.9)])
@@ -324,7 +324,8 @@ SPRING = GearMeshSpring.tabulate(load_default("gear_mesh").values)
 
 
 def rolling(cycles: float, along: float) -> tuple[float, float]:
-    """Rates of both wheels [rad/s] for so many mesh cycles and a way along the line of action [m]."""
+    """Speeds of both wheels [rad/s] for a number of mesh cycles and a displacement along the line of action
+    [m]."""
     way = cycles * float(base_pitch(MESH))
     return (way + 0.5 * along) / MESH.r_b1, (0.5 * along - way) / MESH.r_b2
 

@@ -28,7 +28,7 @@ FRICTION = {
 }
 MOTION = ("phi1", "w1", "phi2", "w2", "temperature")
 WARM = {"temperature": (253.15, 353.15)}
-"""[K]: from -20 to 80 degrees C."""
+"""Range of the temperature input [K]: -20 to 80 degrees C."""
 UNITS = {
     "friction_coulomb": "N.m",
     "friction_stribeck": "N.m",
@@ -51,14 +51,14 @@ ERROR = {
 }
 INERTIA = {"inertia1": 1e-4}
 BASE = {"eccentricity": 1e-5, "hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3, "lost_motion": 1e-4}
-"""With all that is off by default, so that what it costs matters."""
+"""Parameter set with all effects that are off by default."""
 MOVED = {
     "load_loss_back": 0.3,
     "bearing.sigma_y": 0.8 * load_default("harmonic_drive").values.flexspline.sigma_y,
 }
-"""The softer body counts."""
+"""Changed parameters; those of the softer body act."""
 ELASTIC = frozenset({"mu", "surface.s_min", "flexspline.sigma_y", "bearing.sigma_y"})
-"""All spots are elastic: their size and strength limit what the law holds for. The traction ratio is given
+"""Parameter set with elastic spots only: spot size and strength limit the validity. The traction ratio is
 relative to mu."""
 
 SPRING = Case(

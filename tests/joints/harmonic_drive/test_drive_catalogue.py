@@ -270,7 +270,7 @@ DRIVE = "CSG-25-100"
 
 
 def angle(row, T):
-    """Of the catalogue's three lines."""
+    """Wind-up [rad] by the three lines of a catalogue row."""
     first = row["T1"] / row["K1"]
     second = first + (row["T2"] - row["T1"]) / row["K2"]
     return np.interp(

@@ -132,9 +132,9 @@ def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
 
 
 SCATTER = 0.03
-"""Of a published efficiency [1]: the catalogue states +-3 points."""
+"""Scatter of a published efficiency [1]: the catalogue states +-3 points."""
 READ = 0.005
-"""Of a factor read from a catalogue's curve [1]; two readings of such a curve differ by up to 0.013."""
+"""Reading error of a factor from a catalogue's curve [1]; two readings differ by up to 0.013."""
 TEXT = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_efficiency.csv"
 UNCERTAINTY_CURVES = list(csv.DictReader(TEXT.read_text(encoding="utf-8").splitlines()))
 
@@ -151,13 +151,14 @@ def of(drive, column):
 
 
 def turned(ratio, rated, **friction):
-    """A drive on the bench; its stiffness plays no part."""
+    """Drive on the test rig; its stiffness has no effect."""
     given = {"ratio": ratio, "rated_torque": rated} | friction
     return make_test_rig(SPRING, load_default("harmonic_drive").with_values(given, "user", "read"))
 
 
 def fixed_by(full, half, share, rated, ratio, rpm):
-    """Friction of a drive with an efficiency at rated torque and one at a share of it, at one speed."""
+    """Friction parameters of a drive from its efficiency at rated torque and at a share of it, at one speed.
+    """
     no_load = (1.0 / half - 1.0 / full) / (1.0 / share - 1.0)
     return {"friction_coulomb": no_load * rated / ratio, "load_loss": 1.0 / full - 1.0 - no_load}
 

@@ -266,7 +266,7 @@ def test_mid_line_and_hysteresis_at_once(tmp_path):
 
 @pytest.fixture
 def loops(tmp_path):
-    """Two loops of the default drive with levels of its own, 0.03 arcmin of noise, an offset and a drift."""
+    """Two loops of the default drive with changed stiffness, 0.03 arcmin noise, an offset and a drift."""
     torque, angle = curve_measurements.loops(np.random.default_rng(1))
     return save(tmp_path / "loops.csv", "torque [Nm], angle [°]", torque, np.degrees(angle))
 

@@ -24,7 +24,7 @@ from jointfmu.parameters import load_default
 
 DRY = {"friction_coulomb": 0.03, "friction_stribeck": 0.02, "load_loss": 0.15}
 PRESLIDING = 0.01
-"""[rad], the default."""
+"""Presliding angle [rad], the default."""
 ROUND_OFF = 1e-12
 
 
@@ -33,12 +33,12 @@ def spring(**changes):
 
 
 def started(law, *motion):
-    """Memory of a drive that began so."""
+    """History of a drive after its initial inputs."""
     return law.advance_motion(motion, law.initial_history())[1]
 
 
 def turning(law, speed, tau=0.0):
-    """Friction [N.m] of a drive that turns steadily with a torque at the output [N.m]."""
+    """Friction torque [N.m] of a drive at steady speed, with a torque at the output [N.m]."""
     wound = float(law.evaluate_torque(tau)["phi_rel"])
     memory, ratio = started(law, 0.0, speed, wound, speed / law.joint.ratio), law.joint.ratio
     phi1 = np.copysign(20.0 * PRESLIDING, speed)
@@ -192,7 +192,7 @@ def test_one_share_is_both_unless_another_is_stated():
 
 
 def coast(law, inertia, speed, step, count):
-    """Angle and speed (count + 1, 2) of a motor that nobody drives, while the output follows it unloaded."""
+    """Angle and speed (count + 1, 2) of a coasting motor while the output follows without load."""
     phi, w, found = 0.0, speed, [(0.0, speed)]
     out, memory = law.advance_motion((0.0, w, 0.0, w / 100.0), law.initial_history())
     for _ in range(count):
@@ -264,7 +264,7 @@ def test_the_default_coefficient_is_that_of_a_light_machine_oil():
 
 
 def stored(law, memory, out):
-    """Energy (n) [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
+    """Energy (n) [J] of the spring, of the hysteresis sliders and of the friction sliders."""
     parts = STATES.split(memory)
     pairs = ((parts["force"], law.hysteresis.stiffness), (parts["friction_torque"], law.friction.stiffness))
     sliders = sum(np.sum(force**2 / (2.0 * K), axis=-1) for force, K in pairs)
@@ -275,7 +275,7 @@ WAVES, STEPS, RUNS = 3, 1000, 200
 
 
 def smooth(rng, size, t):
-    """Random sums of sines (n, steps) of an amplitude, and their rates."""
+    """Random sums of sines (n, steps) with an amplitude, and their rates."""
     share = size * rng.dirichlet(np.ones(WAVES), RUNS)
     rate, phase = rng.uniform(0.5, 3.0, (RUNS, WAVES)), rng.uniform(0.0, 2.0 * np.pi, (RUNS, WAVES))
     angle = rate[..., None] * t + phase[..., None]

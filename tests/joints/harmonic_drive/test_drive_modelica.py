@@ -41,9 +41,9 @@ DRY = {
     "load_loss_back": 0.1,
 }
 LAYER = 1e-3
-"""Of the component: width over friction of the layer in which its sliders cease to stick."""
+"""Width of the layer in which the sliders of the component change from stick to slip, over their friction."""
 PRESLIDING = 0.01
-"""[rad], the default."""
+"""Presliding angle [rad], the default."""
 INERTIA = "Modelica.Mechanics.Rotational.Components.Inertia"
 AT_REST = "phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start={w}, nominal=0.1)"
 
@@ -60,7 +60,7 @@ def spring(**changes: float) -> HarmonicDriveSpring:
 
 
 def parameters(law: HarmonicDriveSpring, names: Mapping[str, float]) -> dict[str, float]:
-    """Those of the component for parameters of the package's drive."""
+    """Parameters of the Modelica component for parameters of the package's drive."""
     given = {name: getattr(law.joint, name) for name in names if not name.startswith("hysteresis")}
     found = law.hysteresis
     sums = {"friction": float(np.sum(found.friction_limit)), "stiffness": float(np.sum(found.stiffness))}
@@ -68,13 +68,13 @@ def parameters(law: HarmonicDriveSpring, names: Mapping[str, float]) -> dict[str
 
 
 def component(law: HarmonicDriveSpring, names: Mapping[str, float]) -> str:
-    """A declaration of the component with parameters of the package's drive."""
+    """Declaration of the component with parameters of the package's drive."""
     values = ", ".join(f"{name}={value!r}" for name, value in parameters(law, names).items())
     return f"JointStiffness.Components.HarmonicDriveSpring drive({values}, stateSelect=StateSelect.default);"
 
 
 def once(found: Any, *names: str) -> tuple[Array, ...]:
-    """Times and variables, without the second row of an event."""
+    """Times and variables without the second row of each event."""
     times, first = np.unique(found.time, return_index=True)
     return times, *(found[name][first] for name in names)
 
@@ -191,7 +191,7 @@ def test_the_text_read_by_another_parser_holds_along_the_solution(rumoca: Any):
 def swung(
     fmu: Path, given: dict[str, float], drive: Callable[[float], float], step: float, stop: float
 ) -> Array:
-    """Rows time, phi1, w1, phi2, tau_friction of a motor and a hanging link on the FMU: Heun's method."""
+    """Rows time, phi1, w1, phi2, tau_friction of a motor and a hanging link on the FMU, by Heun's method."""
     J, weight = np.array([1e-5, 0.05]), GRAVITY * 0.2
     x, w = np.zeros(2), np.zeros(2)
     with Slave(fmu, given, ("phi1", "w1", "phi2", "w2"), ("tau1", "tau2", "tau_friction")) as joint:
@@ -394,7 +394,7 @@ WARM: Mapping[str, float] = {
     "dry_temperature_coefficient": 0.01,
 }
 CAPACITY = 2.0
-"""[J/K] of the lubricant's surroundings, so little that they warm up on the way."""
+"""Heat capacity [J/K] around the lubricant, so small that the temperature rises during the motion."""
 _BODY = f"""
 model Body
   Modelica.Thermal.HeatTransfer.Interfaces.HeatPort_a port;

@@ -30,7 +30,7 @@ WARM = "temperature=temperature_degC [degC]"
 
 @pytest.fixture
 def drive(tmp_path):
-    """A parameter file of a drive like the robot's."""
+    """Parameter file of a drive like that of the robot."""
     given = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {
         "catalogue": "CSG-25-100",
         "fixed": "flexspline",
@@ -45,12 +45,12 @@ def drive(tmp_path):
 
 @pytest.fixture(autouse=True)
 def shorter(monkeypatch):
-    """Half of the script's minute, nine periods of the slowest wave."""
+    """Shorten the log of the script to half a minute, nine periods of the slowest wave."""
     monkeypatch.setattr(robot_log, "TIME", 30.0)
 
 
 def check_friction(found, undetermined=frozenset()):
-    """The fit began 40 % off. Four standard deviations: one in 16 000 by chance."""
+    """Assert that the fitted friction is within four standard deviations; the fit starts 40 % off."""
     assert found.rejection_reason() is None
     assert not any("--motor-inertia" in note for note in found.notes)
     assert found.facts["held_out"][0] < 0.1 * found.facts["held_out_constant"][0]
@@ -157,7 +157,7 @@ def test_a_current_needs_its_constant(drive, capsys, tmp_path):
 
 
 def written(path, **given):
-    """A log of a joint that swings, with some columns as stated."""
+    """Function that writes a log of a swinging joint with some columns replaced."""
     time = np.linspace(0.0, 8.0, 4001)
     q, dq = np.sin(2.0 * time), 2.0 * np.cos(2.0 * time)
     torque = 0.05 * np.sign(dq) + 0.02 * dq
@@ -229,7 +229,7 @@ def test_an_unknown_rotor_is_told(drive, tmp_path, capsys):
 
 LIGHT = FRICTION - 0.6 * 4.0 / 100.0 * np.sin(2.0 * TIME)
 LEVEL = ("N.m", 0.0 * TIME)
-"""Torque of the motor with 0.6 kg.m2 at the joint; gravity."""
+"""Motor torque of a horizontal joint with an inertia of 0.6 kg.m2 and gravity."""
 
 
 def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
@@ -296,7 +296,7 @@ def size_32_file():
 
 
 def joint_columns():
-    """Time, angle, speed, current and torque at the joint of the made log."""
+    """Columns time, angle, speed, current and torque at the joint of the synthetic log."""
     return dict(zip(("time", "q", "dq", "i", "link_torque"), np.loadtxt(
         JOINT_LOG, delimiter=",", skiprows=1).T, strict=True))  # fmt: skip
 
@@ -311,7 +311,7 @@ def save_log(path, log_columns, *names):
 
 
 def sensor_log(seed=0):
-    """The motion of the made log; its current by the law of the FMU, with the noise of the made log."""
+    """Log with a torque sensor: motion of the synthetic log, current by the FMU's law, with noise."""
     log_columns, rng = joint_columns(), np.random.default_rng(seed)
     drive = size_32_file().with_values(SENSOR | {"friction_stribeck": 0.0}, "user", "made").values
     load = 2.5 * np.gradient(log_columns["dq"], 0.01) + 110.0 * np.cos(log_columns["q"])
@@ -473,11 +473,11 @@ def test_a_log_of_300_000_rows_takes_seconds(tmp_path):
 # friction over the turn of the motor
 
 RIPPLE = json.loads((JOINT_LOG.parent / "friction_over_motor_angle_50_1.json").read_text())
-"""Friction [N.m] at the output over one turn of the motor, both senses, of a 50:1 strain-wave gear."""
+"""Measured friction [N.m] at the output over one motor turn, both senses, of a 50:1 strain-wave gear."""
 
 
 def ripple_columns(senses):
-    """Table of the measured friction at the motor, at three speeds with a viscous part of 1e-4 N.m.s/rad."""
+    """Table of the measured friction at the motor at three speeds, with a viscous part of 1e-4 N.m.s/rad."""
     angles = 2.0 * np.pi * np.arange(RIPPLE["nbins"]) / RIPPLE["nbins"]
     rows = []
     for sense, name in senses.items():
@@ -517,7 +517,7 @@ def test_a_measured_ripple_is_found(tmp_path, senses, mean, amplitudes):
 
 
 def rippled_log(ratio, **ripple):
-    """A swing whose friction has a ripple, by the law of the FMU."""
+    """Log of a swing whose friction has a ripple, by the FMU's law."""
     log_columns, rng = joint_columns(), np.random.default_rng(0)
     log_columns = {name: log_columns[name] for name in ("time", "q", "dq")}
     drive = size_32_file().with_values(SENSOR | ripple | {"ratio": abs(ratio)}, "user", "made").values

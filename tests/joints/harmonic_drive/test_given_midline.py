@@ -26,9 +26,9 @@ from jointfmu.parameters import format_parameter_file, load_default, load_parame
 from jointfmu.quantity import build_parameter_set, replace_values
 
 SAME = 1e-12
-"""Lines are exact; round-off of the spline's coefficients remains."""
+"""Round-off of the spline's coefficients; the lines themselves are exact."""
 STATED = 0.005
-"""What the documentation states of the whole curve, corners and all."""
+"""Accuracy of the whole curve with its corners, as stated in the documentation."""
 TEXT = (files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_stiffness.csv").read_text("utf-8")
 ROWS = list(csv.DictReader(TEXT.splitlines()))
 COLUMNS = {"K1": "K1_Nm_per_rad", "K2": "K2", "T1": "T1_Nm", "T2": "T2_Nm"}
@@ -36,7 +36,7 @@ CSG_17 = {"K1": 1e4, "K2": 1.4e4, "K3": 1.6e4, "T1": 3.9, "T2": 12.0}
 
 
 def lines(T, K1, K2, K3, T1, T2):
-    """Wind-up of the three lines at torques, by integrating the steps of the compliance."""
+    """Wind-up of the three catalogue lines at torques, integrated from the compliance steps."""
     return np.interp(T, [0.0, T1, T2, 1e3 * T2], np.cumsum([0.0, T1 / K1, (T2 - T1) / K2, (999.0 * T2) / K3]))
 
 

@@ -27,7 +27,7 @@ from jointfmu.quantity import replace_values
 
 SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
 STATED = 0.005
-"""What the documentation states of the whole curve, corners and all."""
+"""Accuracy of the whole curve with its corners, as stated in the documentation."""
 SAME = 1e-12
 TUNED = {
     "catalogue": {
@@ -45,7 +45,7 @@ LAWS = tuple(TUNED)
 
 
 def file_of(name: str) -> ParameterFile:
-    """CSG-17-100, and the shipped table."""
+    """Parameter file: CSG-17-100, or the shipped table."""
     if name == "table":
         return load_default("harmonic_drive", name)
     given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options)
@@ -55,7 +55,7 @@ def file_of(name: str) -> ParameterFile:
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folders LAW/fmi3 and LAW/python."""
+    """Folders LAW/fmi3 and LAW/python with FMUs."""
 
     def make_all(out: Path) -> None:
         with here_alone("3"):
@@ -143,7 +143,7 @@ def test_lines_that_cannot_be_are_refused(
 
 
 def table_of(points: int) -> ParameterFile:
-    """A stiffening table of other numbers, with as many points."""
+    """Stiffening table with other numbers and the same number of points."""
     torque = tuple(40.0 * (i + 1) / points for i in range(points))
     angle = tuple(T / (6e3 + 100.0 * T) for T in torque)
     file = file_of("table")
@@ -183,11 +183,11 @@ def test_beyond_the_table_the_last_line_goes_on_with_one_warning(host: Host, bui
 
 TORQUE = 4.0
 AGREE = 1e-9
-"""As in tests/support/natives.py: two mathematical libraries and orders of summation."""
+"""Tolerance of FMU against package, as in tests/support/natives.py."""
 
 
 def stiffened(factor: float) -> ParameterFile:
-    """A drive whose steel is so many times as stiff, loaded from the start."""
+    """Parameter file of a drive whose steel is `factor` times as stiff, with a start load."""
     file = load_default("harmonic_drive")
     stiffer = {"K_FTS0": factor * file.values_by_name["K_FTS0"]}
     return replace(file.with_values(stiffer, "user", "test"), inputs={"tau": TORQUE})
@@ -209,7 +209,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def expected() -> dict[str, float]:
-    """Wind-up [rad] of each by the package."""
+    """Wind-up [rad] of each drive by the package."""
     return {n: law("HarmonicDriveCompliance", f.values)({"tau": TORQUE})["phi_rel"] for n, f in FILES.items()}
 
 
@@ -243,7 +243,7 @@ def test_everything_has_the_name(drives: Path, flavour: str) -> None:
 
 @pytest.fixture
 def both(drives: Path, request: pytest.FixtureRequest) -> Iterator[dict[str, Fmu]]:
-    """An instance of each, of one flavour, in one process."""
+    """Instances of both drives in one flavour, in one process."""
     made = {alias: Fmu(drives / request.param / f"{alias}.fmu") for alias in FILES}
     yield made
     for one in made.values():
@@ -284,7 +284,7 @@ COMPONENT = """<ssd:Component name="{0}" source="resources/{0}.fmu" type="applic
 
 @pytest.fixture
 def arm(drives: Path, tmp_path: Path) -> Path:
-    """An SSP of both."""
+    """System archive (SSP) with both drives."""
     members = {f"resources/{a}.fmu": (drives / "fmi2" / f"{a}.fmu").read_bytes() for a in FILES}
     components = "".join(map(COMPONENT.format, FILES))
     write_archive(

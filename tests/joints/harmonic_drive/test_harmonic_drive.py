@@ -23,14 +23,14 @@ from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
-"""Central difference over five points: error h^4/30 times the fifth derivative."""
+"""Central difference with five points; its error is h^4/30 times the fifth derivative."""
 FIVE = np.arange(-2, 3)
 
 DRIVE = load_default("harmonic_drive").values
 
 
 def drive(**values):
-    """The default drive with other values; dots of structured names as double underscores."""
+    """Default drive with changed values; a double underscore in an argument name stands for a dot."""
     changes = {name.replace("__", "."): value for name, value in values.items()}
     return build_parameter_set(HarmonicDriveParameters, flatten_parameters(DRIVE) | changes)
 
@@ -56,7 +56,7 @@ def spring(springs):
 
 
 def still(spring, phi):
-    """Outputs at a wind-up without speed."""
+    """Outputs at a wind-up, at rest."""
     return spring.evaluate_motion(0.0, 0.0, phi, 0.0)
 
 

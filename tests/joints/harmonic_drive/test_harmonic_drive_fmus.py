@@ -127,7 +127,7 @@ def test_derivatives_keep_the_closed_relations_of_the_drive(host: Host, version:
 
 DRY = {"friction_coulomb": 0.03, "friction_stribeck": 0.02, "stribeck_speed": 5.0}
 MOTION, MOTOR = ("phi1", "w1", "phi2", "w2"), 3e-5
-"""Inputs, and inertia of the motor [kg m2]."""
+"""Input names, and moment of inertia of the motor [kg m2]."""
 
 
 @pytest.fixture
@@ -167,7 +167,7 @@ def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
 
 
 def swing(path: Path, given: dict[str, float], step: float = 1e-4, steps: int = 40_000) -> np.ndarray:
-    """Angle and speed (steps, 2) of a link in gravity on the drive of a motor without current."""
+    """Angle and speed (steps, 2) of a pendulum on the drive, motor without current."""
     link, weight = 0.05, 8.0
     x = np.array([0.0, 0.0, 0.0, 0.0])
     x[0], x[2] = 60.0, 0.6
@@ -219,7 +219,7 @@ def test_the_output_ripples_most_at_half_its_natural_frequency(path: Path) -> No
 
 NAME = "HarmonicDriveSpring"
 SPEED = 150.0
-"""Of the wave generator [rad/s]."""
+"""Speed of the wave generator [rad/s]."""
 
 
 @pytest.fixture(scope="module")

@@ -144,12 +144,12 @@ def test_a_ratio_with_its_sign_leaves_nothing_to_be_fixed(capsys):
 SPRING = MODELS["HarmonicDriveSpring"]
 ARCMIN = math.pi / 10800.0
 SCATTER = 0.03
-"""Of a published efficiency [1]: the catalogue states +-3 points."""
+"""Scatter of a published efficiency [1]: the catalogue states +-3 points."""
 DRIVES = [item for item in catalogue.list_drives() if "rated_torque" in item.numbers]
 PRINTED = {item.name: item for item in drives_with_friction()}
 TEXT = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_zd.csv"
 OTHER = list(csv.DictReader(TEXT.read_text(encoding="utf-8").splitlines()))
-"""Drives of another maker, in sizes and ratios of these."""
+"""Drives of another maker, in sizes and ratios of the catalogue."""
 
 
 def is_printed(item, column):

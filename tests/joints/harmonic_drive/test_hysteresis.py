@@ -23,7 +23,7 @@ def default_spring(**changes):
 
 
 def energy(law, phi1, phi2):
-    """Stored in the spring [J]."""
+    """Energy [J] stored in the spring."""
     return float(law.curve.energy(abs(float(law.evaluate_motion(phi1, 0.0, phi2, 0.0)["phi_rel"]))))
 
 
@@ -77,7 +77,7 @@ def test_damping_takes_power_from_both_flanges():
 
 
 def ripple(law, inertia, speed, periods=60):
-    """Amplitude [rad] of the output's ripple [rad], twice per turn, at a speed [rad/s] of the motor."""
+    """Amplitude [rad] of the output's ripple, two periods per motor turn, at a motor speed [rad/s]."""
     end = periods * np.pi / speed
 
     def rate(t, y):
@@ -176,7 +176,7 @@ def spring(law=None, loss=ARCMIN, **changes):
 
 
 def along(law, path, memory=None):
-    """Torque, loss and memory along a path of wind-ups [rad]."""
+    """Torque, loss and history along a path of wind-ups [rad]."""
     memory, torque, loss = law.initial_history() if memory is None else memory, [], []
     for phi in path:
         out, memory = law.advance_motion((0.0, 0.0, phi, 0.0), memory)
@@ -186,7 +186,7 @@ def along(law, path, memory=None):
 
 
 def stored(law, memory):
-    """Energy [J] of the midline and of the sliders."""
+    """Energy [J] stored in the midline and in the sliders."""
     springs = memory[:HYSTERESIS_SLIDERS] ** 2 / (2.0 * law.hysteresis.stiffness)
     return float(law.curve.energy(abs(memory[HYSTERESIS_SLIDERS]))) + float(np.sum(springs))
 
@@ -202,7 +202,7 @@ def test_exponent_is_that_of_the_pairs_law():
 
 
 def friction_left(m, travel):
-    """s [1] of the theorem after a travel K_h phi/M_f [1] from rest."""
+    """Remaining friction s [1] of the theorem after a displacement K_h phi/M_f [1] from rest."""
     left = 1.0 - (1.0 - m) * np.asarray(travel)
     return np.exp(-np.asarray(travel)) if m == 1.0 else np.maximum(left, 0.0) ** (1.0 / (1.0 - m))
 

@@ -29,14 +29,14 @@ SETS = pytest.mark.parametrize(
     ids=["spring", "compliance", "all"],
 )
 TINY = 1e-15
-"""Sums of sliders in another order, where what is left is zero: [N.m], [rad], [J]."""
+"""Round-off [N.m, rad, J] of slider sums in another order, where the sum is zero."""
 TURNS = (7e-4, 2e-4, 6e-4, -9e-4, -9e-4, 1e-4, 12e-4, 0.0)
 """Wind-ups of a path with minor loops and a rest."""
 
 
 @pytest.fixture
 def instance(native: Path, fmus: Path) -> Iterator[Any]:
-    """Makes instances of any flavour and frees them after the test."""
+    """Function that makes instances of any flavour; they are freed after the test."""
     made: list[Fmu] = []
 
     def make(name: str, flavour: str, exchange: bool = False) -> Fmu:
@@ -50,7 +50,7 @@ def instance(native: Path, fmus: Path) -> Iterator[Any]:
 
 
 def path(name: str, given: Mapping[str, float] = LOOP) -> list[dict[str, float]]:
-    """Inputs along a path: both flanges turn, with speeds; or the torque of the same wind-ups.
+    """Inputs along a path: angles and speeds of both flanges, or the torque for the same wind-ups.
 
     With friction the temperature moves too.
     """
@@ -66,7 +66,7 @@ def path(name: str, given: Mapping[str, float] = LOOP) -> list[dict[str, float]]
 
 
 def accept(instance: Fmu) -> None:
-    """A step of either interface."""
+    """Accept the inputs by a step, in either interface."""
     if instance.is_model_exchange:
         instance.fmu.completedIntegratorStep()
     else:
@@ -74,7 +74,7 @@ def accept(instance: Fmu) -> None:
 
 
 def begin(instance: Fmu, values: Mapping[str, float]) -> Fmu:
-    """Up to where steps are made."""
+    """Initialize an instance."""
     instance.start(values)
     if instance.is_model_exchange:
         instance.fmu.enterContinuousTimeMode()
@@ -82,7 +82,7 @@ def begin(instance: Fmu, values: Mapping[str, float]) -> Fmu:
 
 
 def package(name: str, changes: Mapping[str, float] = LOOP) -> Iterator[Any]:
-    """Send inputs; get outputs and memory after the way to them, step by step, from their start."""
+    """Generator of the package's results: send inputs, receive outputs and history after the step to them."""
     model, file = MODELS[name], load_default("harmonic_drive").with_values(changes, "user", "test")
     spring = model.tabulate(file.values)
     inputs = {v.name: v.start for v in model.inputs}
@@ -95,7 +95,7 @@ def package(name: str, changes: Mapping[str, float] = LOOP) -> Iterator[Any]:
 
 
 def saved(instance: Fmu) -> bytes:
-    """The FMU's state as bytes."""
+    """Serialized state of the FMU as bytes."""
     state = instance.fmu.getFMUState()
     data = instance.fmu.serializeFMUState(state)
     instance.fmu.freeFMUState(state)
@@ -103,7 +103,7 @@ def saved(instance: Fmu) -> bytes:
 
 
 def memory_of(instance: Fmu) -> np.ndarray:
-    """Memory after the last accepted inputs, from the end of a native state as snapshot.c writes it."""
+    """History after the last accepted inputs, from the end of a native state (snapshot.c)."""
     inputs = sum(v.causality == "input" for v in instance.variables.values())
     tail = f"<{2 * HISTORY_LAYOUT.size}d{inputs}dIIQ"
     numbers = struct.unpack(tail, saved(instance)[-struct.calcsize(tail) :])

@@ -13,7 +13,7 @@ class LinearSpring(CheckedParameters):
     c: float = quantity_field("N/m", "stiffness", gt=0.0)
 
     def motion(self, v: Mapping[str, Number]) -> dict[str, Number]:
-        """Force [N] and stiffness [N/m] at s_rel [m]."""
+        """Force [N] and stiffness [N/m] at the displacement s_rel [m]."""
         return {"f": -self.c * v["s_rel"], "K": self.c + 0.0 * v["s_rel"]}
 
 

@@ -15,20 +15,21 @@ from scipy.sparse.linalg import splu
 
 Array = NDArray[np.float64]
 ContactLaw = Callable[[Array], tuple[Array, Array]]
-"""Overlap (n) [m] to load (n) and its derivative: pressure [Pa], or force per width [N/m]."""
+"""Contact law: overlap (n) [m] -> load (n) and its derivative, as pressure [Pa] or force per width [N/m]."""
 
 TOLERANCE = 1e-12
-"""Energy left to gain over the work of contacts and loads [1] at which Newton's method ends."""
+"""Remaining energy reduction over the work of contacts and loads [1] at which Newton's method ends."""
 UNBALANCED = 1e-4
-"""Sum of the forces left unbalanced over that of loads and contacts [1] above which nothing holds a body: the
-drive leaves 2e-8, a loose ring the order of 1."""
+"""Unbalanced force over the sum of loads and contact forces [1] above which a body counts as unsupported: the
+drive has 2e-8, a loose ring about 1."""
 MOST_STEPS = 300
 _LOOSE = "the contact found no equilibrium: nothing holds a body, or loads are out of all proportion"
 
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Overlap = rows @ unknowns + start (m) [m]; loads come from the law, weighted (m) [m or 1]."""
+    """Unilateral contact: overlap = rows @ unknowns + start (m) [m]; the law gives the loads, with weights
+    (m) [m or 1]."""
 
     rows: Any
     start: Array
@@ -44,7 +45,7 @@ class Contact:
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A linear spring [N/m per metre of width] on the combination `row` (n) of unknowns."""
+    """Linear spring [N/m per metre of width] on the linear combination `row` (n) of unknowns."""
 
     row: Array
     stiffness: float
@@ -73,7 +74,7 @@ def equilibrium(
     held: Sequence[int],
     springs: Sequence[Spring] = (),
 ) -> Array:
-    """Unknowns (n) at which rings, contacts and springs balance the load (n).
+    """Unknowns (n) for which rings, contacts and springs are in equilibrium with the load (n).
 
     stiffness : (n, n) sparse; start : (n) where Newton's method begins; held : unknowns that stay 0
 
@@ -110,7 +111,7 @@ def equilibrium(
 def _gradient(
     stiffness: Any, load: Array, contacts: Sequence[Contact], springs: Sequence[Spring], x: Array
 ) -> Array:
-    """Derivative (n) of the energy by the unknowns."""
+    """Gradient (n) of the energy with respect to the unknowns."""
     out = np.asarray(stiffness @ x - load)
     for c in contacts:
         out = out + c.rows.T @ (c.weight * c.load(x))
@@ -122,7 +123,8 @@ def _gradient(
 def _newton_step(
     stiffness: Any, contacts: Sequence[Contact], springs: Sequence[Spring], x: Array, rate: Array, free: Any
 ) -> Array:
-    """Newton's step of the free unknowns; the springs' forces are unknowns of their own (sparse)."""
+    """Newton step of the free unknowns; the spring forces are additional unknowns, so the matrix stays
+    sparse."""
     tangent = stiffness
     for c in contacts:
         tangent = tangent + c.rows.T @ sparse.diags(c.weight * c.law(c.overlap(x))[1]) @ c.rows

@@ -11,12 +11,12 @@ from jointfmu.quantity import check_fields, quantity_field
 
 Array = NDArray[np.float64]
 Traction = Callable[[Array], tuple[Array, Array]]
-"""Angles (q) [1] to radial and tangential traction (q) [Pa] on the flexspline."""
+"""Function: angles (q) [1] -> radial and tangential traction (q) [Pa] on the flexspline."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rings:
-    """What the ring model needs beside the drive's parameters."""
+    """Data of the ring model in addition to the parameters of the drive."""
 
     wall: float = quantity_field("m", "thickness of the flexspline under its teeth, these smeared", gt=0.0)
     race: float = quantity_field("m", "thickness of the bearing's outer ring", gt=0.0)
@@ -55,8 +55,8 @@ SIZE_14 = Rings(
     lateral_stiffness=3e5,
     elements_per_ball=12,
 )
-"""Estimates for a drive of size 14; none is published for the CD-14-100 but the factor 1.67^(1/3) of the
-wall under the teeth (Hu 2023, section 2.3). docs/harmonic_drive_field.md says where each comes from."""
+"""Estimated data of a drive of size 14. For the CD-14-100 only the factor 1.67^(1/3) of the wall under the
+teeth is published (Hu 2023, section 2.3). docs/harmonic_drive_field.md gives the sources."""
 
 
 def contact_length(drive: HarmonicDriveParameters) -> float:
@@ -65,7 +65,7 @@ def contact_length(drive: HarmonicDriveParameters) -> float:
 
 
 def tooth_traction(drive: HarmonicDriveParameters, rings: Rings, torque: float) -> Traction:
-    """Cosine-shaped tooth load on both zones, and the cup's uniform shear flow against it.
+    """Cosine-shaped tooth load on both meshing zones, in equilibrium with a uniform shear flow in the cup.
 
     Tangential q cos(pi (theta - centre)/(2 zone)), radial tan(pressure angle) times that, inward:
     the assumption of the design literature (Ivanov 1981; Shen and Ye 1985).

@@ -32,12 +32,12 @@ _ALONG = np.polynomial.legendre.leggauss(6)
 HEIGHTS, HEIGHT_WEIGHTS = 0.5 * (1.0 + _ALONG[0]), 0.5 * _ALONG[1]
 """Sections along the contact from 0 to 1 and their weights [1]."""
 _PRESSED = 5e-6
-"""Overlap [m] of the balls from which Newton's method starts; a tenth of it between the rings."""
+"""Overlap [m] of the balls at the start of Newton's method; a tenth of it between the rings."""
 
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """Equilibrium of one section.
+    """Equilibrium of one section across the axis.
 
     theta, weight : (q) angles [1] and arc lengths [m]; pressure : (q) [Pa] between the rings
     push   : [N/m] sum of the balls' forces per width
@@ -58,7 +58,7 @@ def section(
     traction: Traction,
     curve: Curve | None = None,
 ) -> Section:
-    """Contact of the section at a height [m] from the cup's opening under a traction.
+    """Equilibrium of the section at a height [m] from the opening of the cup, under a traction.
 
     curve : pressure [Pa] over approach [m] of the interface; made from the drive's law if not given
 
@@ -109,7 +109,7 @@ def section(
 def field(
     drive: HarmonicDriveParameters, rings: Rings, traction: Traction
 ) -> tuple[Footprint, list[Section]]:
-    """Nodes (n) of the whole contact under a traction, from six sections along it, and the sections."""
+    """Nodes (n) of the whole contact under a traction, from six sections, and these sections."""
     curve = tabulate_approach(drive.law)
     z = HEIGHTS * contact_length(drive)
     sections = [section(drive, rings, height, traction, curve) for height in z.tolist()]
@@ -119,7 +119,8 @@ def field(
 def footprint(
     drive: HarmonicDriveParameters, rings: Rings, sections: list[Section], z: Array, axial: Array
 ) -> Footprint:
-    """Nodes (n) of sections at heights z (k) [m] that stand for parts `axial` (k) [1] of the length."""
+    """Nodes (n) of sections at heights z (k) [m], each of which represents a share `axial` (k) [1] of the
+    length."""
     theta = np.stack([s.theta for s in sections])
     height = np.broadcast_to(z[:, None], theta.shape)
     position, normal = oval(drive, rings, theta, height)
@@ -144,18 +145,18 @@ def oval(drive: HarmonicDriveParameters, rings: Rings, theta: Array, height: Arr
 
 
 def torsional_stiffness(drive: HarmonicDriveParameters, nodes: Footprint) -> float:
-    """K_TS [N.m/rad] of nodes by Eq. 45 and the law, both corrected, without any scale."""
+    """K_TS [N.m/rad] of nodes by Eq. 45 and the law, both corrected, without scale factor."""
     state = evaluate_at_pressure(drive.law, nodes.pressure)
     return float(nodes.rotation(state["K_N"], state["K_T"], (0.0, 0.0, 1.0)))
 
 
 def ring_model_stiffness(drive: HarmonicDriveParameters, rings: Rings, torque: float) -> float:
-    """K_TS [N.m/rad] of the ring model at a torque [N.m], without any scale."""
+    """K_TS [N.m/rad] of the ring model at a torque [N.m], without scale factor."""
     return torsional_stiffness(drive, field(drive, rings, tooth_traction(drive, rings, torque))[0])
 
 
 class _Cam(NamedTuple):
-    """Radial profile of the wave generator over the rings' free radius, at a height.
+    """Radial profile of the wave generator relative to the free radius of the rings, at one height.
 
     w cos(2 theta) + e cos(theta - angle): its perimeter is that of the free ring to first order.
     """
@@ -165,24 +166,24 @@ class _Cam(NamedTuple):
     angle: float
 
     def radial(self, theta: Array) -> Array:
-        """Profile [m]."""
+        """Radial profile [m] over the angle."""
         return self.w * np.cos(2.0 * theta) + self.e * np.cos(theta - self.angle)
 
     def slope(self, theta: Array) -> Array:
-        """Its derivative [m] by the angle."""
+        """Derivative [m] of the radial profile with respect to the angle."""
         return -2.0 * self.w * np.sin(2.0 * theta) - self.e * np.sin(theta - self.angle)
 
     def tangential(self, theta: Array) -> Array:
-        """Tangential displacement [m] of a ring that takes the profile without stretching."""
+        """Tangential displacement [m] of a ring that follows the profile without stretching."""
         return -0.5 * self.w * np.sin(2.0 * theta) - self.e * np.sin(theta - self.angle)
 
     def tangential_slope(self, theta: Array) -> Array:
-        """Its derivative [m] by the angle."""
+        """Derivative [m] of the tangential displacement with respect to the angle."""
         return -self.radial(theta)
 
 
 def _interface(curve: Curve) -> ContactLaw:
-    """Pressure over the overlap, from first touch."""
+    """Contact law of the interface: pressure over the overlap from first contact."""
     touch = float(curve.displacement[0])
 
     def law(overlap: Array) -> tuple[Array, Array]:
@@ -193,7 +194,7 @@ def _interface(curve: Curve) -> ContactLaw:
 
 
 def _start(circle: Circle, cam: _Cam, turn: float) -> Array:
-    """Both rings in the cam's shape, pressed a little."""
+    """Start values of Newton's method: both rings in the shape of the profile, with small overlaps."""
 
     def unknowns(value: Callable[[Array], Array], slope: Callable[[Array], Array], less: float) -> Array:
         return circle.unknowns(lambda t: value(t + turn) - less, lambda t: slope(t + turn))
@@ -204,7 +205,7 @@ def _start(circle: Circle, cam: _Cam, turn: float) -> Array:
 
 
 def _lateral(circle: Circle, stiffness: float, turn: float) -> list[Spring]:
-    """The cup holds the flexspline's mean displacement along both axes."""
+    """Springs of the cup against the mean displacement of the flexspline along both axes."""
     springs = []
     for axis in (0.0, 0.5 * np.pi):
         across = circle.theta + turn - axis

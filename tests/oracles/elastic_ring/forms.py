@@ -13,11 +13,11 @@ from .ring import Circle, Ring
 Array = NDArray[np.float64]
 
 _HALVES = (0.05, 1.5)
-"""Half angles [1] of a free part between which the edge is sought."""
+"""Range of the half angle [1] of the free part, for the search of its edge."""
 
 
 class OnOval(NamedTuple):
-    """A ring on a rigid oval, per width."""
+    """Contact of a ring with a rigid oval, per width."""
 
     edge: float
     """Angle [1] from the major axis at which the ring leaves the oval."""
@@ -40,7 +40,7 @@ def opposite_forces(ring: Ring, radius: float, force: float) -> float:
 
 
 def on_oval(ring: Ring, radius: float, deformation: float) -> OnOval:
-    """A ring pressed without friction onto the rigid oval r + w cos(2 theta) of its own perimeter.
+    """Ring that is pressed without friction onto the rigid oval r + w cos(2 theta) of the same perimeter.
 
     With N the hoop force and M = -D (u'' + u)/r^2 the moment (' by the angle), equilibrium is
     M'' + M = C - p r^2, r N = C - M. On the oval p = D w/r^4 (9 cos(2 theta) + c) with c = C r^2/(D w);
@@ -52,14 +52,14 @@ def on_oval(ring: Ring, radius: float, deformation: float) -> OnOval:
     """
 
     def free(half: float) -> tuple[float, float, float]:
-        """A, B, c of a free part of +-half about the minor axis."""
+        """Constants A, B, c of the free part within +-half about the minor axis."""
         sine, cosine = np.sin(half), np.cos(half)
         slopes = [[-sine, sine + half * cosine], [-cosine, 2.0 * cosine - half * sine]]
         a, b = np.linalg.solve(slopes, [2.0 * np.sin(2.0 * half), 4.0 * np.cos(2.0 * half)])
         return float(a), float(b), float(a * cosine + b * half * sine + np.cos(2.0 * half))
 
     def stretch(half: float) -> float:
-        """D/(A r^2) at which the ring leaves the oval there."""
+        """Ratio D/(A r^2) at which the ring leaves the oval at this angle."""
         a, b, c = free(half)
         off = -c * half + a * np.sin(half) + b * (np.sin(half) - half * np.cos(half))
         return float((off + 0.5 * np.sin(2.0 * half)) / (0.5 * np.pi * c))
@@ -81,7 +81,7 @@ def on_oval(ring: Ring, radius: float, deformation: float) -> OnOval:
 
 
 def opposite_forces_in_elements(ring: Ring, radius: float, force: float, elements: int) -> float:
-    """The same as `opposite_forces` with an even number of elements."""
+    """Result of `opposite_forces` by an even number of finite elements."""
     circle = Circle.of(radius, elements)
     n = 2 * elements
     load, apart = np.zeros((2, 2 * n))
@@ -95,7 +95,8 @@ def opposite_forces_in_elements(ring: Ring, radius: float, force: float, element
 def on_oval_in_elements(
     ring: Ring, radius: float, deformation: float, modulus: float, elements: int
 ) -> tuple[Circle, Array]:
-    """Pressure [Pa] at the circle's points, the oval of `on_oval` covered by a foundation [Pa/m]."""
+    """Pressure [Pa] at the points of the circle, by elements on the oval of `on_oval` with an elastic
+    foundation [Pa/m]."""
     circle, w = Circle.of(radius, elements), deformation
     contact = Contact(
         rows=sparse.hstack([-circle.value, sparse.csr_matrix(circle.value.shape)]).tocsr(),

@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """Nodes of a contact. `...` are load cases; pressure may come from any source.
+    """Pressure at the nodes of a contact; `...` are load cases.
 
     share    : (..., n)    [1]  part of the nominal area A_0 that the node stands for
     position : (..., n, 3) [m]
@@ -29,7 +29,8 @@ class Footprint:
         return np.asarray(np.sum(self.share * self.pressure, axis=-1))
 
     def translation(self, stiffness: Array) -> Array:
-        """Sum of local stiffnesses (..., n), each of the whole area A_0, weighted by share."""
+        """Stiffness per displacement: local stiffnesses (..., n), each scaled to the area A_0, weighted by
+        area share."""
         return np.asarray(np.sum(self.share * stiffness, axis=-1))
 
     def rotation(self, normal: Array, tangential: Array, axis: ArrayLike) -> Array:
@@ -44,6 +45,6 @@ class Footprint:
         )
 
     def projection(self, axis: ArrayLike) -> tuple[Array, Array]:
-        """d.n [m] and |d|^2 [m2] of d = axis x position for a unit twist."""
+        """Projections d.n [m] and |d|^2 [m2] of the displacement d = axis x position for a unit rotation."""
         d = np.cross(np.asarray(axis, dtype=np.float64), self.position)
         return np.sum(d * self.normal, axis=-1), np.sum(d * d, axis=-1)

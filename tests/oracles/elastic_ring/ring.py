@@ -22,21 +22,21 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """A thin ring, per width: bending stiffness D [N.m] and stretching stiffness A [N/m]."""
+    """Thin ring, per width: bending stiffness D [N.m] and extensional stiffness A [N/m]."""
 
     D: float
     A: float
 
     @classmethod
     def of(cls, E: float, nu: float, thickness: float) -> "Ring":
-        """A ring much wider than thick (plane strain): E [Pa], nu [1], thickness [m]."""
+        """Wide ring (plane strain) with E [Pa], nu [1] and thickness [m]."""
         plane = E / (1.0 - nu**2)
         return cls(D=plane * thickness**3 / 12.0, A=plane * thickness)
 
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """Equal elements around a circle, with four Gauss-Legendre points each.
+    """Equal finite elements around a circle, with four Gauss-Legendre points each.
 
     theta : (q) [1] angles of the points; weight : (q) [m] arc lengths, sum 2 pi r
     value, slope, bend : (q, n) sparse, nodal values of one component to itself, d/ds and d2/ds2
@@ -53,7 +53,7 @@ class Circle:
 
     @classmethod
     def of(cls, radius: float, elements: int) -> "Circle":
-        """The circle of a radius [m] in a number of elements."""
+        """Circle of a radius [m] with a number of elements."""
         length = 2.0 * np.pi * radius
         mesh = MeshLine(np.linspace(0.0, length, elements + 1))
         basis = Basis(mesh, ElementLineHermite(), intorder=7)
@@ -91,5 +91,5 @@ class Circle:
         )
 
     def unknowns(self, value: Callable[[Array], Array], slope: Callable[[Array], Array]) -> Array:
-        """Unknowns (n) of a function of the angle, given with its derivative by the angle."""
+        """Unknowns (n) that represent a function of the angle, from its values and its derivative."""
         return np.column_stack([value(self.nodes), slope(self.nodes) / self.radius]).ravel()

@@ -31,7 +31,7 @@ def beam():
 
 
 def form():
-    """Gap [m] of the unloaded lap over places x, y [m], of models/reference/brake_reuss_lap_form.csv.
+    """Gap [m] of the unloaded lap at positions x, y [m], from models/reference/brake_reuss_lap_form.csv.
 
     Half the width is modelled: the mean of both halves. Holes take what stands beside them along x; beyond
     the scan the last row or column goes on.
@@ -53,12 +53,13 @@ def form():
 
 
 def crown(height, lap):
-    """Gap [m] over places x, y [m] of parabolic faces along the lap; zero where they touch first."""
+    """Gap [m] at positions x, y [m] between faces that are parabolic along the lap; zero at first contact."""
     return lambda x, y: height * (2.0 * x / lap) ** 2 + max(-height, 0.0)
 
 
 def laws():
-    """Laws: `roughness` from the rms height of the gap, `published` scaled to the published stiffness."""
+    """Interface laws: `roughness` from the rms height of the gap, `published` scaled to the published
+    stiffness."""
     entries = data()
     ours = joint_law(entries | {"Rq": entries["h"] / np.sqrt(2.0)}, H=entries["H"])
 
@@ -75,7 +76,7 @@ def solid_bar_frequency(one):
     bend, heavy, turned, half = one.E * inertia, one.density * area, one.density * inertia, 0.5 * one.length
 
     def ends(omega):
-        """Zero where an even motion, of cos(k x) and cosh(m x), leaves the ends free."""
+        """Residual of the free-end condition for an even mode of cos(k x) and cosh(m x)."""
         slow = heavy * omega**2 / shear
         parts = [bend, -(turned * omega**2 + bend * slow), -heavy * omega**2 + turned * omega**2 * slow]
         m, k = np.sqrt(np.abs(np.sort(np.roots(parts))))

@@ -24,7 +24,8 @@ MAX_NEWTON_ITERATIONS, MIN_STEP = 200, 1e-4
 
 
 def foundation(curve, ratio, friction):
-    """Sliders of a curve of pressure over approach, K_T/K_N [1] and friction [1]."""
+    """Foundation of sliders for a curve of pressure over approach, with K_T/K_N [1] and friction coefficient
+    [1]."""
     end = curve.end_point[1]
     return sliders_at_levels(
         curve, ratio, friction, load_levels(LOWEST, (WORKING[0] / end, WORKING[1] / end), STEP)
@@ -94,7 +95,7 @@ class Joint:
         )
 
     def _interface(self, state, moved):
-        """Sliders, tractions (P, 3) [Pa] beyond those at tightening and their derivatives (P, 3, 3)."""
+        """Sliders, tractions (P, 3) [Pa] relative to those at tightening, and their derivatives (P, 3, 3)."""
         before, after = (self.beam.approach + w[:, 2] for w in (state.displacement, moved))
         shift = (moved - state.displacement)[:, :2]
         sliders = self.sliders.advance(state.force, before, after, shift)
@@ -109,7 +110,7 @@ class Joint:
         return sliders, np.column_stack([sliders.traction, pressure - first]), tangent
 
     def _step(self, weighted, tangent, residual):
-        """Step of Newton's method."""
+        """Newton step."""
         tangent = tangent - self.beam.springs[:, None, :] * np.eye(3)
         size = residual.size
         product = np.einsum("ipk,pkl->ipl", weighted.reshape(size, -1, 3), tangent).reshape(size, size)
@@ -124,7 +125,8 @@ class Joint:
         return states[1:]
 
     def cycle(self, top, steps):
-        """Loss [J] and states of a cycle between a state and its opposite load; `steps` each way."""
+        """Loss [J] and states of a cycle between a state and its opposite load, with `steps` per half cycle.
+        """
         down = top.load * np.linspace(1.0, -1.0, steps + 1)[1:]
         states = [top]
         for load in np.concatenate([down, -down]):
@@ -138,7 +140,7 @@ def frequency(state):
 
 
 def masing_losses(states):
-    """Losses [J] of cycles by Masing's rules: four times the loss of first loading.
+    """Losses [J] of cycles by Masing's rules: four times the dissipation in first loading.
 
     The area under the backbone would take an elastic stiffening of the contact for a negative loss.
     """
@@ -151,5 +153,5 @@ def damping(loss, state):
 
 
 def with_friction(joint, friction):
-    """The joint with another friction coefficient [1]."""
+    """Copy of the joint with another friction coefficient [1]."""
     return replace(joint, sliders=replace(joint.sliders, friction_coefficient=friction))

@@ -12,7 +12,7 @@ from jointfmu_tools.fem.elasticity import ElasticBody
 from skfem import MeshHex, MeshQuad
 
 HEADS = "head{}"
-"""Name of the facets that the shank of bolt i loads: the floor of a disc, above the hole."""
+"""Name of the facets that the shank of bolt i loads: face of the disc above the hole."""
 
 
 @dataclass(frozen=True)
@@ -43,17 +43,17 @@ class LapBeam:
 
     @property
     def across(self) -> float:
-        """Width [m] of the section."""
+        """Width [m] of the cross section."""
         return self.side if self.width is None else self.width
 
     @property
     def head(self) -> float:
-        """Height [m] of a disc: two of them have the volume of a bolt."""
+        """Height [m] of the disc that represents a bolt end: two discs have the volume of a bolt."""
         return self.bolt_volume / (0.5 * np.pi * self.washer**2)
 
     @property
     def holes(self) -> tuple[float, ...]:
-        """Positions of the bolts, none where there is no hole."""
+        """Bolt positions along x if the beam has holes; else none."""
         return self.bolts if self.hole > 0.0 else ()
 
 
@@ -70,7 +70,7 @@ def contact(beam, view):
 
 
 def _half(beam, view, size, side):
-    """Half 1 or 2 of the beam: slabs of the plan, level by level."""
+    """Mesh of half 1 or 2 of the beam, extruded level by level from the plan."""
     end, out = 0.5 * beam.lap, 1.0 if side == 2 else -1.0
     x, drilled = view.centres[0] * out, view.within(0.5 * beam.hole, beam.holes)
     arm, own = x > end, (x > -end) & ~drilled
@@ -95,7 +95,7 @@ def _half(beam, view, size, side):
 
 
 def _pulled(mesh, beam, height):
-    """Facets that the shanks load: {name: facets}."""
+    """Facets that the bolt shanks load: {name: facets}."""
     x, y, z = mesh.p[:, mesh.facets].mean(axis=1)
     free = np.zeros(z.size, dtype=bool)
     free[mesh.boundary_facets()] = True

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 GROWTH = 1.6
-"""Growth of the size of neighbouring elements [1]."""
+"""Ratio of the sizes of neighbouring elements [1]."""
 
 
 @dataclass(frozen=True)
 class Fineness:
-    """Element sizes [m] in the lap at the holes, far from them, and in the arms; layers in half the height.
+    """Element sizes [m]: in the lap at the holes and far from them, in the arms; layers in half the height.
 
     Layers and elements of the arms are small at the contact and where it ends, and grow by GROWTH.
     """
@@ -35,7 +35,7 @@ class Fineness:
 
 @dataclass(frozen=True)
 class Plan:
-    """Quadrilaterals of the plan view: points (2, n) [m], corners of the cells (4, m)."""
+    """Plane mesh in plan view: points (2, n) [m], corners of the quadrilaterals (4, m)."""
 
     points: np.ndarray
     cells: np.ndarray
@@ -45,13 +45,13 @@ class Plan:
         object.__setattr__(self, "centres", self.points[:, self.cells].mean(axis=1))
 
     def within(self, radius, places):
-        """Mask (m) of the cells within a radius [m] of places along x."""
+        """Mask (m) of the cells within a radius [m] of positions along x."""
         x, y = self.centres
         return np.any([np.hypot(x - at, y) < radius for at in places], axis=0) if places else x > np.inf
 
 
 def plan(beam, size):
-    """The lap by gmsh, with the outlines of holes and washers, and arms that continue its ends."""
+    """Plan mesh: lap by gmsh with the outlines of holes and washers, continued by the arms."""
     points, cells = _lap(beam, size)
     for end in (-0.5 * beam.lap, 0.5 * beam.lap):
         rim = np.flatnonzero(np.abs(points[0] - end) < 1e-9)
@@ -102,7 +102,8 @@ def _lap(beam, size):
 
 
 def _graded(beam, size):
-    """Element sizes that grow with the distance from the holes; gmsh halves what is asked for."""
+    """Element size as a function of the distance from the holes; gmsh makes elements of half the requested
+    size."""
     import gmsh
 
     mesh = gmsh.model.mesh.field

@@ -26,7 +26,7 @@ AXES = (0, 1, 2)
 
 @dataclass(frozen=True)
 class Structure:
-    """Meshed beam without its interface.
+    """Meshed beam without interface.
 
     bodies    : half 1 and 2
     interface : its patches, one for each element of the contact, as points of a quadrature
@@ -40,7 +40,7 @@ class Structure:
 
     @classmethod
     def of(cls, beam, size):
-        """Mesh a beam; one patch for each element of the contact."""
+        """Mesh of a beam, with one friction patch for each element of the contact."""
         view = plan(beam, size)
         bodies = mesh.bodies(beam, view, size)
         return cls(
@@ -49,11 +49,12 @@ class Structure:
 
     @property
     def symmetric(self):
-        """Unknowns of each body that are fixed by the symmetry."""
+        """Unknowns of each body that the symmetry fixes."""
         return tuple(3 * np.flatnonzero(body.nodes[1] < 1e-9) + 1 for body in self.bodies)
 
     def relative(self, axis):
-        """Displacement (P, n) of half 1 against half 2 along an axis: along z the approach."""
+        """Relative displacement (P, n) of half 1 with respect to half 2 along an axis; along z the approach.
+        """
         return sp.hstack(
             [
                 s * displacement_matrix(b, self.interface, axis)
@@ -96,7 +97,7 @@ def pinned_unknowns(body):
 
 
 def patches(interface):
-    """One point for each element of a contact: mean displacement, area and centroid."""
+    """Friction patches, one for each element of a contact: mean displacement, area and centroid."""
     count, points = interface.basis.dx.shape
     rows = np.repeat(np.arange(count), points)
     share = sp.csr_matrix((interface.quadrature_area, (rows, np.arange(rows.size))), shape=(count, rows.size))
@@ -156,7 +157,7 @@ def spectrum(structure, springs, count=3):
 
 
 def _free(structure):
-    """Unknowns of both bodies that the plane of symmetry leaves free."""
+    """Unknowns of both bodies that the symmetry leaves free."""
     first, second = structure.symmetric
     size = structure.bodies[0].unknown_count
     return np.setdiff1d(
@@ -191,13 +192,14 @@ def reduce_beam(structure, law, preload, shear, gap=None):
 
 
 def _tip(structure):
-    """Index of the deflection of the left end."""
+    """Index of the vertical displacement of the left end."""
     x, y, z = structure.bodies[0].nodes
     return 3 * int(np.argmin(x + 1e-3 * np.abs(y) + 1e-3 * np.abs(z))) + 2
 
 
 def _compliance(structure, springs):
-    """Compliance (3 P, 3 P) [m/N] of the patches under pairs of forces, patch by patch x, y, z."""
+    """Compliance (3 P, 3 P) [m/N] of the patches for pairs of opposite forces, ordered by patch, then x, y,
+    z."""
     free = np.setdiff1d(_free(structure), pinned_unknowns(structure.bodies[0]))
     factor = Cholesky(structure.stiffness(springs)[free][:, free])
     stacked = sp.vstack([structure.relative(axis) for axis in AXES]).tocsr()

@@ -5,7 +5,8 @@ import scipy.sparse as sp
 
 
 def shanks(beam, bodies):
-    """Stiffness [N/m] of half of each shank: a Timoshenko beam between the mean motions of the two discs."""
+    """Stiffness matrix [N/m] of half of each bolt shank: a Timoshenko beam between the mean motions of both
+    discs."""
     area, inertia = 0.125 * np.pi * beam.shank**2, np.pi * beam.shank**4 / 128.0
     long, shear = beam.side, beam.E / (2.0 * (1.0 + beam.nu)) * 0.9 * area
     soft = 12.0 * beam.E * inertia / (shear * long**2)
@@ -31,7 +32,7 @@ def shanks(beam, bodies):
 
 
 def _disc(body, facets, at):
-    """Mean motion (3, n) of facets: along x, rotation about y, along z."""
+    """Mean motion (3, n) of facets: displacement along x, rotation about y, displacement along z."""
     nodes = np.unique(body.basis.get_dofs(facets=facets).flatten())
     share = 2.0 - (body.nodes[1, nodes] < 1e-9)
     share = share / share.sum()
