@@ -23,7 +23,7 @@ from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
 from jointfmu_tools.pages.report.figure import draw_panels
-from jointfmu_tools.pages.report.systems import RESONANCE_FIGURE_SIZE, resonance_panels
+from jointfmu_tools.pages.report.systems import RESONANCE_FIGURE_SIZE, resonance_charts
 from jointfmu_tools.studies.checks import run_default_ramp
 from jointfmu_tools.studies.published import validation
 from jointfmu_tools.systems import ringing, ssp
@@ -59,7 +59,7 @@ def main() -> None:
     if sys.argv[1:]:
         return
     result = run_default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
-    panels = job.stiffness_panels(result, validation.validate())
+    panels = job.stiffness_charts(result, validation.validate())
     write_text(
         IMAGES / "harmonic_drive_ramp.svg",
         svg(lambda canvas: draw_panels(canvas, panels), RESONANCE_FIGURE_SIZE),
@@ -97,7 +97,7 @@ def resonance(path: Path) -> None:
         one = ringing.find_vibrating_joint(load_system("robot_joint"))
         points = ringing.simulate_vibrations(one, Path(folder) / "fmi2")
         with plots.open_figure(path, RESONANCE_FIGURE_SIZE) as canvas:
-            draw_panels(canvas, resonance_panels(points, one, Path(folder) / "fmi2"))
+            draw_panels(canvas, resonance_charts(points, one, Path(folder) / "fmi2"))
 
 
 def house() -> str:

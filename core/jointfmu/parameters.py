@@ -374,7 +374,7 @@ def _input_fields(joint_name: str) -> dict[str, Field[Any]]:
 
 
 def _heights_prefix(cls: type) -> str:
-    """Prefix of the names of the surface heights for a parameter set class, see `_ROUGHNESS_PREFIX`."""
+    """Prefix of the entries with surface heights: `roughness.` if the law has h, else `comparison.`."""
     return (
         _ROUGHNESS_PREFIX
         if any(is_combined_height(name) for name, _ in flatten_fields(cls))

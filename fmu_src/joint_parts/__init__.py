@@ -60,6 +60,6 @@ def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefi
 
 def load_equations_definition() -> "NativeDefinition":
     """C definition of a joint whose outputs are explicit functions: it needs no C sources of its own."""
-    from .native import EQUATIONS_DEFINITION
+    from .native import EXPLICIT_EQUATIONS_DEFINITION
 
-    return EQUATIONS_DEFINITION
+    return EXPLICIT_EQUATIONS_DEFINITION

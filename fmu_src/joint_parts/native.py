@@ -133,8 +133,8 @@ def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
     )
 
 
-EQUATIONS_DEFINITION = NativeDefinition(_add_equations, ("equations",))
-"""C definition of a model whose outputs are explicit functions of time, inputs and states."""
+EXPLICIT_EQUATIONS_DEFINITION = NativeDefinition(_add_equations, ("equations",))
+"""Definition of the C code of a model whose outputs are explicit functions of time, inputs and states."""
 
 
 def shared_definitions(shared_file_stems: Sequence[str]) -> CDefinitions:

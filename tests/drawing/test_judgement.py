@@ -82,7 +82,7 @@ def test_every_joint_is_judged_under_its_load(joint):
     expected = (
         evaluate_at_pressure(law, pressure)["K_N"]
         / law.A_0
-        * how.stiffness_ratio(file.values, how.default_load(file.values))
+        * how.joint_to_law_stiffness_ratio(file.values, how.default_load(file.values))
     )
     assert found.stiffness_comparison.stiffness == pytest.approx([float(expected)], rel=1e-9)
     assert found.stiffness_comparison.ratio == pytest.approx(

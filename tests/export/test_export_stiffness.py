@@ -299,8 +299,7 @@ def test_refusals(words, says, tmp_path, capsys, monkeypatch):
 @pytest.mark.slow
 @needs("gmsh")
 class TestElasticJoint:
-    """Exports of a joint with elastic sides: of the complete joint by default, of the interface if requested.
-    """
+    """Exports of a joint with elastic sides: complete joint by default, the interface if requested."""
 
     def test_stiffness_is_the_slope_of_the_compiled_joint(self, elastic_joint, tmp_path, capsys):
         file = load_parameter_file(elastic_joint / "joint.toml")

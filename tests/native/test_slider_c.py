@@ -232,8 +232,7 @@ def test_in_a_plane(library: CDLL) -> None:
 
 
 def slopes(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """Derivatives (4, 3) of the resultant with respect to displacement and `rates` (limits, displacements).
-    """
+    """Derivatives (4, 3) of the resultant along the displacement, and along `rates` of the limits."""
     s = Sliders2D(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
     given = SliderRates(*map(pointer, (rows["torsion_x"], rows["torsion_y"], *rates)))
     found, fours = np.empty((2, 4, 3))

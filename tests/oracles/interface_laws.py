@@ -177,8 +177,7 @@ def resolution(factors=(1, 2, 4), loads=(0.01, 0.03, 0.1)):
 
 
 def measured_stiffness(joint, pressure):
-    """Smallest and largest stiffness [N/m3] of a measured joint at pressures [Pa], from the printed ranges.
-    """
+    """Smallest and largest stiffness [N/m3] of a measured joint at pressures [Pa], by the printed ranges."""
     p = pressure / joint["pressure_unit"]
     if "C" in joint:
         values = [p ** (1.0 - m) / (C * m) for C in joint["C"] for m in joint["m"]]

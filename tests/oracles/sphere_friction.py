@@ -68,8 +68,7 @@ def foundation(step: float) -> Foundation:
 
 
 def backbone(approach: float, along: ArrayLike) -> Array:
-    """Tangential force [N] at a displacement [m] from rest under constant load (Cattaneo 1938, Mindlin 1949).
-    """
+    """Shear force [N] at a displacement [m] from rest under constant load (Cattaneo 1938, Mindlin 1949)."""
     return FRICTION * (load(approach) - load(approach - RATIO * np.asarray(along) / FRICTION))
 
 

@@ -206,8 +206,7 @@ def test_sets_are_consistent():
 
 
 def declared():
-    """Every SI unit that a parameter, a variable, a system or a file declares, with its place of declaration.
-    """
+    """Every SI unit that a parameter, a variable, a system or a file declares: (place, unit)."""
     for cls in (*(kind.default_parameter_class for kind in KINDS.values()), Layer, Plate, BoxSection):
         for name, item in flatten_fields(cls):
             if "unit" in item.metadata:

@@ -33,8 +33,7 @@ class Refused(NamedTuple):
 
 
 class Study(NamedTuple):
-    """Uncertainty study: distributions of parameters and inputs, number of samples compared with the spring.
-    """
+    """Uncertainty study: distributions of parameters and inputs, number of samples that are checked."""
 
     given: Mapping[str, str]
     samples: int

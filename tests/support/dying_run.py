@@ -9,8 +9,7 @@ from jointfmu_tools.studies.uncertainty.worker import FmuRamp, LoadRamp
 
 
 class DiesAtFive(FmuRamp):
-    """Evaluator that ends its process at run 5; four runs make a job, so three other runs are lost with it.
-    """
+    """Evaluator that ends its process at run 5; a job has four runs, so three other runs are lost too."""
 
     runs_per_job = 4
 

@@ -57,8 +57,7 @@ def made(capsys, *words):
 
 
 def motor_friction(drive, speed):
-    """Friction torque [N.m] by the law of the drive at a steady motor speed [rad/s], far beyond presliding.
-    """
+    """Friction torque [N.m] of the drive's law at a steady motor speed [rad/s], far beyond presliding."""
     spring = drive.spring
     _, memory = spring.advance_motion((0.0, 0.0, 0.0, 0.0), spring.initial_history())
     for x in (0.05, 0.1):

@@ -31,8 +31,7 @@ def exported(capsys, source, *words):
 
 
 def pulled(model, torques):
-    """Wind-ups under torques at the link with locked motor, each held for several periods at a high damping.
-    """
+    """Wind-ups under constant torques at the link, motor locked, after several well damped periods."""
     model.opt.gravity[:], model.opt.timestep = 0.0, 1e-4
     model.dof_armature[model.joint("motor").dofadr[0]] = 1e9
     link = model.joint("link").dofadr[0]

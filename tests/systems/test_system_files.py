@@ -17,7 +17,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica.library import render_system
 from jointfmu_tools.exchange.modelica.records import template_environment
 from jointfmu_tools.exchange.modelica.systems import render_system_model
-from jointfmu_tools.pages.report.systems import joint_load_outputs, system_panels
+from jointfmu_tools.pages.report.systems import joint_load_outputs, system_charts
 from jointfmu_tools.systems import cosimulation, ssp
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import find_fmu_names
@@ -421,7 +421,7 @@ def test_a_picture_shows_the_peaks_of_a_run():
     torque = np.zeros(4001)
     torque[[1233, 1234]] = -3.0, 77.5
     ((output, _),) = joint_load_outputs(robot).values()
-    (panel,) = system_panels(robot, {"time": time, output: torque})
+    (panel,) = system_charts(robot, {"time": time, output: torque})
     (drawn,) = panel.series
     assert (np.min(drawn.y), np.max(drawn.y)) == (-3.0, 77.5)
     assert len(drawn.x) <= 800

@@ -9,17 +9,17 @@ from .joint import Joint as Joint
 from .law import Law as Law
 from .law import law as law
 from .make import Fit as Fit
-from .make import create_joint_function
+from .make import create_drawing_function
 from .make import fit as fit
 from .make import load as load
 
-drive = create_joint_function(
+drive = create_drawing_function(
     "drive",
     KINDS["harmonic_drive"],
     'jointfmu.drive("CSG-25-100").values["T2"]  # N.m\n48.0',
     first_option="catalogue",
 )
-bolted_joint = create_joint_function(
+bolted_joint = create_drawing_function(
     "bolted_joint",
     KINDS["bolted_joint"],
     "plate = jointfmu.bolted_joint(\n"
@@ -27,7 +27,7 @@ bolted_joint = create_joint_function(
     "... )\n"
     ">>> f\"{plate.values['inputs.preload']:.0f} N\"\n'43110 N'",
 )
-gear_contact = create_joint_function(
+gear_contact = create_drawing_function(
     "gear_contact",
     KINDS["gear_contact"],
     "flanks = jointfmu.gear_contact(\n"
@@ -35,7 +35,7 @@ gear_contact = create_joint_function(
     "... )\n"
     '>>> bool(flanks.evaluate(f=2000.0)["K_N"][0] > 1e9)\nTrue',
 )
-gear_mesh = create_joint_function(
+gear_mesh = create_drawing_function(
     "gear_mesh",
     KINDS["gear_mesh"],
     "mesh = jointfmu.gear_mesh(\n"

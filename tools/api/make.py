@@ -143,10 +143,10 @@ def _format_value(value: Any) -> str:
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
-def create_joint_function(
+def create_drawing_function(
     function_name: str, kind: JointKind, doctest_example: str, first_option: str | None = None
 ) -> Callable[..., Joint]:
-    """Create the public function that makes a joint from its drawing.
+    """Create a public function such as `jointfmu.bolted_joint`, which makes a joint from its drawing.
 
     The signature and the docstring of the function list the options of the drawing.
 

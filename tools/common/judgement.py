@@ -56,7 +56,7 @@ class StiffnessComparison:
         )
 
     def to_json(self) -> dict[str, Any]:
-        """Convert to a JSON object."""
+        """JSON object of the comparison: rms height; pressure, stiffness, estimate, ratio of each point."""
         columns = (
             self.pressure,
             self.stiffness,
@@ -88,7 +88,7 @@ class Plausibility:
         return Plausibility(self.stiffness_comparison, (*extra_warnings, *self.warnings))
 
     def to_json(self) -> dict[str, Any]:
-        """Convert to a JSON object: {"level": object or null, "warnings": [...]}."""
+        """JSON object of the comparison and the warnings: {"level": object or null, "warnings": [...]}."""
         return {
             "level": self.stiffness_comparison and self.stiffness_comparison.to_json(),
             "warnings": list(self.warnings),
@@ -109,7 +109,7 @@ def assess_law_stiffness(
     pressures: Sequence[float],
     rms_height: float | None,
     peak_pressure: float = 0.0,
-    stiffness_ratio: Sequence[float] | float = 1.0,
+    joint_to_law_stiffness_ratio: Sequence[float] | float = 1.0,
     warn_outside_validity: bool = True,
 ) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa].
@@ -117,13 +117,13 @@ def assess_law_stiffness(
     pressures             : (n) [Pa]; pressures of zero or infinity are ignored
     rms_height            : [m] combined rms height of both surfaces; None: unknown
     peak_pressure         : [Pa] largest pressure, if `pressures` are mean values
-    stiffness_ratio       : stiffness of the joint over that of the interface law [1], one value or one per
-                            pressure
+    joint_to_law_stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one
+                            per pressure
     warn_outside_validity : also warn about pressures outside the range of validity
     """
     nominal = np.asarray(pressures, dtype=np.float64)
     in_contact = (nominal > 0.0) & (nominal < np.inf)
-    p, factor = nominal[in_contact], np.broadcast_to(stiffness_ratio, nominal.shape)[in_contact]
+    p, factor = nominal[in_contact], np.broadcast_to(joint_to_law_stiffness_ratio, nominal.shape)[in_contact]
     comparison = None
     if rms_height is not None and p.size:
         comparison = StiffnessComparison(rms_height, p, factor * stiffness_curve(law, p)[0])

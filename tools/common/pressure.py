@@ -23,8 +23,8 @@ class NominalPressureModel:
     default_load    : parameter set -> load [SI] that is used if the user states none
     mean_pressure   : (parameter set, load) -> nominal pressure [Pa] at which the stiffness is judged
     peak_pressure   : (parameter set, load) -> greatest nominal pressure [Pa]
-    stiffness_ratio : (parameter set, load) -> joint stiffness over stiffness of the interface law at the mean
-                      pressure [1]
+    joint_to_law_stiffness_ratio : (parameter set, load) -> joint stiffness over stiffness of the interface
+                      law at the mean pressure [1]
     load_capacity   : parameter set -> (largest load [SI] of the loaded parts, name of this limit), or None if
                       not known
     """
@@ -33,7 +33,7 @@ class NominalPressureModel:
     default_load: Callable[..., float]
     mean_pressure: Callable[..., float]
     peak_pressure: Callable[..., float]
-    stiffness_ratio: Callable[..., float] = lambda parameters, load: 1.0
+    joint_to_law_stiffness_ratio: Callable[..., float] = lambda parameters, load: 1.0
     load_capacity: Callable[..., tuple[float, str] | None] = lambda parameters: None
 
 
@@ -85,7 +85,7 @@ def judge_joint_stiffness(
         [nominal.mean_pressure(parameter_file.values, load) for load in loads],
         h,
         max((nominal.peak_pressure(parameter_file.values, load) for load in loads), default=0.0),
-        [nominal.stiffness_ratio(parameter_file.values, load) for load in loads],
+        [nominal.joint_to_law_stiffness_ratio(parameter_file.values, load) for load in loads],
         limits,
     )
     capacity = nominal.load_capacity(parameter_file.values)

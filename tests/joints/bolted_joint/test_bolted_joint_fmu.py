@@ -29,7 +29,7 @@ from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.mechanics.footprint.distribution import NodalField, nodal_field_entries
+from jointfmu.mechanics.footprint.distribution import NodalField, encode_nodal_field
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import load_default, load_parameter_file
 
@@ -393,7 +393,7 @@ def test_the_picture_of_points_without_an_outline() -> None:
         preload_pressure_ratio=some.preload_pressure_ratio / (share @ some.preload_pressure_ratio),
         moment_pressure_ratio=some.moment_pressure_ratio - share @ some.moment_pressure_ratio,
     )
-    joint = replace(file.values, pattern=NodalField(**nodal_field_entries(moved)))
+    joint = replace(file.values, pattern=NodalField(**encode_nodal_field(moved)))
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     discs = list(drawn.iter(f"{SVG}circle"))
     assert len(discs) == len(share)

@@ -40,8 +40,7 @@ STILL = (0.0, 0.0, 0.0)
 
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
-    """Replace the finite elements of the complete joint, which take seconds; test_bolted_plate.py tests them.
-    """
+    """Omit the finite elements of the complete joint, which take seconds; test_bolted_plate.py tests them."""
     monkeypatch.setattr(
         plate_finite_elements,
         "compute_joint_or_warning",

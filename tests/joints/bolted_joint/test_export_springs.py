@@ -40,8 +40,7 @@ def found(joint):
 
 
 def grid(size, nodes):
-    """Mesh of a frame like that of the joint: node pairs, positions and areas (smaller at edges and corners).
-    """
+    """Mesh of a frame like that of the joint: node pairs, positions, areas (smaller at edges and corners)."""
     ticks = [np.linspace(-half, half, n) for half, n in zip(size, nodes, strict=True)]
     width = [np.convolve(np.diff(t), [0.5, 0.5]) for t in ticks]
     x, y = (v.ravel() for v in np.meshgrid(*ticks, indexing="ij"))

@@ -37,8 +37,7 @@ def at(spring, s, roll):
 
 
 def motion(spring, s, roll, rate=0.0):
-    """Outputs of the spring at a deflection and a rolling distance [m]; both flanks close with `rate` [m/s].
-    """
+    """Outputs at a deflection and a rolling distance [m]; both flanks close with the speed `rate` [m/s]."""
     phi1, phi2 = at(spring, s, roll)
     return spring.evaluate(phi1, rate / spring.joint.r_b1, phi2, 0.0)
 

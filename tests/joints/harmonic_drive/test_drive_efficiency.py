@@ -88,7 +88,7 @@ def test_back_driving_takes_the_starting_torque_and_what_the_load_adds(fmu: Path
 
 
 def test_the_report_draws_it(fmu: Path) -> None:
-    *curves, back = job.friction_panels(fmu)
+    *curves, back = job.friction_charts(fmu)
     for panel in curves:
         slow, _, fast, *_ = (series.y for series in panel.series)
         assert all(0.0 < b < a < 1.0 for a, b in zip(slow, fast, strict=True))
@@ -157,8 +157,7 @@ def turned(ratio, rated, **friction):
 
 
 def fixed_by(full, half, share, rated, ratio, rpm):
-    """Friction parameters of a drive from its efficiency at rated torque and at a share of it, at one speed.
-    """
+    """Friction parameters of a drive from its efficiency at rated torque and at a share of it."""
     no_load = (1.0 / half - 1.0 / full) / (1.0 / share - 1.0)
     return {"friction_coulomb": no_load * rated / ratio, "load_loss": 1.0 / full - 1.0 - no_load}
 

@@ -125,8 +125,7 @@ class Joint:
         return states[1:]
 
     def cycle(self, top, steps):
-        """Loss [J] and states of a cycle between a state and its opposite load, with `steps` per half cycle.
-        """
+        """Loss [J] and states of a cycle between a state and its opposite load; `steps` per half cycle."""
         down = top.load * np.linspace(1.0, -1.0, steps + 1)[1:]
         states = [top]
         for load in np.concatenate([down, -down]):

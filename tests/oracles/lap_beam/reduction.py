@@ -53,8 +53,7 @@ class Structure:
         return tuple(3 * np.flatnonzero(body.nodes[1] < 1e-9) + 1 for body in self.bodies)
 
     def relative(self, axis):
-        """Relative displacement (P, n) of half 1 with respect to half 2 along an axis; along z the approach.
-        """
+        """Displacement (P, n) of half 1 relative to half 2 along an axis; along z the approach."""
         return sp.hstack(
             [
                 s * displacement_matrix(b, self.interface, axis)

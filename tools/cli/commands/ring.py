@@ -64,9 +64,9 @@ def _run_ring(args: argparse.Namespace) -> CommandResult:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ...pages.report.systems import RESONANCE_FIGURE_SIZE, resonance_panels
+        from ...pages.report.systems import RESONANCE_FIGURE_SIZE, resonance_charts
 
-        save_panels(args.plot, resonance_panels(points, example, args.fmus), RESONANCE_FIGURE_SIZE)
+        save_panels(args.plot, resonance_charts(points, example, args.fmus), RESONANCE_FIGURE_SIZE)
     misses = [line for point in points for line in point.list_deviations]
     for line in misses:
         print(f"missed: {line}", file=sys.stderr)
@@ -101,9 +101,9 @@ def _run_decays(args: argparse.Namespace, joint: Any) -> CommandResult:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ...pages.report.systems import DECAY_FIGURE_SIZE, decay_panels
+        from ...pages.report.systems import DECAY_FIGURE_SIZE, decay_charts
 
-        save_panels(args.plot, decay_panels(points, body), DECAY_FIGURE_SIZE)
+        save_panels(args.plot, decay_charts(points, body), DECAY_FIGURE_SIZE)
     rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
     document, written = {"system": args.system, "rows": rows}, (args.csv, args.plot)
     return CommandResult(json_document=document, lines=table.splitlines(), written_files=written)

@@ -46,7 +46,7 @@ DEFAULT_MAX_LOAD_ERROR = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadCurveExport:
-    """Load over displacement of the complete joint.
+    """Export of the load over the displacement of the complete joint, as a table.
 
     meaning       : content of the file in words
     columns       : variables displacement, load and stiffness

@@ -68,7 +68,7 @@ KGF_PER_MM2 = 9.80665e6
 BRINELL_AND_VICKERS = dict.fromkeys(("HB", "HBW", "HV"), KGF_PER_MM2)
 
 
-def _length(
+def _declare_length(
     meaning: str,
     low: float,
     high: float,
@@ -77,7 +77,7 @@ def _length(
     allows_zero: bool = False,
     has_sign: bool = False,
 ) -> DrawingQuantity:
-    """Length in mm with a plausible range [mm], and a limit [mm]."""
+    """Declare a length in mm, with its plausible range [mm] and a limit [mm]."""
     return DrawingQuantity(
         meaning,
         "mm",
@@ -90,8 +90,8 @@ def _length(
     )
 
 
-def _height(name: str, high: float) -> DrawingQuantity:
-    """Height of a rough surface in um, up to a plausible limit [um]."""
+def _declare_height(name: str, high: float) -> DrawingQuantity:
+    """Declare a roughness height in um, up to a plausible limit [um]."""
     return DrawingQuantity(
         f"{name} of machined surfaces",
         "um",
@@ -103,15 +103,15 @@ def _height(name: str, high: float) -> DrawingQuantity:
     )
 
 
-def _friction(meaning: str) -> DrawingQuantity:
-    """Coefficient of friction; clean pairs of the same metal in air have 0.8 to 1.5."""
+def _declare_friction(meaning: str) -> DrawingQuantity:
+    """Declare a coefficient of friction; clean pairs of the same metal in air have 0.8 to 1.5."""
     return DrawingQuantity(meaning, "1", "1", limits=(0.0, 2.0), allows_range=True)
 
 
-def _torque(
+def _declare_torque(
     meaning: str, low: float, high: float, *, allows_zero: bool = False, allows_range: bool = False
 ) -> DrawingQuantity:
-    """Torque in N.m with a plausible range [N.m]."""
+    """Declare a torque in N.m, with its plausible range [N.m]."""
     return DrawingQuantity(
         meaning,
         "N.m",
@@ -125,14 +125,14 @@ def _torque(
 
 QUANTITIES: Mapping[str, DrawingQuantity] = {
     # bolted joint
-    "plate": _length("length or width of a plate", 4.0, 2e4),
-    "at": _length("position of a bolt", 1.0, 2e4, allows_zero=True, has_sign=True),
-    "circle": _length("diameter of a pitch circle", 4.0, 2e4),
-    "grip": _length("clamped length", 0.5, 5e3),
-    "thickness": _length("thickness of a plate", 0.5, 3e3),
-    "hole": _length("diameter of a hole", 2.0, 150.0, limit=150.0),
-    "bearing": _length("diameter of a bearing surface", 3.0, 400.0, limit=400.0),
-    "washers": _length("diameter or thickness of a washer", 0.2, 400.0, limit=400.0),
+    "plate": _declare_length("length or width of a plate", 4.0, 2e4),
+    "at": _declare_length("position of a bolt", 1.0, 2e4, allows_zero=True, has_sign=True),
+    "circle": _declare_length("diameter of a pitch circle", 4.0, 2e4),
+    "grip": _declare_length("clamped length", 0.5, 5e3),
+    "thickness": _declare_length("thickness of a plate", 0.5, 3e3),
+    "hole": _declare_length("diameter of a hole", 2.0, 150.0, limit=150.0),
+    "bearing": _declare_length("diameter of a bearing surface", 3.0, 400.0, limit=400.0),
+    "washers": _declare_length("diameter or thickness of a washer", 0.2, 400.0, limit=400.0),
     "preload": DrawingQuantity(
         "preload of a bolt", "N", "N", (100.0, 3e6), other_units=("kN",), allows_range=True
     ),
@@ -145,12 +145,12 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
         allows_zero=True,
         allows_range=True,
     ),
-    "thread_friction": _friction("coefficient of friction in the thread"),
-    "head_friction": _friction("coefficient of friction under the head"),
+    "thread_friction": _declare_friction("coefficient of friction in the thread"),
+    "head_friction": _declare_friction("coefficient of friction under the head"),
     # faces
-    "Ra": _height("Ra", 100.0),
-    "Rq": _height("Rq", 100.0),
-    "Rz": _height("Rz", 600.0),
+    "Ra": _declare_height("Ra", 100.0),
+    "Rq": _declare_height("Rq", 100.0),
+    "Rz": _declare_height("Rz", 600.0),
     "longest_wave": DrawingQuantity(
         "longest wavelength of a roughness",
         "mm",
@@ -170,12 +170,12 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
         extra_units=BRINELL_AND_VICKERS,
         allows_range=True,
     ),
-    "mu": _friction("coefficient of friction of metals"),
+    "mu": _declare_friction("coefficient of friction of metals"),
     # gears
-    "module": _length("normal module", 0.1, 60.0),
+    "module": _declare_length("normal module", 0.1, 60.0),
     "teeth": DrawingQuantity("number of teeth", "1", "1"),
-    "width": _length("width of a face", 0.5, 3e3),
-    "radii": _length("radius of curvature of a flank", 0.5, 1e5, has_sign=True),
+    "width": _declare_length("width of a face", 0.5, 3e3),
+    "radii": _declare_length("radius of curvature of a flank", 0.5, 1e5, has_sign=True),
     "load": DrawingQuantity("normal load", "N", "N", (0.5, 1e8), other_units=("kN", "mN")),
     "pressure_angle": DrawingQuantity(
         "pressure angle", "deg", "rad", (1.0, math.inf), other_units=("rad",), has_sign=True
@@ -186,30 +186,30 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "profile_shift": DrawingQuantity(
         "profile shift coefficient", "1", "1", limits=(0.0, 2.0), allows_zero=True, has_sign=True
     ),
-    "centre_distance": _length("centre distance", 1.0, 2e4),
-    "tip_diameter": _length("tip diameter of a wheel", 0.5, 2e4),
+    "centre_distance": _declare_length("centre distance", 1.0, 2e4),
+    "tip_diameter": _declare_length("tip diameter of a wheel", 0.5, 2e4),
     "dedendum": DrawingQuantity("dedendum over the module", "1", "1", limits=(1.0, 2.0)),
     "backlash": DrawingQuantity(
         "backlash", "um", "m", (0.5, 2e4), limits=(0.0, 1e5), other_units=("m", "mm", "nm"), allows_range=True
     ),
     # bolts and gears
-    "torque": _torque("torque", 0.01, 1e7, allows_range=True),
+    "torque": _declare_torque("torque", 0.01, 1e7, allows_range=True),
     # harmonic drives
     "ratio": DrawingQuantity("ratio of a drive", "1", "1", has_sign=True),
     "K1": DrawingQuantity("stiffness up to T1", "N.m/rad", "N.m/rad"),
     "K2": DrawingQuantity("stiffness from T1 to T2", "N.m/rad", "N.m/rad"),
     "K3": DrawingQuantity("stiffness above T2", "N.m/rad", "N.m/rad"),
-    "T1": _torque("torque T1", 0.01, 1e5),
-    "T2": _torque("torque T2", 0.01, 1e5),
-    "rated_torque": _torque("rated torque", 0.01, 1e5),
+    "T1": _declare_torque("torque T1", 0.01, 1e5),
+    "T2": _declare_torque("torque T2", 0.01, 1e5),
+    "rated_torque": _declare_torque("rated torque", 0.01, 1e5),
     "hysteresis": DrawingQuantity(
         "hysteresis loss", "arcmin", "rad", (0.01, 60.0), other_units=("rad", "deg", "arcsec")
     ),
-    "starting_torque": _torque("starting torque", 1e-4, 100.0),
-    "running_torque": _torque("running torque", 1e-4, 100.0),
-    "back_driving_torque": _torque("back-driving torque", 1e-3, 1e4),
+    "starting_torque": _declare_torque("starting torque", 1e-4, 100.0),
+    "running_torque": _declare_torque("running torque", 1e-4, 100.0),
+    "back_driving_torque": _declare_torque("back-driving torque", 1e-3, 1e4),
     "efficiency": DrawingQuantity("efficiency", "1", "1"),
-    "motor_drag": _torque("motor drag", 1e-5, 100.0, allows_zero=True),
+    "motor_drag": _declare_torque("motor drag", 1e-5, 100.0, allows_zero=True),
     "corner": DrawingQuantity("relative width of a corner", "1", "1", has_sign=True),
 }
 """{option of `jointfmu new`: quantity}: the same option has the same quantity in all joints."""

@@ -9,8 +9,8 @@ from jointfmu.mechanics.footprint.distribution import (
     BOLT_POSITION_MEAN_NAMES,
     MAX_PATCHES,
     PressureDistribution,
+    encode_nodal_field,
     moment_pressure,
-    nodal_field_entries,
     position_means,
 )
 from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
@@ -72,7 +72,7 @@ def insert_field(
     )
     initial = reduction.reduced_distribution if shape.area_share.size > MAX_KEPT_NODES else None
     patches = reduce_patches(shape, MAX_PATCHES, initial)
-    lists = nodal_field_entries(reduction.reduced_distribution) | nodal_field_entries(patches)
+    lists = encode_nodal_field(reduction.reduced_distribution) | encode_nodal_field(patches)
     new_values: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     new_values["A_0"] = float(np.sum(contact_field.area))
     if bolt_positions is not None:
@@ -161,7 +161,7 @@ def _bolt_force_ratio(
     field_name: str,
     force_tolerance: float,
 ) -> float:
-    """Total bolt force over the force of the field [1]. ValueError if it differs from 1 by > tolerance."""
+    """Total bolt force over the contact force of a pressure field [1]; InputRefusal if it is not near 1."""
     if not 0.0 < force_tolerance < 1.0:
         raise InputRefusal(f"force_tolerance = {force_tolerance:g} is outside (0, 1)", "force_tolerance")
     if not 0.0 < preload < np.inf:

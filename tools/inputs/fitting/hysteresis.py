@@ -253,7 +253,7 @@ class FreeVibration:
         return np.concatenate([self.decay_points.frequency_deviation, self.decay_points.damping_deviation])
 
     def misfit(self, oscillator: Oscillator) -> Array:
-        """Misfits (2 n) [1] of an oscillator.
+        """Differences (2 n) [1] between the measured data and an oscillator.
 
         Frequencies: data over model minus 1; then damping ratios: data minus model.
         """
@@ -262,7 +262,7 @@ class FreeVibration:
         return np.concatenate([data.frequency / frequency - 1.0, data.damping_ratio - damping])
 
     def residuals(self, oscillator: Oscillator, residual_scale: Array) -> Array:
-        """Misfits of an oscillator over their standard deviations `residual_scale`."""
+        """Differences of data and oscillator (`misfit`) over their standard deviations `residual_scale`."""
         return self.misfit(oscillator) / residual_scale
 
 
@@ -287,11 +287,11 @@ class ForcedResponse:
         return np.ones(self.amplitude.size)
 
     def misfit(self, oscillator: Oscillator) -> Array:
-        """Misfits (n) [1] of an oscillator: logarithm of measured over computed amplitude."""
+        """Differences (n) [1] of data and oscillator: logarithm of measured over computed amplitude."""
         return np.log(
             self.amplitude / oscillator.response_amplitude(self.frequency, self.force, self.amplitude)
         )
 
     def residuals(self, oscillator: Oscillator, residual_scale: Array) -> Array:
-        """Misfits of an oscillator over their standard deviations `residual_scale`."""
+        """Differences of data and oscillator (`misfit`) over their standard deviations `residual_scale`."""
         return self.misfit(oscillator) / residual_scale

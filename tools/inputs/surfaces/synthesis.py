@@ -33,7 +33,7 @@ class Waves(CheckedParameters):
 
     @property
     def frequencies(self) -> Array:
-        """Frequencies gamma^n/L (n_max + 1,) [1/m]; n_max = int(ln(L/L_s)/ln gamma), L_s = 2 L/points."""
+        """Spatial frequencies gamma^n/L (n_max + 1,) [1/m], n <= ln(L/L_s)/ln gamma, L_s = 2 L/points."""
         count = int(np.log(0.5 * self.points) / np.log(self.gamma) * (1.0 + 1e-12)) + 1
         return np.asarray(self.gamma ** np.arange(count) / self.size, dtype=np.float64)
 

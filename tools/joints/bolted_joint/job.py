@@ -59,7 +59,7 @@ def make_figures(job_result: Any) -> list[Figure]:
         Figure(
             "Stiffness and damping over preload",
             "Normal (zz) and tangential (xx) direction; the damping is the viscous equivalent.",
-            stiffness_panels(job_result.ramps[_FMU_NAME]),
+            stiffness_charts(job_result.ramps[_FMU_NAME]),
             data_file=f"{_FMU_NAME}.csv",
         ),
         Figure(
@@ -71,8 +71,8 @@ def make_figures(job_result: Any) -> list[Figure]:
     ]
 
 
-def stiffness_panels(ramp_result: RampResult) -> list[Panel]:
-    """Panels of stiffness and damping as functions of the preload."""
+def stiffness_charts(ramp_result: RampResult) -> list[Panel]:
+    """Charts of stiffness and damping over the preload."""
     c, over = ramp_result.columns, "preload per bolt [kN]"
     load = c["preload"] / 1e3
     return [

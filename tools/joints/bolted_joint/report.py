@@ -132,7 +132,7 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     remaining_preload = float(working_preload(joint, preload))
     opening = compliances.opening_load(remaining_preload)
     limit = float(slip_force(joint, remaining_preload))
-    panel = _bolt_force_panel(spring, preload, moment, MAX_PLOTTED_LOAD_RATIO * opening)
+    panel = _bolt_force_chart(spring, preload, moment, MAX_PLOTTED_LOAD_RATIO * opening)
     share = compliances.bolt_force[:, 2]
     most_loaded = int(np.argmax(share))
     is_uneven = share[most_loaded] > (1.0 + EQUAL_SHARE_TOLERANCE) * np.mean(share)
@@ -209,8 +209,8 @@ def _name_bolts(bolts: Sequence[int]) -> str:
     return f"{names} (equal)" if len(bolts) > 1 else names
 
 
-def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, max_force: float) -> Panel:
-    """Panel of the force of each bolt over a tensile force along z, up to `max_force` [N]."""
+def _bolt_force_chart(spring: BoltedJointSpring, preload: float, moment: float, max_force: float) -> Panel:
+    """Chart of the force of each bolt over a tensile force along z, up to `max_force` [N]."""
     pulls = np.linspace(0.0, max_force, 27)
     columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
     series = [

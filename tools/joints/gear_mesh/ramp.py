@@ -54,20 +54,20 @@ def make_figures(job_result: Any) -> list[Figure]:
             "Stiffness and deflection over the mesh cycle",
             "At constant forces. The number of tooth pairs in contact changes; flanks with "
             "a larger force are stiffer.",
-            mesh_cycle_panels(GearMeshSpring.tabulate(load_default("gear_mesh").values)),
+            mesh_cycle_charts(GearMeshSpring.tabulate(load_default("gear_mesh").values)),
         ),
         Figure(
             "Torque over angle",
             "Torque on wheel 1 with wheel 2 fixed: backlash and contact on both flanks. Second chart: "
             "detail at first contact.",
-            torque_angle_panels(job_result.ramps["GearMesh"]),
+            torque_angle_charts(job_result.ramps["GearMesh"]),
             data_file="GearMesh.csv",
         ),
     ]
 
 
-def mesh_cycle_panels(spring: GearMeshSpring) -> list[Panel]:
-    """Panels of stiffness and deflection over two mesh cycles, at constant forces."""
+def mesh_cycle_charts(spring: GearMeshSpring) -> list[Panel]:
+    """Charts of stiffness and deflection over two mesh cycles, at constant forces."""
     phase = np.linspace(0.0, 2.0, 401)
     mesh = spring.joint
     count, _ = pairs_in_contact(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase)
@@ -84,8 +84,8 @@ def mesh_cycle_panels(spring: GearMeshSpring) -> list[Panel]:
     ]
 
 
-def torque_angle_panels(ramp_result: RampResult) -> list[Panel]:
-    """Panels of the torque on wheel 1 over its angle: for both flanks, and near the first contact."""
+def torque_angle_charts(ramp_result: RampResult) -> list[Panel]:
+    """Charts of the torque on wheel 1 over its angle: for both flanks, and near the first contact."""
     angle, torque = ramp_result.columns["phi1"] * 1e3, -ramp_result.columns["tau1"]
     first = int(np.argmax(torque > 0.0))
     rows = slice(max(first - 3, 0), first + 15)

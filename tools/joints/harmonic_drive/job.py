@@ -82,13 +82,13 @@ def make_figures(job_result: Any) -> list[Figure]:
             "Stiffness over torque",
             "First chart: the outputs K_WTS and K_TS (contact pair) of the FMU. Second chart: the contact "
             "pair on the scale of the paper's figures.",
-            stiffness_panels(result, job_result.validated_points),
+            stiffness_charts(result, job_result.validated_points),
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "Torque over wind-up",
             "Integral of dT/K_WTS; antisymmetric in the torque.",
-            [torque_angle_panel(result)],
+            [torque_angle_chart(result)],
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
@@ -99,7 +99,7 @@ def make_figures(job_result: Any) -> list[Figure]:
             "and friction_viscous, the efficiency load_loss, the back-driving torque load_loss_back. For "
             "CSF drives the running torque is an estimate; there the back-driving torque determines both, "
             "if the result is not negative.",
-            friction_panels(_spring_fmu(job_result)),
+            friction_charts(_spring_fmu(job_result)),
         ),
     ]
 
@@ -110,8 +110,8 @@ def _spring_fmu(job_result: Any) -> Path:
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
-def friction_panels(fmu_path: Path) -> list[Panel]:
-    """Panels of efficiency over load, and of back-driving torque, of the catalogue drives, by an FMU."""
+def friction_charts(fmu_path: Path) -> list[Panel]:
+    """Charts of efficiency over load and of back-driving torque of catalogue drives, from an FMU."""
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.drives_with_friction(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
@@ -138,8 +138,8 @@ def friction_panels(fmu_path: Path) -> list[Panel]:
     return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", series_with_diagonal)]
 
 
-def stiffness_panels(ramp_result: RampResult, validated_points: list[ValidatedPoint]) -> list[Panel]:
-    """Panels of the stiffness of the drive and of the contact pair over torque, with published points."""
+def stiffness_charts(ramp_result: RampResult, validated_points: list[ValidatedPoint]) -> list[Panel]:
+    """Charts of the stiffness of the drive and of its contact pair over torque, with published points."""
     c = ramp_result.columns
     points = [row.point for row in validated_points]
     drive = [Series(name, c["tau"], c[name]) for name in ("K_WTS", "K_TS")]
@@ -164,8 +164,8 @@ def stiffness_panels(ramp_result: RampResult, validated_points: list[ValidatedPo
     ]
 
 
-def torque_angle_panel(ramp_result: RampResult) -> Panel:
-    """Panel of the torque over the wind-up, for both directions."""
+def torque_angle_chart(ramp_result: RampResult) -> Panel:
+    """Chart of the torque over the wind-up, for both directions."""
     tau, angle = ramp_result.columns["tau"], np.degrees(ramp_result.columns["phi_rel"]) * 60.0
     both = np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau])
     return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])

@@ -50,7 +50,7 @@ def _mean_pressure(drive: _ContactPairDrive, torque: float) -> float:
     return drive.mean_over_peak * _peak_pressure(drive, torque)
 
 
-def _stiffness_ratio(drive: _ContactPairDrive, torque: float) -> float:
+def _joint_to_law_stiffness_ratio(drive: _ContactPairDrive, torque: float) -> float:
     """Torsional stiffness K_TS of the drive over K_T radius^2 [1]; K_T: tangential stiffness of the law."""
     tangential = evaluate_at_pressure(drive.law, _mean_pressure(drive, torque))["K_T"]
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
@@ -61,5 +61,5 @@ NOMINAL_PRESSURE = NominalPressureModel(
     default_load=lambda drive: drive.rated_torque,
     mean_pressure=_mean_pressure,
     peak_pressure=_peak_pressure,
-    stiffness_ratio=_stiffness_ratio,
+    joint_to_law_stiffness_ratio=_joint_to_law_stiffness_ratio,
 )

@@ -130,7 +130,7 @@ def _set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
 
 
 def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[SourcedNumber, str]:
-    """Speed ratio of input to output, from the published ratio and the fixed part; and an explanation."""
+    """Speed ratio input/output with its sign, which depends on the fixed part; and a text on the sign."""
     if ratio.value < 0.0:
         if options["fixed"]:
             raise ValueError(

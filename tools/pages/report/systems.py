@@ -58,7 +58,7 @@ def _resonance_figure(
         "circles are peaks of the spectrum of the simulated signal, the line is the square root of "
         f"{body.stiffness_output} over the inertia of the {moving}. Second chart: free decay at the first "
         f"{body.load_axis.name}, with the envelopes of the stated damping. Friction is left out.",
-        resonance_panels(vibrations, vibrating_joint, folder),
+        resonance_charts(vibrations, vibrating_joint, folder),
     )
 
 
@@ -93,14 +93,14 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
             else ". "
         )
         + "Because of friction the joint becomes stiffer and less damped as the amplitude decreases.",
-        decay_panels(decays, body),
+        decay_charts(decays, body),
     )
 
 
-def resonance_panels(
+def resonance_charts(
     vibrations: Sequence[FreeVibration], vibrating_joint: VibratingJoint, folder: Path
 ) -> list[Panel]:
-    """Panels: resonance over the load, and one free decay with the envelopes of the stated damping."""
+    """Charts: resonance over the load, and one free decay with the envelopes of the stated damping."""
     vibrations, body = sorted(vibrations, key=lambda point: point.load), vibrating_joint.vibration_test
     x = [body.load_axis.display_factor * point.load for point in vibrations]
     hertz = 0.5 / np.pi
@@ -126,8 +126,8 @@ def resonance_panels(
     ]
 
 
-def decay_panels(decays: Sequence[Decay], vibration_test: VibrationTest) -> list[Panel]:
-    """Panels of the first free decay, and of frequency and damping over the amplitude.
+def decay_charts(decays: Sequence[Decay], vibration_test: VibrationTest) -> list[Panel]:
+    """Charts of the first free decay, and of frequency and damping over the amplitude.
 
     The results of the decay are compared with those of the joint's hysteresis loops.
     """
@@ -214,8 +214,8 @@ def _thin_series(name: str, time: Array, values: Array) -> Series:
     return Series(name, time[indices], values[indices])
 
 
-def system_panels(system: System, results: SystemResults) -> list[Panel]:
-    """Panels of the joint loads over time; for an arm also of wind-up and tip error."""
+def system_charts(system: System, results: SystemResults) -> list[Panel]:
+    """Charts of the joint loads over time; for an arm also of wind-up and tip error."""
     over = "time [s]"
     outputs = joint_load_outputs(system)
     unit = " or ".join(dict.fromkeys(unit for _, unit in outputs.values()))
@@ -257,5 +257,5 @@ def _motion_figure(system: System, results: SystemResults) -> Figure:
         f"{1e3 * error[-1]:.2f} mm at the end, under the weight. The {soft} has the largest wind-up, "
         f"{1e3 * np.max(largest):.2f} mrad. The loads of the drives are those of a rigid arm: the effect of "
         "one drive's wind-up on the other drives is neglected.",
-        system_panels(system, results),
+        system_charts(system, results),
     )

@@ -45,7 +45,7 @@ class LawComparison:
         return abs(self.error) <= REFERENCE_TOLERANCE
 
     def to_json(self) -> dict[str, Any]:
-        """Convert to a JSON object, with the verdict as a word."""
+        """JSON object of the comparison, with the verdict as a word."""
         return asdict(self) | {
             "error": self.error if np.isfinite(self.error) else None,
             "computed": self.computed if np.isfinite(self.computed) else None,

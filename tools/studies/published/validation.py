@@ -55,7 +55,7 @@ class ValidatedPoint:
         return "pass" if self.has_passed else "miss"
 
     def to_json(self) -> dict[str, Any]:
-        """Convert to a JSON object, with the verdict as a word."""
+        """JSON object of the published number, the computed value, and the verdict as a word."""
         p = self.point
         return asdict(p) | {
             "where": dict(p.where),

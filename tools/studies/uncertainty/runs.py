@@ -116,10 +116,10 @@ def _open_journal(folder: Path | None, run_count: int, file_name: str) -> Iterat
 
 
 def _write_to_journal(
-    jobs: Iterable[Sequence[Entry]], journal_file: journal.Journal | None
+    finished_jobs: Iterable[Sequence[Entry]], journal_file: journal.Journal | None
 ) -> Iterator[Entry]:
     """Write the entries of each finished job to the journal, and yield them."""
-    for entries in jobs:
+    for entries in finished_jobs:
         if journal_file:
             journal_file.append_entries(*entries)
         yield from entries
@@ -146,7 +146,9 @@ def _run_locally(
 ) -> Generator[Sequence[Entry]]:
     """Do jobs on this machine, and yield the journal entries of each job when it ends.
 
-    If the process of a job dies, its runs are repeated one by one, to find the run that kills.
+    jobs : runs of each job, which one process does one after the other
+
+    If the process of a job dies, its runs are repeated one by one, to find the run that kills the process.
     """
     processes = workers or os.cpu_count() or 1
     with TemporaryDirectory(prefix="study-") as folder:

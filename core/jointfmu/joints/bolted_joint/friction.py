@@ -196,12 +196,12 @@ class FrictionLaw:
 
 
 def unit_displacements(patches: FrictionPatches) -> list[Array]:
-    """Tangential displacements (m, 3) [1, m] by a unit s_x, s_y and theta_z."""
+    """Tangential displacements (m, 3) [1, m] of the patches: an array each for unit s_x, s_y, theta_z."""
     return [tangential_displacement(patches, unit) for unit in np.eye(6)[TANGENTIAL_COMPONENTS]]
 
 
 def directional_stiffness(tangent: Array, direction: Array) -> Array:
-    """Stiffness (m) of tangents (m, 6) [Pa/m] in directions (m, 3)."""
+    """Tangential stiffness (m) [Pa/m] of patches in directions (m, 3), from their tangents (m, 6) [Pa/m]."""
     (xx, xy, yy, xt, yt, tt), (u, v, w) = tangent.T, direction.T
     return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
 

@@ -139,8 +139,8 @@ MAX_PATCHES = 22
 """Largest number of friction patches of a joint [1], each with sliders."""
 
 
-def nodal_field_entries(distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
-    """Entries {name: values} of a nodal field in a parameter file, for points or for friction patches."""
+def encode_nodal_field(distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
+    """Encode points or friction patches as entries {name: values} of [field] in a parameter file."""
     rows = dict(
         zip(
             _POINT_ENTRIES,

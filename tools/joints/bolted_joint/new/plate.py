@@ -73,7 +73,7 @@ class ClampedBolt:
 
     @property
     def head_hole_diameter(self) -> float:
-        """Diameter of the hole under the head [m]: of the washer, or of the plate."""
+        """Hole diameter [m] of the part under the bolt head: washer or plate."""
         return self.washers.washer.hole_diameter if self.washers else self.hole_diameter
 
 

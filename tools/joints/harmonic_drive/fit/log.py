@@ -25,8 +25,8 @@ from . import hysteresis
 from .drive import resize_drive
 from .log_checks import check_repeated_logs, check_torque_scale, doubt_about_friction, doubt_about_gravity
 from .log_friction import (
+    BACK_DRIVING_LOSS_NAME,
     FITTED_PARAMETERS,
-    LOAD_LOSS_BACK_NAME,
     FittedLogFriction,
     LinearTorqueTerms,
     accept_vanishing,
@@ -89,7 +89,7 @@ def fit(
         raise ValueError(f"{label}: some logs have no torque of the motor; expected it in all or in none")
     for log in logs:
         check_torque_scale(log, file.values, torque_constant)
-    samples = join_samples([log.samples.select(log.samples.is_friction_developed) for log in logs])
+    samples = join_samples([log.samples.select_samples(log.samples.is_friction_developed) for log in logs])
     logs_with_motor_angle = [
         log.samples for log in logs if np.all(np.isfinite(log.samples.motor_angle + log.samples.q))
     ]
@@ -188,7 +188,7 @@ def _fit_with_friction(
         fitted_log = replace(fitted_log, rotor_inertia_deviation=deviation)
     fitted_log, vanishing_notes = accept_vanishing(fitted_log)
     notes += vanishing_notes
-    if samples.has_sensor and LOAD_LOSS_BACK_NAME in fitted_log.solution.names_at_bound:
+    if samples.has_sensor and BACK_DRIVING_LOSS_NAME in fitted_log.solution.names_at_bound:
         notes.append(
             "while the load drives the motor, the friction falls with the load: check --torque-constant, and "
             "the scale of link_torque"
@@ -486,7 +486,7 @@ def fit_facts(
         "N.m",
         "root mean square, at the motor",
     )
-    early, late = samples.select(~samples.is_held_out), samples.select(samples.is_held_out)
+    early, late = samples.select_samples(~samples.is_held_out), samples.select_samples(samples.is_held_out)
     if late.dq.size and early.dq.size > len(fitted_names) + len(terms.unknown_names):
         early_fit = fit_samples(parameter_file, early, fitted_names, fitted_log.rotor_inertia)
         error = _root_mean_square(late.motor_torque - early_fit.evaluate_torque(late)[1])

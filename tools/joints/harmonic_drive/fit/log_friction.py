@@ -105,17 +105,18 @@ def filtered_motor_friction(drive: DriveParameters, samples: Samples, load: Arra
     )
 
 
-DRY_FRICTION = "friction_coulomb"
+DRY_FRICTION_NAME = "friction_coulomb"
 STRIBECK_FRICTION_NAME = "friction_stribeck"
 VISCOUS_FRICTION_NAME = "friction_viscous"
-LOAD_LOSS_NAME, LOAD_LOSS_BACK_NAME = "load_loss", "load_loss_back"
+LOAD_LOSS_NAME, BACK_DRIVING_LOSS_NAME = "load_loss", "load_loss_back"
+"""Names of the parameters: loss [1] of the transmitted torque if the motor drives, and if the load drives."""
 TEMPERATURE_COEFFICIENT_NAMES = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
 FITTED_PARAMETERS = (
-    DRY_FRICTION,
+    DRY_FRICTION_NAME,
     STRIBECK_FRICTION_NAME,
     VISCOUS_FRICTION_NAME,
     LOAD_LOSS_NAME,
-    LOAD_LOSS_BACK_NAME,
+    BACK_DRIVING_LOSS_NAME,
     *TEMPERATURE_COEFFICIENT_NAMES,
 )
 """Parameters of the friction that can be fitted."""
@@ -133,7 +134,7 @@ MIN_LOAD_RATIO = 0.02
 """Largest load over rated torque [1] that a log needs for a fit of the load-dependent losses."""
 START_VALUES = {
     LOAD_LOSS_NAME: 0.05,
-    LOAD_LOSS_BACK_NAME: 0.05,
+    BACK_DRIVING_LOSS_NAME: 0.05,
     TEMPERATURE_COEFFICIENT_NAMES[0]: 0.02,
     TEMPERATURE_COEFFICIENT_NAMES[1]: 0.01,
 }
@@ -235,13 +236,13 @@ def select_parameters(
     )  # with constant dry and viscous friction
     if np.max(np.abs(load)) < MIN_LOAD_RATIO * drive.rated_torque:
         text = f"the load stays below {MIN_LOAD_RATIO:g} times the rated torque"
-        reasons |= {LOAD_LOSS_NAME: text, LOAD_LOSS_BACK_NAME: text}
+        reasons |= {LOAD_LOSS_NAME: text, BACK_DRIVING_LOSS_NAME: text}
     else:
         back_driven = load * samples.dq < -MIN_LOAD_RATIO * drive.rated_torque * np.abs(samples.dq)
         if drive.load_loss_back < 0.0:
-            reasons[LOAD_LOSS_BACK_NAME] = "the start file sets it equal to load_loss"
+            reasons[BACK_DRIVING_LOSS_NAME] = "the start file sets it equal to load_loss"
         elif not back_driven.any():
-            reasons[LOAD_LOSS_BACK_NAME] = "the load never drives the motor"
+            reasons[BACK_DRIVING_LOSS_NAME] = "the load never drives the motor"
     known = samples.temperature[np.isfinite(samples.temperature)]
     if known.size == 0 or np.ptp(known) < MIN_TEMPERATURE_RANGE:
         span = "the log has no temperature" if known.size == 0 else f"{np.ptp(known):.2g} K of temperature"
@@ -290,7 +291,7 @@ def fit_samples(
     noise = None
     step = samples.dq.size // FIRST_FIT_SAMPLES
     if step > 1:
-        few = samples.select(np.arange(0, samples.dq.size, step))
+        few = samples.select_samples(np.arange(0, samples.dq.size, step))
         first = _iterate_load(parameter_file, changed, few, fitted_names, bounds, linear, rotor_inertia)
         linear, noise = first.linear_unknowns, first.solution.noise
         changed = parameter_file.with_values(first.solution.values, "calibration", "start")
@@ -474,7 +475,7 @@ def _start_values(
         for name, value in START_VALUES.items()
     }
     return {
-        DRY_FRICTION: dry,
+        DRY_FRICTION_NAME: dry,
         STRIBECK_FRICTION_NAME: 0.2 * dry,
         VISCOUS_FRICTION_NAME: max(float(linear_fit_values[1]), 0.02 * size / fastest),
     } | others

@@ -77,7 +77,7 @@ class Samples:
         """Whether the torque at the joint is measured for all samples."""
         return bool(np.all(np.isfinite(self.sensor_torque)))
 
-    def select(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
+    def select_samples(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
         """Select samples, by a mask or by indices."""
         return Samples(*(getattr(self, field.name)[sample_selection] for field in fields(self)))
 
@@ -383,7 +383,7 @@ def _read_dynamic_log(
     if "dq" in columns_by_name and "q" in columns_by_name:
         _check_speed_column(log_columns, filter_values(columns_by_name["q"], step, 1), samples.dq)
     _check_samples(log_columns.path, samples, drive)
-    return samples.select(np.arange(width // 2, even.size - width // 2, width))
+    return samples.select_samples(np.arange(width // 2, even.size - width // 2, width))
 
 
 def _time_step(log_columns: columns.Columns) -> tuple[Array, float]:

@@ -16,7 +16,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ....inputs.fitting.outcome import FitFacts
-from .log_friction import DRY_FRICTION, FittedLogFriction, LinearTorqueTerms
+from .log_friction import DRY_FRICTION_NAME, FittedLogFriction, LinearTorqueTerms
 from .log_reading import FILTER_NODE_COUNT, FILTER_WINDOW, Samples
 
 MAX_RIPPLE_CHANCE, MIN_RIPPLE_SHARE = 1e-6, 0.02
@@ -56,7 +56,7 @@ def find_ripple_terms(samples: Samples, fitted_log: FittedLogFriction) -> tuple[
     left = residual - matrix @ values
     variance = float(left @ left) / max(left.size - values.size, 1)
     covariance = variance * np.linalg.pinv(matrix.T @ matrix)
-    dry = float(getattr(fitted_log.drive, DRY_FRICTION))
+    dry = float(getattr(fitted_log.drive, DRY_FRICTION_NAME))
     found = []
     for number, harmonic in enumerate(FRICTION_HARMONICS):
         place = slice(2 * number, 2 * number + 2)
@@ -119,7 +119,7 @@ def add_ripples(
             periods = "once" if ripple.harmonic == 1 else f"{ripple.harmonic} times"
             facts[key] = value, unit, f"friction over the turn of the motor, {periods} a turn; {interval}"
             values[key], sources[key] = value, f"{source}; {interval}"
-    total, dry = sum(ripple.amplitude for ripple in ripples), parameter_file.values_by_name[DRY_FRICTION]
+    total, dry = sum(ripple.amplitude for ripple in ripples), parameter_file.values_by_name[DRY_FRICTION_NAME]
     if total > dry:
         note = (
             f"the friction over the turn of the motor, {total:.3g} N.m, exceeds friction_coulomb = "

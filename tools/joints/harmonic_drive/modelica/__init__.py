@@ -57,7 +57,7 @@ def _make_records(
 
 
 def _hysteresis_totals(spring: HarmonicDriveSpring) -> dict[str, float]:
-    """Total friction limit [N.m] of the hysteresis sliders, and their stiffness [N.m/rad] while all stick."""
+    """Total friction limit [N.m] of the hysteresis sliders, and their total stiffness [N.m/rad] in stick."""
     sliders = spring.hysteresis
     return {
         "hysteresis_friction": float(np.sum(sliders.friction_limit)),
