@@ -24,7 +24,7 @@ CHANGE = 1e-3
 
 
 def make_variant(name: str, k: int) -> str:
-    """Parameter file that no other build has had."""
+    """Parameter file with a number that no other build has used."""
     file = load_default(MODELS[name].joint)
     number = next(n for n in MODELS[name].parameter_fields() if file.values_by_name[n])
     value = file.values_by_name[number] * (1.0 - CHANGE * k)
@@ -47,7 +47,7 @@ def build(name: str, k: int, folder: Path) -> float:
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the table of build times."""
     quick = read_options(__doc__).quick
     print(f"{'FMU':24} {'first [s]':>10} {'variant [s]':>12} {'ratio':>7}")
     for name in [*MODELS][: 1 if quick else None]:

@@ -30,21 +30,21 @@ MAX_SHEAR_MOTION = 6e-6
 MEASURED = {"mu": 0.2, "h": 1.2e-6}
 """Parameters of the loops that are fitted: {name: value [SI]}."""
 TARGETS = {"follow": 0.1, "plot": 2.0, "report": 3.0, "new": 6.0}
-"""Seconds of the clock on two cores without other work."""
+"""Target times [s] on two idle cores."""
 PYTHON_LAW = "from jointfmu_tools.run import engine; engine.CompiledJoint = engine.PythonJoint; "
 PLOT = "import sys, jointfmu; jointfmu.load(sys.argv[1]).plot().savefig(sys.argv[2])"
 COMMAND = "from jointfmu_tools.cli import main; main()"
 NEW_COMMAND = (
     f"from jointfmu.files import results; import jointfmu_tools; results.set_result_store(None); {COMMAND}"
 )
-"""`new` of a contact whose points and patches are not in the cache."""
+"""Command `jointfmu new` for a contact whose points and patches are not in the cache."""
 
 Seconds = tuple[float, float]
-"""Seconds of the clock, and of the processors."""
+"""Elapsed time and processor time [s]."""
 
 
 def measure(action: Callable[[], object]) -> Seconds:
-    """Time of an action and of the processes that it waits for."""
+    """Time that an action takes, including the processes for which it waits."""
     clock, before = perf_counter(), os.times()
     action()
     return perf_counter() - clock, sum(os.times()[:4]) - sum(before[:4])
@@ -93,12 +93,12 @@ def compare_paths(file: Path, folder: Path) -> dict[str, Seconds]:
 
 
 def format_seconds(seconds: Seconds | None) -> str:
-    """Seconds of the clock and, in brackets, of the processors."""
+    """Format the elapsed time [s] and, in brackets, the processor time [s]."""
     return "" if seconds is None else f"{seconds[0]:8.2f} ({seconds[1]:.2f})"
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure and print the times."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--library-alone", action="store_true", help="omit the commands with the Python law")
     law_is_measured = not parser.parse_args().library_alone

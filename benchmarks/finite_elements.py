@@ -27,7 +27,7 @@ SPRING_STIFFNESS = 3e11
 
 
 def main() -> None:
-    """Print the times."""
+    """Print the times of the finite elements."""
     refinement = QUICK_REFINEMENT if read_options(__doc__).quick else REFINEMENT
     assembly = read_assembly(Path(str(files("jointfmu_models") / "assemblies" / "box_specimen.toml")))
     joint = BoltedContact.from_assembly(assembly, refinement)

@@ -31,14 +31,14 @@ def fastest(
 
 
 def print_processor_time(name: str, call: Callable[[], Result]) -> Result:
-    """Call once, and print the processor time."""
+    """Execute a call once, and print the processor time."""
     result, seconds = fastest(call, 1, process_time)
     print(f"{name}: {seconds:.2f} s", flush=True)
     return result
 
 
 def verdict(value: float, limit: float) -> str:
-    """Whether a value keeps its target."""
+    """Text: whether a value meets its target."""
     return "met" if value <= limit else "MISSED"
 
 
@@ -54,6 +54,6 @@ def read_options(description: str | None, **options: Mapping[str, object]) -> ar
 
 
 def require(available: bool, requirement: str) -> None:
-    """End with one line if the machine lacks a requirement."""
+    """End the script with one line if the machine lacks a requirement."""
     if not available:
         raise SystemExit(f"this machine is {sys.platform}; required: {requirement}")

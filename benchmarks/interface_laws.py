@@ -15,11 +15,11 @@ from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot
 
 POINTS, ROOTS, REPEATS = 1_000_000, 300, 5
 QUICK = 100, 3, 1
-"""POINTS, ROOTS and REPEATS with --quick."""
+"""Values of POINTS, ROOTS and REPEATS with --quick."""
 
 
 def solve_by_brentq(law, pressures):
-    """Logarithm of the largest spot, one scalar root for each pressure."""
+    """Log-area of the largest spot for each pressure, by a scalar root search."""
     spots = law.spot_distribution()
 
     def residual(u, target):
@@ -31,7 +31,7 @@ def solve_by_brentq(law, pressures):
 
 
 def main():
-    """Print the table."""
+    """Print the table of times."""
     points, roots, repeats = QUICK if read_options(__doc__).quick else (POINTS, ROOTS, REPEATS)
     pressures = 10.0 ** np.random.default_rng(1).uniform(5.0, 8.0, points)
     few = pressures[:roots]

@@ -22,7 +22,7 @@ from jointfmu_tools.pages.laboratory.assemble import write_laboratory
 
 CHANGES = 60
 SCREENS = {"desktop": (1400, 1000, False, 1), "phone": (390, 800, True, 4)}
-"""{name: (width, height, phone, how many times slower)}."""
+"""Screens {name: (width, height, whether it is a phone, slowdown of the processor)}."""
 VIEWS = ("curves", "path")
 MOVE = """(async () => {
   const lab = await laboratory;
@@ -46,7 +46,7 @@ MOVE = """(async () => {
 
 
 def main(options: argparse.Namespace) -> None:
-    """Print the times of every joint."""
+    """Print the times of every joint on the page."""
     harness.require(PROGRAM is not None, "Chromium (Debian: chromium)")
     pictures, changes = options.pictures, 3 if options.quick else CHANGES
     with tempfile.TemporaryDirectory() as folder, browser() as shown:

@@ -36,7 +36,7 @@ from mujoco import rollout
 PLUGIN = "HarmonicDriveSpring"
 JOINTS, STEPS, REPEATS, PYTHON_STEPS = 6, 2000, 21, 200
 QUICK = 2, 2
-"""REPEATS and PYTHON_STEPS with --quick."""
+"""Values of REPEATS and PYTHON_STEPS with --quick."""
 CASES = {
     "elastic": {},
     "hysteresis": {"hysteresis_loss": 3e-4},
@@ -48,11 +48,11 @@ CASES = {
 }
 """{losses of the drive: its parameters}."""
 TARGET = 2e-6
-"""Target for a joint and step [s]."""
+"""Target time per joint and step [s]."""
 
 
 def row_model(parameters: dict[str, float] | None) -> mujoco.MjModel:
-    """Row of links on locked motors, with drives between them if `parameters` is given."""
+    """MuJoCo model of a row of links on locked motors, with drives between them if `parameters` is given."""
     bodies = "".join(
         f'<body><joint name="motor{i}" type="hinge" armature="1e-4"/><inertial pos="0 0 0" mass="1" '
         f'diaginertia="1e-4 1e-4 1e-4"/></body><body><joint name="link{i}" type="hinge"/>'
@@ -73,14 +73,14 @@ def row_model(parameters: dict[str, float] | None) -> mujoco.MjModel:
 
 
 def start_motion(made: mujoco.MjModel) -> mujoco.MjData:
-    """Data with all links in motion."""
+    """MuJoCo data with all links in motion."""
     data = mujoco.MjData(made)
     data.qvel[1::2] = np.linspace(0.1, 0.2, JOINTS)
     return data
 
 
 def step_times(parameters: dict[str, float], repeats: int) -> tuple[float, float]:
-    """Times [s] of a step without drives, and of the drives; medians of runs in turn."""
+    """Times [s] of a step without drives, and of the drives alone; medians of alternating runs."""
     made = row_model(None), row_model(parameters)
     data = [start_motion(each) for each in made]
     times = np.empty((repeats, 2))
@@ -94,7 +94,7 @@ def step_times(parameters: dict[str, float], repeats: int) -> tuple[float, float
 
 
 def python_time(fmu: Path, parameters: dict[str, float], folder: Path, steps: int) -> float:
-    """Time [s] of a joint and step with the FMU called from a Python callback."""
+    """Time [s] per joint and step with the FMU called from a Python callback."""
     description = fmpy.read_model_description(str(fmu))
     refs = {v.name: v.valueReference for v in description.modelVariables}
     inputs, torques = [refs[n] for n in ("phi1", "w1", "phi2", "w2")], [refs["tau1"], refs["tau2"]]
@@ -138,7 +138,7 @@ def python_time(fmu: Path, parameters: dict[str, float], folder: Path, steps: in
 
 
 def print_plugin(quick: bool) -> None:
-    """Time of the plugin for a joint and step, beside the FMU called from Python."""
+    """Print the time of the plugin per joint and step, and of the FMU called from Python."""
     repeats, python_steps = QUICK if quick else (REPEATS, PYTHON_STEPS)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -162,7 +162,7 @@ SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "
 ENVIRONMENTS, THREADS, ROLLOUT_STEPS, ROUNDS = 4096, 2, 10, 5
 QUICK_ENVIRONMENTS = 16
 STEP = 5e-4
-"""Step [s]: at most a fifth of the period of the stiffest axis, 409 Hz."""
+"""Time step [s]: at most a fifth of the period of the stiffest axis, 409 Hz."""
 TARGETS = {"plain": 1.5, "plain, no friction": 1.5, "plugin": 2.5}
 
 
@@ -213,7 +213,7 @@ def initial_states(model: mujoco.MjModel, count: int) -> np.ndarray:
 
 
 def print_throughput(hysteresis: float | None, quick: bool) -> None:
-    """Processor time of an environment and step, over the rigid arm."""
+    """Print the processor time per environment and step, over that of the rigid arm."""
     count, rounds = (QUICK_ENVIRONMENTS, 1) if quick else (ENVIRONMENTS, ROUNDS)
     with tempfile.TemporaryDirectory() as folder:
         made = arm_models(Path(folder), hysteresis)
@@ -240,7 +240,7 @@ def print_throughput(hysteresis: float | None, quick: bool) -> None:
 
 
 def main() -> None:
-    """Run one of the two benchmarks: MuJoCo accepts a plugin of a name once in a process."""
+    """Run one of the two benchmarks: MuJoCo accepts only one plugin of a name in a process."""
     options = read_options(
         __doc__,
         hysteresis={

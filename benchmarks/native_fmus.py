@@ -50,13 +50,13 @@ from jointfmu.parameters import load_default
 HOSTS = ROOT / "tests" / "native" / "hosts"
 ROUNDS, REPEATS, PYTHON_CYCLES = 5, 101, 100
 QUICK = 1, 1, 2
-"""ROUNDS, REPEATS and PYTHON_CYCLES with --quick."""
+"""Values of ROUNDS, REPEATS and PYTHON_CYCLES with --quick."""
 ROWS = 4093  # as in native_fmus.c
 NATIVE, PLATFORM = ("fmi2", "fmi3"), "x86_64-linux"
 WIDE = "PassThrough4x9"
-"""FMU with as many inputs and outputs as the harmonic drive."""
+"""Pass-through FMU with as many inputs and outputs as the harmonic drive."""
 PASS_THROUGH = {"PassThrough": (2, 2), WIDE: (4, 9)}
-"""{FMU that passes its inputs on: (inputs, outputs)}."""
+"""Pass-through FMUs, whose outputs are their inputs: {name: (inputs, outputs)}."""
 LOOP = {"hysteresis_loss": 3e-4}
 FRICTION = LOOP | {
     "lost_motion": 1e-4,
@@ -76,7 +76,7 @@ RANGES = {name: dict(case.numbers.span) for name, case in CASES.items()} | {
 RANGES |= {label: RANGES[name] for label, (name, _) in OTHERS.items()}
 """Ranges of the inputs, those of the tables."""
 CONSTANT = ("preload", "moment")
-"""Inputs that are constant along the trajectory: a joint is tightened once."""
+"""Inputs that are constant along the input path: a joint is tightened once."""
 
 NS, US, KB = (1e9, "ns"), (1e6, "us"), (1e-3, "kB")
 COLUMNS = {
@@ -93,15 +93,14 @@ COLUMNS = {
     "start": ("start", *US),
     "memory": ("memory", *KB),
 }
-"""{what is measured: (heading, units per SI unit, unit)}."""
+"""Columns of the table: {measured quantity: (heading, printed units per SI unit, unit)}."""
 
 Times = dict[str, float]
 Ranges = Mapping[str, tuple[float, float]]
 
 
 def trajectories(ranges: Ranges) -> dict[str, np.ndarray]:
-    """Inputs (ROWS, n): smooth, with one input moving, with the preload moving too, under a constant moment,
-    random.
+    """Input paths (ROWS, n): smooth; one input moving; preload moving too; constant moment; random.
 
     An oscillation takes about 64 steps.
     """
@@ -124,7 +123,7 @@ def trajectories(ranges: Ranges) -> dict[str, np.ndarray]:
 
 
 def pass_through(name: str) -> dict[str, str]:
-    """C sources of an FMU that passes its inputs on."""
+    """C sources of an FMU whose outputs are its inputs."""
     inputs, outputs = PASS_THROUGH[name]
     paths = [
         p
@@ -152,7 +151,7 @@ def pass_through(name: str) -> dict[str, str]:
 
 
 class Linked(NamedTuple):
-    """Libraries of an FMU by flavour, and the instantiation token."""
+    """Libraries of an FMU by flavour, and its instantiation token."""
 
     libraries: dict[str, bytes]
     token: str
@@ -171,7 +170,7 @@ def as_built(name: str) -> Linked:
 
 
 def as_compiled(name: str) -> Linked:
-    """Libraries of an FMU that passes its inputs on."""
+    """Libraries of an FMU whose outputs are its inputs."""
     files = pass_through(name)
     units = {flavour: compiler.select_source_files(list(files), flavour[-1]) for flavour in NATIVE}
     made = {f: compiler.compile_libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
@@ -192,7 +191,7 @@ def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
 
 
 def build_host(folder: Path) -> Path:
-    """Compile native_fmus.c."""
+    """Compile the host native_fmus.c."""
     file = folder / "host"
     include = Path(fmpy.__file__).parent / "c-code"
     target = ("-target", compiler.ZIG_TARGETS[PLATFORM], "-s")  # for which zig has compiled its runtime
@@ -218,7 +217,7 @@ def native_times(
 
 
 def python_times(fmu: Path, unpacked: Path, cycles: int) -> Times:
-    """Times of the python flavour in fmpy; all inputs and all outputs take one call each."""
+    """Times of the python flavour in fmpy; one call sets all inputs, one call gets all outputs."""
     description = fmpy.read_model_description(str(fmu))
     slave = Instance(fmpy.extract(str(fmu), str(unpacked)), description, "benchmark", model_exchange=False)
     refs = {
@@ -253,7 +252,7 @@ def python_times(fmu: Path, unpacked: Path, cycles: int) -> Times:
 
 
 def measure(folder: Path, quick: bool) -> dict[tuple[str, str], Times]:
-    """{(name, flavour): times}, in rounds over all FMUs; those of the python flavour are in the folder."""
+    """Times {(name, flavour): times}, measured in rounds over all FMUs."""
     round_count, repeats, cycles = QUICK if quick else (ROUNDS, REPEATS, PYTHON_CYCLES)
     host = build_host(folder)
     native = [*libraries(folder)]
@@ -272,7 +271,7 @@ def measure(folder: Path, quick: bool) -> dict[tuple[str, str], Times]:
 
 
 def print_longest_steps(folder: Path) -> None:
-    """Median and longest of a million random steps of each FMU."""
+    """Print median and longest time of a million random steps of each FMU."""
     host = build_host(folder)
     print(f"{'random steps [us]':28} {'median':>9} {'1 in 1e4':>9} {'longest':>9}")
     for name, flavour, *rest in libraries(folder):
@@ -283,7 +282,7 @@ def print_longest_steps(folder: Path) -> None:
 
 
 def print_times(times: dict[tuple[str, str], Times]) -> None:
-    """Print the table and the targets."""
+    """Print the table of times and the targets."""
     print(f"{'FMU':28} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
     print(" " * 36 + "".join(f" {unit:>13}" for *_, unit in COLUMNS.values()))
     for name in (*MODELS, *OTHERS, *PASS_THROUGH):
@@ -301,7 +300,7 @@ def print_times(times: dict[tuple[str, str], Times]) -> None:
 
 
 def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str, str, float]]:
-    """Targets: FMU, what is measured, largest value [s, bytes]."""
+    """Targets: FMU, measured quantity, largest allowed value [s, bytes]."""
     drive = 1.5 * times[WIDE, flavour]["cycle_smooth"] + 30e-9
     # 1.2 times its ratio to the plain drive before temperature and two load losses were added
     everything = 1.2 * 3.09 * times["HarmonicDriveSpring", flavour]["cycle_smooth"]
@@ -319,7 +318,7 @@ def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str
 
 
 def cell(found: Times, key: str) -> str:
-    """A number in the column's unit; a dash if it was not measured."""
+    """Table cell: number in the unit of the column; a dash if it was not measured."""
     if key not in found:
         return "-"
     number = found[key] * COLUMNS[key][1]
@@ -327,7 +326,7 @@ def cell(found: Times, key: str) -> str:
 
 
 def print_elastic_sides(folder: Path, quick: bool) -> None:
-    """Times of the README's bolted joint with elastic sides, over the joint with rigid sides."""
+    """Print times of the README's bolted joint with elastic sides over those with rigid sides."""
     from oracles.joint_elements import PlateJoint, stiffnesses
 
     joint = PlateJoint.of("faces")
@@ -360,7 +359,7 @@ def print_elastic_sides(folder: Path, quick: bool) -> None:
 
 
 def main() -> None:
-    """Build, measure, print."""
+    """Build the FMUs, measure the times and print them."""
     flag = {"action": "store_true"}
     options = read_options(__doc__, worst=flag, elastic_sides=flag)
     require((sys.platform, platform.machine()) == ("linux", "x86_64"), "Linux on x86_64")

@@ -48,7 +48,7 @@ LOADS = {
 }
 """{system: (step [s], {input: largest random load [N.m, N]})}: the column's period is 0.5 ms."""
 RANDOM_STEPS, STEPS_FROM_REST = 1_000_000, 1000
-"""Steps of `--worst`, and steps between two resets."""
+"""Number of steps of `--worst`, and number of steps between two resets."""
 TOLERANCE = 5e-3
 MAX_HALVINGS = 6
 
@@ -77,7 +77,7 @@ def build_fmu(name: str, out: Path) -> Path:
 
 
 def print_longest_steps(out: Path, count: int) -> None:
-    """Median and longest times of random steps [us]."""
+    """Print median and longest time of random steps [us]."""
     print("system             median  1 in 1e4   longest  refused")
     for name, (step, loads) in LOADS.items():
         with unpack_fmu(build_fmu(name, out)) as (folder, described):
@@ -106,7 +106,7 @@ def print_longest_steps(out: Path, count: int) -> None:
 
 
 def main() -> None:
-    """Print the tables."""
+    """Print the tables of times."""
     options = read_options(__doc__, worst={"action": "store_true", "help": "times of random steps"})
     if options.worst:
         with tempfile.TemporaryDirectory() as folder:

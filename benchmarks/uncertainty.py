@@ -34,7 +34,7 @@ STUDIES = {
 
 
 def main():
-    """Print the table."""
+    """Print the table of times."""
     print(f"{SAMPLES} samples, {POINTS} points")
     print(f"{'joint':16} {'processor time of a sample [ms]':>32}")
     for joint, given in STUDIES.items():

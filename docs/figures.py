@@ -40,15 +40,16 @@ IMAGES = ROOT / "docs" / "images"
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 
 WIDTH, LEFT, ROW, HEAD, EDGE = 9.4, 6.5, 0.29, 0.36, 0.08
-"""Sizes of the house [inch]: width, that of the layers, height of a layer and of a title, margin."""
+"""Sizes in the architecture picture [inch]: width, width of the layers, height of a layer and of a title,
+margin."""
 PACKAGES = {"jointfmu_tools": "tools", "jointfmu_fmu_src": "fmu_src", "jointfmu": "core/jointfmu"}
 """{import name: folder} of the packages, from above."""
 LETTER = 0.078
-"""Width of a letter of the figures' style [inch], about."""
+"""Approximate width of a letter in the style of the figures [inch]."""
 
 
 def main() -> None:
-    """Write docs/images."""
+    """Draw the pictures in docs/images."""
     if sys.argv[1:] in ([], ["house"]):
         write_text(IMAGES / "house.svg", house())
     if sys.argv[1:] in ([], ["examples"]):
@@ -68,7 +69,7 @@ def main() -> None:
 
 
 def elastic(path: Path) -> None:
-    """The frequencies of the six-axis arm over its poses, with the drives of the shipped system."""
+    """Draw the natural frequencies of the six-axis arm over its poses, with the shipped drives."""
     sizes = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
     drives = [f"joint{i}={size}" for i, size in enumerate(sizes, 1)]
     robot = ROOT / "models" / "robots" / "six_axis.xml"
@@ -78,7 +79,7 @@ def elastic(path: Path) -> None:
 
 
 def example(script: Path) -> None:
-    """Run an example in an empty folder and keep the picture of its name."""
+    """Run an example in an empty folder and keep its picture."""
     environment = os.environ | {"MPLBACKEND": "agg"}
     with TemporaryDirectory() as folder:
         subprocess.run([sys.executable, script], cwd=folder, env=environment, check=True)
@@ -87,7 +88,7 @@ def example(script: Path) -> None:
 
 
 def resonance(path: Path) -> None:
-    """Draw the plot in which the tutorial ends."""
+    """Draw the plot at the end of the tutorial."""
     row = CatalogueRow(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
     drive = catalogue.make_drive_with_catalogue_law_from_row(
         row, sourced_numbers=catalogue.make_sourced_numbers(row, ratio=100.0)
@@ -101,7 +102,8 @@ def resonance(path: Path) -> None:
 
 
 def house() -> str:
-    """The house as SVG: three packages one above the other, with the layers of the import contracts."""
+    """Draw the architecture as SVG: three packages one above the other, with the layers of the import
+    contracts."""
     storeys = [(title, _layers(package)) for package, title in PACKAGES.items()]
     height = 2.0 * EDGE + sum(HEAD + ROW * len(layers) for _, layers in storeys)
     running = _inside()
@@ -122,7 +124,8 @@ def house() -> str:
 
 
 def svg(draw: Callable[[Figure], None], size: tuple[float, float], layout: str | None = "constrained") -> str:
-    """A figure of a size [inch] in few bytes: hundredths of a point, no description, no empty lines."""
+    """Context with a figure of a size [inch], saved as small SVG: coordinates in hundredths of a point, no
+    metadata."""
     with plots.apply_style():
         figure, text = Figure(figsize=size, layout=layout), io.StringIO()
         draw(figure)
@@ -143,13 +146,13 @@ def _layers(package: str) -> list[list[str]]:
 
 
 def _inside() -> set[str]:
-    """Names of the modules and packages of which something runs inside a Python FMU."""
+    """Names of the modules and packages that are part of a Python FMU."""
     files = [Path(name) for kind in KINDS.values() for name in collect_runtime_sources(kind)]
     return {name for file in files for name in (*file.parent.parts, file.stem)}
 
 
 def _storey(axes: Axes, top: float, layers: Sequence[Sequence[str]], running: set[str]) -> None:
-    """A row for each layer of a package, downwards from `top`."""
+    """Draw a package: a row for each layer, downwards from `top`."""
     for i, names in enumerate(layers):
         y = top - ROW * (i + 1)
         colours = [RED if name == "joints" else BLUE if name in running else "black" for name in names]
@@ -159,7 +162,7 @@ def _storey(axes: Axes, top: float, layers: Sequence[Sequence[str]], running: se
 
 
 def _words(axes: Axes, x: float, y: float, words: Sequence[tuple[str, str]]) -> None:
-    """Coloured words in a row about x."""
+    """Draw coloured words in a row centred at x."""
     widths = [LETTER * (len(word) + 2) for word, _ in words]
     start = x - 0.5 * sum(widths)
     for (word, colour), width in zip(words, widths, strict=True):
@@ -168,7 +171,7 @@ def _words(axes: Axes, x: float, y: float, words: Sequence[tuple[str, str]]) -> 
 
 
 def _legend(axes: Axes, top: float) -> None:
-    """What arrow and colours mean."""
+    """Draw the legend: meaning of arrow and colours."""
     x = EDGE + LEFT + 0.35
     arrow = {"arrowstyle": "->", "color": GREY, "lw": 1.5}
     axes.annotate("", (x - 0.18, EDGE), (x - 0.18, top), arrowprops=arrow)

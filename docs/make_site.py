@@ -17,11 +17,11 @@ ROOT = Path(__file__).resolve().parent.parent
 CARRIED = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
 """{text of the repository: page of the site that shows it}."""
 LABORATORY = "laboratory/page.html"
-"""Place of the laboratory in the site."""
+"""Path of the laboratory page in the site."""
 SCRIPTS = {"reference.md": "reference.py", "variables.md": "variables.py"}
 """{page of the site: script in this folder whose function `page` writes it}."""
 SITE = "site"
-"""Where mkdocs.yml puts the site."""
+"""Folder into which mkdocs.yml builds the site."""
 POLICY = "; ".join(
     [
         "default-src 'none'",
@@ -36,25 +36,26 @@ POLICY = "; ".join(
         "form-action 'self'",
     ]
 )
-"""Content-Security-Policy of a page: no host but the site's own. `file:` is for a site opened from a disk."""
+"""Content-Security-Policy of a page: connections only to the site itself. `file:` is for a site opened from a
+disk."""
 _LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+[^)\s#]+)(#[^)\s]*)?\)")
 
 
 def place(source: str, target: str) -> str | None:
-    """Path in the repository that a page's link leads to, None if it stays in the pages."""
+    """Path in the repository to which a link of a page leads; None if the link stays inside the pages."""
     path = posixpath.normpath(posixpath.join("docs", posixpath.dirname(source), target))
     return None if path.startswith("docs/") else path
 
 
 def address(path: str) -> str:
-    """Address in the site of a file of the repository."""
+    """Address of a repository file in the site."""
     if path in CARRIED:
         return CARRIED[path]
     return f"files/{path}.txt" if path.endswith((".md", ".py")) else f"files/{path}"
 
 
 def carried(name: str) -> str:
-    """A text of the repository as a page in `docs`."""
+    """Text of the repository as a page in `docs`."""
     text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
     outside = r"\]\((?!https?:|#)([\w./-]+)\)"
     return re.sub(
@@ -65,7 +66,7 @@ def carried(name: str) -> str:
 
 
 def laboratory() -> str:
-    """The page of the main job, else made here."""
+    """Laboratory page of the main job; it is made if it does not exist."""
     made = ROOT / "dist" / "report" / "laboratory.html"
     if made.is_file():
         return made.read_text(encoding="utf-8")
@@ -75,13 +76,13 @@ def laboratory() -> str:
 
 
 def page_of(script: str) -> str:
-    """A page as the script of this folder writes it; the folder is no package."""
+    """Page that a script of this folder writes; the script is loaded by its path."""
     return str(run_path(str(Path(__file__).with_name(script)))["page"]())
 
 
 def led(markdown: str, source: str) -> tuple[str, set[str]]:
-    """A page whose links out of `docs` lead to what the site carries, and those files; a folder has no page
-    and loses its link."""
+    """Page with its links out of `docs` led to files of the site, and the list of these files. Links to
+    folders are removed."""
     here, linked = posixpath.dirname(source) or ".", set()
 
     def lead(match: re.Match[str]) -> str:
@@ -99,7 +100,7 @@ def led(markdown: str, source: str) -> tuple[str, set[str]]:
 
 
 def lay_out(docs: Path) -> None:
-    """All that the generator reads, in the folder `docs`."""
+    """Copy all inputs of the site generator into the folder `docs`."""
     shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     made = {LABORATORY: laboratory()} | {page: page_of(script) for page, script in SCRIPTS.items()}
     for place, text in (made | {page: carried(name) for name, page in CARRIED.items()}).items():
@@ -126,7 +127,8 @@ def add_policy(site: Path) -> None:
 
 
 def build(out: Path) -> int:
-    """The site in the folder `out`; the status of the generator, which stops at links that lead nowhere."""
+    """Build the site into the folder `out`; returns the exit status of the generator, which fails for broken
+    links."""
     with TemporaryDirectory() as name:
         work = Path(name)
         lay_out(work / "docs")

@@ -10,14 +10,14 @@ from jointfmu_tools.api.drive_joint import DriveJoint
 import jointfmu
 
 WIDTH = 90
-"""Letters of a signature in one line."""
+"""Largest number of letters of a signature in one line."""
 BREAK = ",\n    "
 _LISTED = re.compile(r"^(\w[\w, ]*?) +: (.*)")
-"""A line of a docstring's list: names and what they are."""
+"""Pattern of a list item in a docstring: names and their meaning."""
 
 
 def page() -> str:
-    """The page (Markdown): every public name, the classes of joints, and of a class its public members."""
+    """Page (Markdown) with every public name, the classes of joints, and the public members of classes."""
     items = {f"jointfmu.{name}": getattr(jointfmu, name) for name in jointfmu.__all__}
     items |= {DriveJoint.__name__: DriveJoint}
     parts = ["# Reference", "Everything that `import jointfmu` has. Numbers are in SI units, unless stated."]
@@ -37,13 +37,13 @@ def members(item: type) -> list[str]:
 
 
 def entry(name: str, item: Any, level: str) -> list[str]:
-    """Heading, signature and help of one name; a property has no arguments."""
+    """Heading, signature and help of one public name; a property has no arguments."""
     call = [f"```python\n{name.rpartition('.')[2]}{_signature(item)}\n```"] if callable(item) else []
     return [f"{level} {name}", *call, markdown(inspect.getdoc(item) or "")]
 
 
 def _signature(item: Any) -> str:
-    """The arguments in one line, or one a line; the help says their types."""
+    """Arguments of a function in one line, or one per line if they are too long; without types."""
     found = [p for p in inspect.signature(item).parameters.values() if p.name != "self"]
     line = str(inspect.Signature([p.replace(annotation=p.empty) for p in found]))
     return line if len(line) < WIDTH else f"(\n    {line[1:-1].replace(', ', BREAK)}\n)"
@@ -63,7 +63,7 @@ def markdown(text: str) -> str:
 
 
 def _bullets(block: str) -> str:
-    """Lines `names : meaning`, going on below, as a list."""
+    """Convert lines `names : meaning`, with continuation lines, to a bullet list."""
     lines = []
     for line in block.splitlines():
         if match := _LISTED.match(line):

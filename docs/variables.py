@@ -9,7 +9,7 @@ from jointfmu.parameters import load_default
 
 
 def page() -> str:
-    """The page (Markdown): its text in this folder, then inputs, outputs and parameters of each FMU."""
+    """Page (Markdown): introduction from this folder, then inputs, outputs and parameters of each FMU."""
     text = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
     return "\n\n".join([text.rstrip(), *(_fmu(model) for model in MODELS.values())]) + "\n"
 

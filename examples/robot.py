@@ -20,7 +20,7 @@ ARM = {  # joint: (axis, length of its link [m], drive); as models/systems/six_a
 
 
 def tip(angles):
-    """Place of the tip (n, 3) [m] at the angles (n) [rad] of the axes."""
+    """Tip position (n, 3) [m] at axis angles (n) [rad]."""
     turn, place = Rotation.identity(), 0.0
     for (axis, length, _), angle in zip(ARM.values(), angles, strict=True):
         turn = turn * Rotation.from_euler(axis, angle[:, None])

@@ -10,7 +10,7 @@ import jointfmu
 
 
 def shell(words: str) -> None:
-    """Run `jointfmu WORDS`."""
+    """Run the command `jointfmu WORDS`."""
     subprocess.run([sys.executable, "-m", "jointfmu", *words.split()], check=True)
 
 

@@ -47,11 +47,12 @@ RADII = (0.010, 0.0125, 0.015, 0.02, 0.025)
 """Radii of the circles [m]."""
 OUTPUTS = ("K_zz", "K_rx", "K_ry", "K_rz", "p_max")
 FINE_CELLS = 20
-"""Cells from the bolt axis to the edge of the pressure; more than in a joint, to resolve the circles."""
+"""Number of cells from the bolt axis to the end of the pressure; more than in a joint, to resolve the
+circles."""
 
 
 def make_joint(options: str, folder: Path) -> ParameterFile:
-    """Make the joint of a drawing, with bolts of no stiffness."""
+    """Joint of a drawing whose bolts have zero stiffness."""
     path = folder / "plate.toml"
     words = f"new bolted-joint {options} --embedding 0 --material steel --Ra 0.8 --out {path}"
     with redirect_stdout(StringIO()):
@@ -97,7 +98,7 @@ def format_pressure(file: ParameterFile, shape: PressureDistribution, fine: Pres
 
 
 def print_pressures() -> None:
-    """Pressure of the cones and of finite elements."""
+    """Print the contact pressure by pressure cones and by finite elements."""
     usual = plate.MIN_CELLS_PER_RADIUS
     for name, options in PLATES.items():
         print(name)
@@ -118,7 +119,7 @@ STIFFNESSES = ("xx", "yy", "zz", "rx", "ry", "rz")
 
 
 def joint_facts(attached: str, example: dict[str, object]) -> dict[str, float]:
-    """Values that `jointfmu new bolted-joint` prints."""
+    """Results {name: value} that `jointfmu new bolted-joint` prints."""
     options = (
         dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | example | {"attached": attached}
     )
@@ -126,7 +127,8 @@ def joint_facts(attached: str, example: dict[str, object]) -> dict[str, float]:
 
 
 def print_attachments() -> None:
-    """Stiffness and load factor by attachment; a joint with one bolt beside VDI 2230."""
+    """Print stiffness and load factor for each attachment, and of a joint with one bolt compared with VDI
+    2230."""
     heading("", "attached", *(f"K_{name}" for name in STIFFNESSES), "load factor", "interface")
     for attached in ("faces", "edge", "heads"):
         found = joint_facts(attached, EXAMPLE)

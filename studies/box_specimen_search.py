@@ -31,9 +31,9 @@ MAX_LENGTHS = np.array([0.80, 0.80, 0.060, 0.080, 0.0900, 0.0800, 0.060])
 """Bounds [m]: a bolt head fits on the overhang, the flange is at least as thick as a washer is wide."""
 E, NU, DENSITY, ROWS = 1.5e11, 0.28, 7800.0, 0.3
 ACROSS, ALONG, MIDDLE = 1, 3, 2
-"""Bricks across a wall or ledge, along the height, along half of the opening."""
+"""Number of bricks across a wall or ledge, along the height, along half of the opening."""
 SAMPLES = 5
-"""Number of random lengths; the best of them starts a fit."""
+"""Number of random draws; the best one starts a fit."""
 STEP = 1e-3
 CASES = [
     ("continuity", "family", "open"),
@@ -47,7 +47,7 @@ CASES = [
 
 @dataclass(frozen=True)
 class Box:
-    """Half of the specimen with its contact; `bolts` (8, 2) [m]."""
+    """Half of the box specimen with its contact; `bolts` (8, 2) [m]."""
 
     body: ElasticBody
     interface: ContactInterface
@@ -55,7 +55,7 @@ class Box:
 
     @classmethod
     def of(cls, lengths: Array) -> "Box":
-        """Mesh of bricks for lengths (6 or 7) [m]; the number of bricks is always the same."""
+        """Mesh of bricks for lengths (6 or 7) [m]; the number of bricks does not depend on the lengths."""
         length, height, wall, flange, overhang, ledge, *floor = lengths
         half = np.array([0.5 * length, 0.5 * (ROWS + overhang)])
         depth = np.array([overhang + wall + ledge, overhang + wall, overhang, 0.0])
@@ -79,19 +79,19 @@ class Box:
         )
 
     def pressure(self, joint: BoltedJointParameters, force: float) -> Array:
-        """Pressure (q) [Pa] around bolts with a force [N] each, with the decay of the joint."""
+        """Pressure (q) [Pa] under a force [N] per bolt, with the pressure decay of the joint."""
         apart = self.interface.quadrature_position[:, None, :] - self.bolts
         each = joint.pattern.pressure_decay(np.hypot(*np.moveaxis(apart, -1, 0)))
         return np.asarray(np.sum(force * each / (self.interface.quadrature_area @ each), axis=1))
 
     def springs(self, joint: BoltedJointParameters, force: float) -> tuple[Array, Array]:
-        """Normal and tangential stiffness per area (q) [N/m3]."""
+        """Normal and tangential stiffness per area (q) [N/m3] of the contact."""
         pressure = np.maximum(self.pressure(joint, force), 1e4)
         normal = np.maximum(stiffness_curve(joint, pressure)[0], 1e3)
         return normal, float(replace(joint, critical_area="continuity").shear_stiffness_ratio()) * normal
 
     def modes(self, joint: BoltedJointParameters, force: float) -> NaturalModes:
-        """Six modes of two such halves."""
+        """Six lowest modes of two such halves."""
         return compute_modes((self.body,), self.interface, *self.springs(joint, force))
 
     def squares(self, joint: BoltedJointParameters, force: float, found: NaturalModes) -> Array:
@@ -109,7 +109,8 @@ class Box:
 
 
 def _line(places: Array) -> Array:
-    """Grid lines [m] through +-places, rising, the opening in between."""
+    """Grid lines [m] in ascending order at both signs of the given distances, with divisions of the opening
+    between."""
     right = _steps(np.concatenate([[0.0], places]), [MIDDLE, ACROSS, ACROSS, ACROSS])
     return np.concatenate([-right[:0:-1], right])
 
@@ -126,7 +127,8 @@ def _opening(x: Array, y: Array, half: Array) -> NDArray[np.bool_]:
 def fit_lengths(
     joint: BoltedJointParameters, force: float, start: Array, target: Array
 ) -> tuple[Array, Array]:
-    """Fit lengths [m] from a start; returns lengths and relative errors of the frequencies.
+    """Fit lengths [m] to measured frequencies; returns the lengths and the relative errors of the
+    frequencies.
 
     The derivatives come from Rayleigh's quotient.
     """
@@ -157,7 +159,7 @@ def fit_lengths(
 def random_starts(
     joint: BoltedJointParameters, force: float, count: int, closed: bool, seed: int, target: Array
 ) -> Iterator[Array]:
-    """Random lengths, each the best of SAMPLES draws."""
+    """Random start lengths, each of them the best of SAMPLES draws."""
     rng, size = np.random.default_rng(seed), 7 if closed else 6
     for _ in track_progress(range(count), "fits", count):
         tried: list[tuple[float, Array]] = []

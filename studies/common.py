@@ -35,7 +35,7 @@ def print_table(columns, rows):
 
 
 def spread(values, form="{:.2g}"):
-    """Format mean and standard deviation over the first axis."""
+    """Format mean and standard deviation of values over the first axis."""
     values = np.asarray(values)
     return f"{form.format(values.mean())} ± {form.format(values.std(ddof=1))}"
 

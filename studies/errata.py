@@ -30,56 +30,58 @@ SHEAR = 1.0 / sum(2.0 * (2.0 - nu) * (1.0 + nu) / e for nu, e in zip(NU, E_BODY,
 SIGMA, HARDNESS_COEFFICIENT = 835e6, 0.454 + 0.41 * NU[0]
 PSI = 5.454 * np.exp((1.0 - D) / 0.628) + 1.499
 SCAN, NODES, RADIUS, MEAN_OVER_PEAK = 0.5e-3, 1290, 0.017, 0.163
-"""Scanned length [m] and mesh nodes (published); radius [m] and mean over peak pressure (estimates)."""
+"""Scan length [m] and number of mesh nodes (published); radius [m] and mean over peak pressure (estimated).
+"""
 STICK = 0.5 ** (1.0 / 3.0)
-"""Half of the friction limit used, an estimate."""
+"""Traction ratio: half of the friction limit, an estimate."""
 PEAK, NOMINAL = HU["p_max.5"], HU["K_TS.nominal.5"]
 
 
 def curvature(r_m):
-    """R [m], Eq. 5."""
+    """Radius of curvature R [m], Eq. 5."""
     return r_m ** (D - 1) / (2.0 ** (3 - D) * np.pi**2 * G ** (D - 2) * np.sqrt(np.log(GAMMA)))
 
 
 def critical_area(r_m):
-    """s_ec [m2], Eqs. 7, 10."""
+    """Critical spot area s_ec [m2], Eqs. 7 and 10."""
     return np.pi * (np.pi * HARDNESS_COEFFICIENT * 2.8 * SIGMA / (2.0 * E)) ** 2 * curvature(r_m) ** 2
 
 
 def mean_pressure(r_m, s_l):
-    """F_r/S_r [Pa] of elastic spots up to s_l [m2]: Eqs. 18, 23 with s_l as their upper limit, Eq. 28."""
+    """Mean pressure F_r/S_r [Pa] of elastic spots up to the area s_l [m2]: Eqs. 18, 23 with upper limit s_l,
+    Eq. 28."""
     spot = 2.0 ** (5 - D) * E * np.sqrt(np.pi) * G ** (D - 2) * np.sqrt(np.log(GAMMA)) / (3 * r_m ** (D - 1))
     return spot * (3 - D) / (4 - D) * np.sqrt(s_l)
 
 
 def island_stiffness(s_l):
-    """K_re [N/m]: magnitude of Eq. 30 with s_l as its upper limit."""
+    """Normal stiffness K_re [N/m]: magnitude of Eq. 30 with s_l as upper limit."""
     return (D - 1) / (0.5 * D - 1) * E / np.sqrt(np.pi) * PSI ** (1.5 - 0.5 * D) * np.sqrt(s_l)
 
 
 def pressure_length(r_m):
-    """K_re over P [m]: proportional, and E cancels."""
+    """Ratio K_re/P [m] of stiffness to pressure: constant, because both are proportional to E."""
     s_l = 1e-12
     return island_stiffness(s_l) / mean_pressure(r_m, s_l)
 
 
 def ratio():
-    """K_T/K_N [1] of a spot at half of the friction limit, Eqs. 29, 39."""
+    """Stiffness ratio K_T/K_N [1] of a spot at half of the friction limit, Eqs. 29 and 39."""
     return 4.0 * SHEAR / E * STICK
 
 
 def printed(r_m, peak=PEAK, mean=MEAN_OVER_PEAK):
-    """K_TS [N] by Eq. 45 as printed: tangential stiffness of a set of spots per node times a diameter."""
+    """K_TS [N] by Eq. 45 as printed: tangential stiffness of a set of spots per node, times a diameter."""
     return NODES * ratio() * pressure_length(r_m) * mean * peak * 2.0 * RADIUS
 
 
 def energy(r_m):
-    """K_TS [N.m/rad] by the energy of a twist, with the same sets of spots."""
+    """K_TS [N.m/rad] by the energy of a unit twist, with the same sets of spots."""
     return printed(r_m) * RADIUS / 2.0
 
 
 def literal():
-    """Eq. 28 as printed: all spots elastic, K proportional to P; K_TS for some base radii."""
+    """Print K_TS for some base radii by Eq. 28 as printed: all spots elastic, K proportional to P."""
     print(f"K_T/K_N = {ratio():.3f}, psi = {PSI:.3f}, least F_r/S_r above s_ec ", end="")
     print(f"{mean_pressure(1e-6, critical_area(1e-6)) / 1e6:.0f} MPa")
     part = (PEAK / mean_pressure(1e-6, critical_area(1e-6))) ** 2
@@ -104,7 +106,7 @@ def literal():
 
 
 def over_area():
-    """Reading P = F_r/A_0: exponents, and K over r_m at the mean pressure of 5 N.m."""
+    """Print exponents and stiffness for the reading P = F_r/A_0."""
     powers = f"s_l^{0.5 * (D - 1):.3f} s_min^{1 - 0.5 * D:.3f}"
     print(f"P = F_r/A_0, all elastic: F ~ s_l^1.5, K ~ {powers}, so K ~ P^{(D - 1) / 3:.3f}")
     drive = load_default("harmonic_drive").values
@@ -115,20 +117,20 @@ def over_area():
 
 
 def growth(exponent):
-    """K_TS at 3 N.m, if K^(2/exponent) is linear in the torque, relative to the published value less 1."""
+    """Ratio of K_TS at 3 N.m to the published value, less 1, if K^(2/exponent) is linear in the torque."""
     ends = np.array([HU["K_TS.max.1"], HU["K_TS.max.5"]]) ** (2.0 / exponent)
     return float(np.mean(ends) ** (0.5 * exponent) / HU["K_TS.max.3"] - 1.0)
 
 
 def shapes():
-    """Growth of K_TS with the torque, for contact zones of fixed and of growing width."""
+    """Print the growth of K_TS with the torque, for contact zones of constant and of growing width."""
     print("K_TS ~ peak^q, peak^2 linear in the torque: K_TS(3 N.m) over the published one - 1")
     for name, q in (("fixed lobes", 1.0), ("lobes that widen", 1.5), ("Hertz", 2.0)):
         print(f"  q = {q:g} ({name}): {100 * growth(q):+.2f} %")
 
 
 def scales():
-    """K_WTS at 0.5 N.m by Eq. 46, for some scales of K_TS; K_FTS from 5294 at 5 N.m."""
+    """Print K_WTS at 0.5 N.m by Eq. 46 for scale factors of K_TS, with K_FTS from 5294 N.m/rad at 5 N.m."""
     top, drop = HU["K_TS.max.5"], HU["K_TS.max.5"] - NOMINAL
     rise = (top**2 - HU["K_TS.max.1"] ** 2) / 4.0
     low = np.sqrt(top**2 - 4.5 * rise) - drop
@@ -143,7 +145,8 @@ def scales():
 
 
 def physics():
-    """K_TS from the ring model's normal load and a roughness, K_N = N/(0.48 h), energy of a twist."""
+    """Print K_TS from the normal load of the ring model and a roughness, K_N = N/(0.48 h), by the energy of a
+    twist."""
     print("ring model's normal load 268 N at 5 N.m, K_N = N/(0.48 h), K_T/K_N = 4 G'/E without slip")
     for h in (6.4e-6, 8.8e-6):
         K = 268.0 / (0.48 * h)

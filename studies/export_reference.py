@@ -13,7 +13,7 @@ from oracles.calculix import cases, find_calculix
 
 
 def print_cases() -> None:
-    """Displacements by CalculiX and by the package, with the relative difference."""
+    """Print displacements by CalculiX and by the package, with the relative difference."""
     if not find_calculix():
         raise SystemExit("ccx is not installed; on Debian: apt-get install calculix-ccx")
     with tempfile.TemporaryDirectory() as name, contextlib.redirect_stdout(io.StringIO()):

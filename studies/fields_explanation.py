@@ -49,7 +49,7 @@ Array = NDArray[np.float64]
 
 
 def default_spring() -> BoltedJointSpring:
-    """Python spring of the default bolted joint."""
+    """Spring of the default bolted joint in Python."""
     return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
 
 
@@ -58,11 +58,11 @@ def default_spring() -> BoltedJointSpring:
 PRELOAD = 9e3
 """Preload of a bolt [N]."""
 CELLS_ACROSS_FLANGE = (10, 20, 66)
-"""Cells across the flange of the frame; 66 for 104 052 nodes."""
+"""Number of cells across the flange of the frame; 66 gives 104 052 nodes."""
 OPEN_PRESSURE = 0.45
 """Pressure below which nodes are open, over the mean pressure [1]."""
 UNEVENNESS = 0.1
-"""Growth of the pressure along the bolt rows [1], so that the field has no symmetry."""
+"""Increase of the pressure along the bolt rows [1], so that the field has no symmetry."""
 
 
 def nodal_field(cells: int, open_pressure: float) -> ContactField:
@@ -118,11 +118,11 @@ REDUCTIONS = {
     "60": (60, reduce_patches),
     "120 nodes": (120, reduce_points),
 }
-"""{label: (number of patches, reduction)}: patches fitted to all nodes, or some of the nodes."""
+"""Reductions {label: (number of patches, function)}: patches fitted to all nodes, or some of the nodes."""
 
 
 def print_normal() -> None:
-    """Deviation of forces and stiffnesses of few points from those of all nodes."""
+    """Print the deviation of forces and stiffnesses of few points from those of all nodes."""
     spring = default_spring()
     mean = contacts.mean_pressure(spring)
     heading("", "contact", "nodes", "points", "s", *contacts.ranges(1.0))
@@ -139,13 +139,13 @@ def print_normal() -> None:
 
 
 def sheared_contacts() -> Iterator[tuple[str, list[PressureDistribution]]]:
-    """Contacts of the table of friction; for several contacts the table has the largest deviation."""
+    """Contacts in the table of friction; for several contacts the table has the largest deviation."""
     yield from ((name, [shape]) for name, shape in contacts.contacts())
     yield f"{RANDOM_PLATES} random plates", [contacts.random_plate(seed) for seed in range(RANDOM_PLATES)]
 
 
 def friction_deviations(spring: BoltedJointSpring, shape: PressureDistribution) -> Array:
-    """Largest deviations (counts, motions, 2) [1] of force over gross slip, and of loop areas."""
+    """Largest deviations (counts, motions, 2) [1]: of the force over gross slip, and of the loop areas."""
     mean = contacts.mean_pressure(spring)
     largest = float(np.max(contacts.preloaded_approaches(spring.curve, shape, (mean, 0.0))))
     largest -= float(spring.curve.displacement[0])
@@ -162,7 +162,7 @@ def friction_deviations(spring: BoltedJointSpring, shape: PressureDistribution) 
 
 
 def print_friction() -> None:
-    """Deviation of friction force and loop areas from all nodes with many sliders; force over gross slip."""
+    """Print the deviation of friction force and loop areas from all nodes with many sliders."""
     spring = default_spring()
     heading("", "contact", "patches", *contacts.MOTIONS, "any pole: 95 %, all")
     for name, shapes in sheared_contacts():
@@ -174,7 +174,7 @@ def print_friction() -> None:
 
 
 def print_poles() -> None:
-    """Deviation of the force in gross slip about random poles: 95 % quantile, largest.
+    """Print the deviation of the force in gross slip about random poles: 95 % quantile and largest.
 
     The last column has the same patches without their radius, as single points.
     """
@@ -190,24 +190,25 @@ def print_poles() -> None:
 # sliders
 
 LEVEL_STEPS = (0.8, 0.4, 0.2, 0.1, 0.05)
-"""Steps of the slider heights in the logarithm of the load."""
+"""Steps between the slider heights in the logarithm of the load."""
 APPROACH = 0.4
 """Approach [m] of the loops under constant load."""
 SPHERE_AMPLITUDES = (0.1, 0.2, 0.5, 0.9)
-"""Force of the loops over the friction limit [1]."""
+"""Force amplitudes of the loops over the friction limit [1]."""
 TURNS, CIRCLE, STEPS_PER_TURN = 3, 1.5, (6, 12, 24, 48, 96, 4096)
-"""Turns of a circle, its radius over gross slip, and steps of each turn; the last are taken as exact."""
+"""Number of turns of a circle, its radius over gross slip, and steps per turn; the largest number is the
+reference."""
 
 
 def print_sliders() -> None:
-    """Tables of Mindlin's sphere."""
+    """Print the tables of Mindlin's sphere."""
     print_loops()
     print_motions()
     print_turns()
 
 
 def print_loops() -> None:
-    """Deviation of the backbone over the friction limit, and of loop areas."""
+    """Print the deviation of the backbone over the friction limit, and of the loop areas."""
     friction = sphere.FRICTION * float(sphere.load(APPROACH))
     heading("", "sliders", "backbone", *(f"loop {part:g}" for part in SPHERE_AMPLITUDES))
     x = np.linspace(0.0, 1.2 * sphere.FRICTION * APPROACH / sphere.RATIO, 121)
@@ -226,7 +227,8 @@ def print_loops() -> None:
 
 
 def print_motions() -> None:
-    """Deviations of combined motions: force over the largest friction limit, loss."""
+    """Print the deviations for combined motions: of the force over the largest friction limit, and of the
+    loss."""
     heading("", "sliders", *(what for name in sphere.MOTIONS for what in (f"{name}: force", "loss")))
     exact = {name: sphere.follow_springs(path) for name, path in sphere.MOTIONS.items()}
     for step in LEVEL_STEPS:
@@ -240,7 +242,8 @@ def print_motions() -> None:
 
 
 def print_turns() -> None:
-    """Circles of 1.5 times gross slip in the steady state: loss of a turn, force over the friction limit."""
+    """Print loss per turn and force over friction limit, for circles of 1.5 times gross slip in the steady
+    state."""
     heading("", "steps a turn", "loss", "force")
     sliders, gross = sphere.foundation(0.2), sphere.FRICTION * APPROACH / sphere.RATIO
 
@@ -265,17 +268,18 @@ PRELOADS = (2e3, 4.3e3, 9e3, 13e3, 25e3)
 MOMENTS = (0.0, 1200.0)
 """Moments on the joint [N.m]."""
 FIRST_PRELOADS = (1.0, 0.8, 1.25, 0.5, 2.0)
-"""Preload at which the joint slipped for the first time, over the present preload [1]."""
+"""Preload at which the joint slipped first, over the present preload [1]."""
 JOINT_AMPLITUDES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
-"""Force of the loops over the friction limit [1]."""
+"""Force amplitudes of the loops over the friction limit [1]."""
 SWING_PRELOAD, SWING, CYCLES = 9e3, 0.3, (1, 2, 20, 100)
-"""Oscillating normal load: preload [N], relative decrease of the normal force [1], cycles."""
+"""Oscillating normal load: preload [N], relative decrease of the normal force [1], number of cycles."""
 SLIDER_COUNTS = ((22, 10, 7), (40, 5, 3), (60, 3, 2))
-"""Patches, heights below and above the reference height, with about equally many sliders in total.
+"""Numbers of patches, and of slider heights below and above the reference height, with about equal total
+numbers of sliders. The first row is that of the joint.
 
 The first row is the one of the joint."""
 FORCE_POINTS = 20
-"""Displacements up to gross slip at which the force is compared."""
+"""Displacements over gross slip at which the force is compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,7 +298,7 @@ class AllNodes:
 
     @classmethod
     def preloaded(cls, spring: BoltedJointSpring, preload: float, moment: float) -> "AllNodes":
-        """The joint under a preload [N] and a moment [N.m]."""
+        """Friction of a joint under a preload [N] and a moment [N.m]."""
         shape = pressure_distribution(spring.joint.pattern)
         pressure = preload_pressure(spring.joint, shape, preload, moment)
         return cls(spring, shape.area_share, spring.curve.inverse(pressure))
@@ -349,13 +353,13 @@ def foundation_deviations(
 
 
 def largest_deviations(spring: BoltedJointSpring, first: float = 1.0) -> tuple[float, Array]:
-    """The largest deviations over PRELOADS and MOMENTS."""
+    """Largest deviations over all PRELOADS and MOMENTS."""
     found = [foundation_deviations(spring, preload, m, first) for preload in PRELOADS for m in MOMENTS]
     return max(force for force, _ in found), np.max([areas for _, areas in found], axis=0)
 
 
 def print_foundation() -> None:
-    """Tables of the joint's patches and sliders."""
+    """Print the tables of the joint's patches and sliders."""
     loops = [f"loop {x:g}" for x in JOINT_AMPLITUDES]
     heading("", "law", "first", "force", *loops)
     joints: dict[str, AnyBoltedJoint] = {
@@ -384,14 +388,15 @@ def print_foundation() -> None:
 
 
 def set_slider_counts(patches: int, below: int, above: int) -> None:
-    """Set the number of patches and slider heights of the joints that are made from now on."""
+    """Set the number of patches and slider heights of all joints made afterwards."""
     joint_module.MAX_PATCHES = patches
     slider_module.HEIGHTS_BELOW_REFERENCE, slider_module.SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE = below, above
     joint_module.find_friction_patches.cache_clear()
 
 
 def print_swings() -> None:
-    """Shear force at constant displacement under an oscillating normal force, over the first shear force."""
+    """Print the shear force at constant displacement under an oscillating normal force, over the first shear
+    force."""
     spring = default_spring()
     share, reference = spring.patches.area_share, spring.friction_law.foundation()
     start = spring.curve.inverse(preload_pressure(spring.joint, spring.patches, SWING_PRELOAD, 0.0))

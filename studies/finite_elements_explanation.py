@@ -48,7 +48,7 @@ BOX = Path(str(files("jointfmu_models") / "assemblies" / "box_specimen.toml"))
 
 
 class HardContact:
-    """Contact without roughness: a stiffness [Pa/m] 300 times that of the law at 1 MPa."""
+    """Contact law without roughness: its stiffness [Pa/m] is 300 times that of the law at 1 MPa."""
 
     def __init__(self, stiffness: float = 1e14) -> None:
         self.stiffness = stiffness
@@ -61,12 +61,13 @@ class HardContact:
 
 
 def interface_law(assembly: Assembly) -> Curve:
-    """Fractal law with the contact area of an assembly."""
+    """Interface law of Zhao 2018 with the contact area of an assembly."""
     return tabulate_approach(replace(load_default("bolted_joint").values, A_0=assembly.contact_area))
 
 
 def print_meshes(assembly: Assembly) -> None:
-    """Time and memory of the joint with equal and with different bodies; results on MESH_COUNT meshes."""
+    """Print time and memory for joints with equal and with different bodies, and results on MESH_COUNT
+    meshes."""
     other = replace(assembly, side1=replace(assembly.side1, E=1.01 * assembly.side1.E))
     for name, one in (("two equal bodies", assembly), ("two different bodies", other)):
         start, cpu = time.perf_counter(), time.process_time()
@@ -105,7 +106,7 @@ def format_pressures(solution: JointSolution) -> str:
 
 
 def changed_boxes(assembly: Assembly) -> Iterator[tuple[str, Assembly]]:
-    """The default assembly with one length changed, and a name of the change."""
+    """Assemblies with one changed length each, and names of the changes."""
     yield "default", assembly
     changes: list[dict[str, float]] = [
         *({"flange_thickness": t} for t in (0.015, 0.018, 0.022, 0.025, 0.03)),
@@ -127,7 +128,7 @@ def changed_boxes(assembly: Assembly) -> Iterator[tuple[str, Assembly]]:
 
 
 def print_lengths(assembly: Assembly) -> None:
-    """Influence of the lengths on peak pressure and pressure between bolts."""
+    """Print the influence of the lengths on the peak pressure and on the pressure between bolts."""
     print("published: peak 7.98, between 0.62 MPa")
     hard = BoltedContact.from_assembly(assembly).solve(HardContact(), PRELOAD)
     print(f"{format_pressures(hard)}  default, hard contact", flush=True)
@@ -137,7 +138,7 @@ def print_lengths(assembly: Assembly) -> None:
 
 
 def print_preloads(assembly: Assembly) -> None:
-    """Shape p/p_mean of the pressure over the preload."""
+    """Print the shape p/p_mean of the pressure for several preloads."""
     joint, curve = BoltedContact.from_assembly(assembly), interface_law(assembly)
     first: Any = None
     for force in (9e3, 15e3, 24e3):
@@ -180,7 +181,7 @@ PAPER = {
 CHOICES = [("continuity", "family"), ("continuity", "hertz"), ("printed", "family"), ("printed", "hertz")]
 PRELOADS = np.array([3e3, 6e3, 9e3, 12e3, 15e3, 18e3, 21e3, 24e3, 27e3, 30e3, 36e3])
 START = (0.327, 0.257, 0.0192, 0.052, 0.036)
-"""Start of the fit [m], near the best lengths of `search` with the default law."""
+"""Start lengths of the fit [m], near the best ones of `search` with the default law."""
 
 
 def published_mark(role: str, colour: str = "black") -> dict[str, object]:
@@ -204,7 +205,7 @@ def print_numbers(name: str, values: Array, form: str = "8.2f") -> None:
 
 
 def print_errors(found: Array, even: Array) -> None:
-    """Errors against the measurement [%], of the package and of the paper."""
+    """Print the errors [%] of the package and of the paper against the measurement."""
     target = measured_frequencies()
     for i, name in enumerate(NAMES):
         print_numbers(f"{name}: measured [Hz]", target[i])
@@ -230,7 +231,7 @@ def print_errors(found: Array, even: Array) -> None:
 
 
 def print_law_choices(assembly: Assembly) -> None:
-    """Rise from 9 to 15 kN for each choice of the law, at the same lengths."""
+    """Print the increase of the frequencies from 9 to 15 kN for each choice of the law, at equal lengths."""
     joint = load_default("bolted_joint").values
     for area, spot in CHOICES:
         one = replace(joint, critical_area=area, spot_stiffness=spot)
@@ -240,7 +241,7 @@ def print_law_choices(assembly: Assembly) -> None:
 
 
 def print_over_preload(assembly: Assembly, plot: Path | None) -> None:
-    """f1 over the preload (Fig. 12)."""
+    """Print the first frequency over the preload (Fig. 12), and draw it if asked for."""
     joint = load_default("bolted_joint").values
     states = [(float(p), 0.0) for p in PRELOADS]
     found, even = (
@@ -263,7 +264,7 @@ def print_over_preload(assembly: Assembly, plot: Path | None) -> None:
 
 
 def identify_lengths(assembly: Assembly) -> Assembly:
-    """Fit the lengths to the frequencies at 9 kN."""
+    """Fit the lengths to the measured frequencies at 9 kN."""
     start = box.specimen(assembly, START)
     found = box.identify(start, load_default("bolted_joint").values, STATES[0][0], measured_frequencies()[0])
     for name, value in found.lengths.items():
@@ -274,7 +275,7 @@ def identify_lengths(assembly: Assembly) -> Assembly:
 
 
 def print_frequencies(assembly: Assembly, plot: Path | None) -> None:
-    """Frequencies of an assembly, beside the measured ones."""
+    """Print the frequencies of an assembly and the measured ones."""
     joint = load_default("bolted_joint").values
     found, even = (box.frequencies(assembly, joint, STATES, is_pressure_uniform=e) for e in (False, True))
     print_errors(found, even)
@@ -285,7 +286,7 @@ def print_frequencies(assembly: Assembly, plot: Path | None) -> None:
 
 
 def search(options: argparse.Namespace) -> None:
-    """Fits from random lengths."""
+    """Print fits from random start lengths."""
     box_specimen_search.print_fits(measured_frequencies(), STATES, options.fits, options.seed)
 
 

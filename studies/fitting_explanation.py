@@ -19,13 +19,13 @@ from oracles.curve_measurements import errors
 from jointfmu.progress import track_progress
 
 WITHOUT_INERTIA = "the same, inertia of the rotor not stated"
-"""A third of the total inertia is that of the rotor."""
+"""Case without the motor inertia: a third of the total inertia is the rotor's."""
 FEWER_SEEDS = 6
-"""Factor by which the log without the inertia has fewer seeds: its fit takes three times as long."""
+"""Divisor of the number of seeds for the log without the inertia, whose fit takes three times as long."""
 
 
 def print_round_trips(options):
-    """Print hits within three standard deviations, and median errors."""
+    """Print how many fits are within three standard deviations of the truth, and median errors."""
     print(f"{'measurement':36} within three deviations   median error of each parameter")
     cases = curve_measurements.CASES | joint_measurements.CASES | drive_measurements.CASES
     with tempfile.TemporaryDirectory() as folder:

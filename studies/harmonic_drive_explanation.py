@@ -54,7 +54,7 @@ MODEL = MODELS["HarmonicDriveSpring"]
 ARCMIN = math.pi / 10800.0
 RPM = math.pi / 30.0
 USUAL_LOAD_LOSS = 0.05
-"""load_loss [1] of four drives, from starting and back-driving torque."""
+"""Usual parameter load_loss [1]: that of four drives, from starting and back-driving torque."""
 LINES = ("K1", "K2", "K3", "T1", "T2")
 
 
@@ -85,7 +85,7 @@ def compare_drives():
 
 
 def all_drives():
-    """Wind-up, hysteresis and lost motion of all drives."""
+    """Print wind-up, hysteresis and lost motion of all drives."""
     found = list(compare_drives())
     loops = [loop / item.numbers["hysteresis_loss"].value - 1.0 for item, *_, loop in found]
     lost = [play / item.numbers["lost_motion"].value for item, _, play, _, _ in found]
@@ -110,14 +110,14 @@ def all_drives():
 
 
 def other_maker():
-    """Drives of another maker: (CSF drive of the same size and ratio, printed lost motion [rad])."""
+    """Drives of another maker: (CSF drive of the same size and ratio, published lost motion [rad])."""
     path = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_zd.csv"
     for drive in csv.DictReader(path.read_text(encoding="utf-8").splitlines()):
         yield f"CSF-{drive['size']}-{drive['ratio']}", float(drive["lost_motion_arcmin"]) * ARCMIN
 
 
 def single_drives():
-    """Drives with published friction: default parameters, and without the published efficiency."""
+    """Drives with published friction: default parameters, and parameters without the published efficiency."""
     rows, both = [], [(item, catalogue_drive(item.name)) for item in drives_with_friction()]
     for item, file in both:
         n, drive = item.numbers, make_test_rig(MODEL, file)
@@ -173,7 +173,7 @@ def test_rig(**friction):
 
 
 def over_load():
-    """Published factor of the efficiency below rated torque; the point at half of it sets the model."""
+    """Print the efficiency factor below rated torque; the published point at half of it sets the model."""
     rows, carried = [], 172.0 / 50.0
     for name in ("ATRIAS", "M2"):
         full = published_points(name, "efficiency")[2000.0, 1.0]
@@ -188,7 +188,8 @@ def over_load():
 
 
 def over_speed():
-    """Published efficiency at rated torque; the slowest and the fastest point set the model."""
+    """Print the efficiency at rated torque over speed; the slowest and the fastest published point set the
+    model."""
     rows, carried = [], 172.0 / 50.0
     for name in ("ATRIAS", "M2"):
         known = {rpm: e for (rpm, _), e in published_points(name, "efficiency").items()}
@@ -204,7 +205,7 @@ def over_speed():
 
 
 def over_both():
-    """Factor of the efficiency over torque, at several speeds; catalogues print one curve for all speeds."""
+    """Print the efficiency factor over torque at several speeds; catalogues have one curve for all speeds."""
     known = {rpm: e for (rpm, _), e in published_points("ATRIAS", "efficiency").items()}
     factors, carried = (
         {share: k for (_, share), k in published_points("ATRIAS", "factor").items()},
@@ -225,7 +226,7 @@ def over_both():
 
 
 def worked_examples():
-    """Worked examples: part load from the efficiency at rated torque, with the usual load loss."""
+    """Print worked examples: efficiency at part load from that at rated torque, with the usual load loss."""
     rows = []
     for name in ("FR-40-160", "HFUC-20-80", "SHG-20-80"):
         ((_, full),) = published_points(name, "efficiency").items()
@@ -243,7 +244,7 @@ def worked_examples():
 
 
 def scaling():
-    """Published friction of each drive, beside that scaled from the other drives."""
+    """Print the published friction of each drive, and the friction scaled from the other drives."""
     rows = []
     for name, quantity, printed, found in leave_one_out():
         unit, digits = ("[mN m]", 0) if "torque" in quantity else ("[1]", 3)
@@ -257,7 +258,8 @@ def scaling():
 
 
 def robot():
-    """Measured friction of the base joint beside its catalogue drive; prediction for the other joints."""
+    """Print the measured friction of a robot's base joint, that of its catalogue drive, and predictions for
+    the other joints."""
     base, rows = measured_friction(), []
     print(f"\nDrag that fits the base joint best: {fit_drag():.4f} N m at 20 degrees C.")
     rows.append(("base joint, measured", *(f"{1e3 * x:.0f}" for x in base)))
@@ -274,7 +276,7 @@ def robot():
 
 
 def speed_exponents():
-    """Residuals of a friction a + b speed^p for some powers p.
+    """Print the residuals of friction laws a + b speed^p for some exponents p.
 
     a and b come from least squares for the joint, from the slowest and the fastest point for an efficiency.
     """
@@ -306,14 +308,15 @@ FRICTION = {
     "friction_viscous": 2e-4,
 }
 STRIBECK_ALONE = FRICTION | {"friction_coulomb": 0.0, "friction_viscous": 0.0}
-"""The worst case: all of the friction decreases with the speed."""
+"""Parameters of the worst case: all friction decreases with the speed."""
 DURATION = 0.2
 """Duration of two periods [s]."""
 REFERENCE_STEPS = 20_000
 
 
 def friction_heat(steps, speed, friction):
-    """E_loss [J] and work [J] of a motor without load; two periods of a speed with an amplitude [rad/s]."""
+    """Dissipated energy E_loss [J] and work [J] of a motor without load, for two periods of an oscillating
+    speed [rad/s]."""
     law = HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **friction))
     angle = 4.0 * np.pi * np.linspace(0.0, 1.0, steps + 1)
     w1, phi1 = speed * np.sin(angle), speed * DURATION / (4.0 * np.pi) * (1.0 - np.cos(angle))
@@ -331,7 +334,7 @@ def friction_heat(steps, speed, friction):
 
 
 def heat():
-    """Error of E_loss over the work through the drive, against REFERENCE_STEPS steps. There is no load."""
+    """Print the error of E_loss over the work, against REFERENCE_STEPS steps, without load."""
     speeds = (10.0, 50.0, 200.0, 1000.0)
     for title, friction in (("all friction", FRICTION), ("Stribeck friction alone", STRIBECK_ALONE)):
         exact = {speed: friction_heat(REFERENCE_STEPS, speed, friction) for speed in speeds}

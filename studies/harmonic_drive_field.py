@@ -35,7 +35,7 @@ DRIVE = load_default("harmonic_drive").values
 HU = {point.id: float(point.value) for point in read_points("hu2023")}
 TORQUES = (1.0, 3.0, 5.0)
 LEAST, BEST, MOST = 0.195e-3, 0.21e-3, 0.215e-3
-"""Radial deformations [m] of Hu 2023, section 3.4."""
+"""Smallest, best and largest radial deformation [m] of Hu 2023, section 3.4."""
 MAXIMA = [HU[f"K_TS.max.{T:.0f}"] for T in TORQUES]
 MINIMA = [HU[f"K_TS.min.{T:.0f}"] for T in TORQUES]
 CHANGES = [HU[f"K_TS.eccentricity.{T:.0f}"] for T in TORQUES]
@@ -44,7 +44,7 @@ DEG = np.radians(1.0)
 
 
 def checks():
-    """Closed forms and convergence, for a ring of the default radius and 0.5 mm."""
+    """Print closed forms and convergence for a ring of the default radius and 0.5 mm thickness."""
     ring, r, w = Ring.of(2.09e11, 0.295, 0.5e-3), DRIVE.radius, 2e-4
     exact = opposite_forces(ring, r, 1e3)
     counts = (16, 32, 64, 128)
@@ -73,12 +73,12 @@ def checks():
 
 
 def opening(drive, rings, torque):
-    """Section at the cup's opening."""
+    """Equilibrium of the section at the opening of the cup."""
     return section(drive, rings, 0.0, tooth_traction(drive, rings, torque))
 
 
 def fields():
-    """The field over the torque, and what the drive's default has instead."""
+    """Print the pressure field over the torque, and the corresponding parameters of the default drive."""
     print("rings    T  peak MPa  centre deg  load kN  mean/peak  within 35 deg  open part  K_TS unscaled")
     for T in (0.0, *TORQUES):
         nodes = field(DRIVE, SIZE_14, tooth_traction(DRIVE, SIZE_14, T))[0]
@@ -93,7 +93,7 @@ def fields():
 
 
 def row(name, peak, centre, nodes):
-    """One line of the table of fields."""
+    """Print one row of the table of fields."""
     load = nodes.share * nodes.pressure
     near = np.abs(nodes.position[..., 0]) > DRIVE.radius * np.cos(35 * DEG)
     closed = np.sum(nodes.share[nodes.pressure > 0.0])
@@ -104,7 +104,8 @@ def row(name, peak, centre, nodes):
 
 
 def forces():
-    """What the published peak would need, and the power balance of the tooth load."""
+    """Print the forces that the published peak pressure would require, and the power balance of the tooth
+    load."""
     area, strength = SIZE_14.wall * contact_length(DRIVE), DRIVE.flexspline.sigma_y
     for T in (0.0, 5.0):
         lobe = 0.5 * DRIVE.mean_over_peak * peak_pressure(DRIVE, T)[0] * DRIVE.A_0
@@ -127,7 +128,7 @@ def forces():
 
 
 def cup():
-    """Stiffness of a cup against ovalling over that of the rings in its contact.
+    """Print the stiffness of the cup against ovalling, over that of the rings in its contact.
 
     Rayleigh's deformation without stretching, w (1 - z/L) cos(2 theta): bending by 3 w/r^2 around and
     twist by 3/2 w/(r L), energy D/2 (bending^2 + 2 (1 - nu) twist^2), one wall throughout.
@@ -138,7 +139,7 @@ def cup():
 
 
 def uniform(torque):
-    """Section at the opening with the torque spread evenly, friction in proportion to the pressure."""
+    """Section at the opening with uniformly distributed torque, friction in proportion to the pressure."""
     free = opening(DRIVE, SIZE_14, 0.0)
     area = 2.0 * np.pi * DRIVE.radius**2 * contact_length(DRIVE)
     shape = free.pressure / np.average(free.pressure, weights=free.weight)
@@ -146,7 +147,7 @@ def uniform(torque):
 
 
 def published():
-    """Ring model with its own pressures and one scale, beside the published numbers."""
+    """Print the ring model with its own pressures and one scale factor, and the published numbers."""
     scale = NOMINAL / stiffness(DRIVE, SIZE_14, 5.0)
     print(f"published over computed K_TS at 5 N.m: {scale:.3g}")
     for T, most, least, change in zip(TORQUES, MAXIMA, MINIMA, CHANGES, strict=True):
@@ -193,7 +194,7 @@ VARIANTS = {
 
 
 def variants():
-    """Estimates varied one by one."""
+    """Print the results with the estimated data varied one at a time."""
     print("estimate             peak MPa at 5   K 1/5   K 3/5   0.195 to 0.215 mm at 1 %   10 um at 1 %")
     print(
         f"{'published':20} {PEAK / 1e6:13.2f} {MAXIMA[0] / MAXIMA[2]:7.3f} {MAXIMA[1] / MAXIMA[2]:7.3f}",
@@ -212,7 +213,7 @@ def variants():
 
 
 def draw(path):
-    """The field at the opening over the angle."""
+    """Draw the pressure at the opening over the angle."""
     with plots.open_figure(path, (7.2, 3.4)) as figure:
         axes = figure.subplots()
         for T, colour in zip((0.0, 1.0, 5.0), (plots.GREY, plots.BLUE, plots.RED), strict=True):

@@ -34,13 +34,13 @@ from jointfmu.progress import track_progress
 
 OTHER_COEFFICIENTS = (0.03, 0.1, 0.3, 0.6)
 CYCLE_AMPLITUDES = slice(4, None, 2)
-"""The amplitudes with a full cycle."""
+"""Indices of the AMPLITUDES with a full cycle."""
 STEPS = 8
-"""Load steps from one end of a cycle to the other."""
+"""Number of load steps from one end of a cycle to the other."""
 
 
 def reduced_joints(structure, gap=None):
-    """ReducedBeam beam on its sliders for each law, with plane faces or a gap [m] at places x, y."""
+    """Joint of the reduced beam for each law, with plane faces or with a gap [m] at positions x, y."""
     preload, found = data()["beam"]["preload"], {}
     for name, law in laws().items():
         curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())
@@ -65,7 +65,7 @@ def masing_curves(joint, turns=CYCLE_AMPLITUDES):
 
 
 def print_linear_frequencies(structure, found):
-    """Frequencies of small motions; returns the first frequency of the glued lap [Hz]."""
+    """Print the frequencies of small motions; returns the first frequency of the glued lap [Hz]."""
     count = structure.interface.quadrature_area.size
     heading("Linear frequencies [Hz]", "interface", "f1", "f2", "f3")
     row("solid bar (Timoshenko)", f"{solid_bar_frequency(structure.beam):.1f}", "", "")
@@ -77,7 +77,7 @@ def print_linear_frequencies(structure, found):
 
 
 def print_over_amplitude(title, curve, simple, joint):
-    """Frequency and damping over amplitude, by full cycles and by Masing's rules."""
+    """Print frequency and damping over the amplitude, by full cycles and by Masing's rules."""
     heading(title, "q [m kg^0.5]", "tip [um]", "acceleration [m/s2]", "f [Hz]", "zeta [%]", "by Masing [%]")
     for q, f, zeta, other in zip(curve.q, curve.frequency, curve.damping, simple.damping, strict=True):
         tip = q * joint.beam.tip
@@ -86,7 +86,8 @@ def print_over_amplitude(title, curve, simple, joint):
 
 
 def print_beside_published(ours, name, glued):
-    """Predictions beside a published curve, `flat` or `curved`, with the published viscous damping added.
+    """Print predictions next to a published curve, `flat` or `curved`, with the published viscous damping
+    added.
 
     Trivial predictions: a lap in one piece, and the published frequency of small motions.
     """
@@ -106,7 +107,7 @@ def print_beside_published(ours, name, glued):
 
 
 def print_meshes():
-    """First frequency of small motions on other meshes, law `roughness`."""
+    """Print the first frequency of small motions on other meshes, with the law `roughness`."""
     law, preload = laws()["roughness"], data()["beam"]["preload"]
     heading("Meshes", "near holes [mm]", "far [mm]", "layers", "patches", "f1 [Hz]")
     for near, far, layers in ((4e-3, 6e-3, 2), (2.6e-3, 3.6e-3, 2), (2.6e-3, 3.6e-3, 3), (2.6e-3, 3.6e-3, 4)):
@@ -118,7 +119,7 @@ def print_meshes():
 
 
 def print_scanned_form():
-    """Beam with the scanned form of the lap and the published friction, beside the published curve."""
+    """Print results with the scanned form of the lap and published friction, next to the published curve."""
     found = reduced_joints(Structure.of(beam(), Fineness()), form())
     friction, small = data()["published"]["friction"], published("curved").frequency[0]
     heading("With the scanned form", "interface", "f1", "miss [%]", "share of the lap that carries 90 %")
@@ -136,7 +137,7 @@ def print_scanned_form():
 
 
 def print_plane_faces(images=False):
-    """Prediction with plane faces, and beside the published curves."""
+    """Print predictions with plane faces, next to the published curves."""
     structure = Structure.of(beam(), Fineness())
     mass = sum(body.mass.sum() for body in structure.bodies) * 2.0 / 3.0
     nodes = sum(body.unknown_count for body in structure.bodies) // 3
@@ -193,9 +194,10 @@ UNKNOWN = {
     "Young's modulus [Pa]": (190e9, 210e9, False),
     "crown of both faces together [m]": (-25e-6, 25e-6, False),
 }
-"""Least, largest, and whether the logarithm is even. Bolts of 5/16 inch at 5 to 20 N.m with a nut factor of
-0.2; friction as `jointfmu new` has it where nothing is stated (VDI 2230); machined faces; stainless to
-carbon steel; flat to the width of a hair. A crown touches in the middle first, a hollow (< 0) at the ends."""
+"""Uncertain properties: (smallest value, largest value, whether uniform in the logarithm). Bolts of 5/16 inch
+at 5 to 20 N.m with a nut factor of 0.2; friction as the default of `jointfmu new` (VDI 2230); machined faces;
+stainless to carbon steel; an assumed flatness: a crown touches in the middle first, a hollow (< 0) at the
+ends."""
 SAMPLES, SEED = 20, 1
 MESH = Fineness(near=4e-3, far=6e-3, layers=2)
 DENSITY = 7850.0
@@ -205,7 +207,7 @@ BAND = (0.05, 0.5, 0.95)
 
 
 def draw_samples():
-    """Latin hypercube samples (SAMPLES, unknowns)."""
+    """Latin hypercube samples (SAMPLES, unknowns) of the uncertain properties."""
     low, high, log = (np.array(column) for column in zip(*UNKNOWN.values(), strict=True))
     even = qmc.LatinHypercube(len(UNKNOWN), rng=SEED).random(SAMPLES)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -213,7 +215,8 @@ def draw_samples():
 
 
 def predict_measured_beam(one, preload, friction, Ra, modulus, height):
-    """Frequency [Hz] of small motions, damping ratios at the accelerations, decrease of the frequency [1]."""
+    """Frequency [Hz] of small motions, damping ratios at the measured accelerations, decrease of the
+    frequency [1]."""
     known, entries = measured("measured_beam"), data()
     one = replace(one, E=modulus)
     law = joint_law({"E": modulus, "nu": one.nu, "A_0": entries["A_0"], "Rq": 1.25 * Ra}, H=entries["H"])
@@ -231,7 +234,7 @@ def predict_measured_beam(one, preload, friction, Ra, modulus, height):
 
 
 def print_measured_beam():
-    """Median and 90 % band of the prediction, beside the measurement and a solid bar without loss."""
+    """Print median and 90 % band of the prediction, the measurement, and a solid bar without loss."""
     known = measured("measured_beam")
     one = replace(beam(), side=known["thickness"], width=known["width"], density=DENSITY)
     rows = []

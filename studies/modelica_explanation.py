@@ -30,21 +30,23 @@ from jointfmu.mechanics.sliders import UNIFORM_DEVIATION
 from jointfmu.parameters import load_default
 
 CHANGED, BENT, STILL = 0.02, 0.2, 1e-4
-"""Of the bolted joint, as the component has them [1]."""
+"""Ratios [1] of the bolted joint component, as in its Modelica text."""
 PARTS = 4
-"""Of a path, as the function `slide` has them."""
+"""Number of parts of a path in the Modelica function `slide`."""
 MASS, RINGING = 20.0, (0.7, 0.5, 0.1)
-"""[kg]; amplitudes along x and y over the shift of gross slip, along z over the compression [1]."""
+"""Mass [kg]; amplitudes along x and y over the displacement of gross slip, along z over the compression [1].
+"""
 FRICTION = {"friction_coulomb": 0.004, "friction_stribeck": 0.003, "stribeck_speed": 2.0, "load_loss": 0.15}
 OTHERS = {"friction_viscous": 1e-5, "error_2": 2e-4, "hysteresis_loss": 2.9e-4}
 MOTOR, LINK, WEIGHT, STOP = 1e-5, 0.05, 9.80665 * 0.2, 0.6
-"""Inertias [kg.m2], torque of the link held level [N.m], end [s]."""
+"""Moments of inertia [kg.m2], torque of the horizontal link [N.m], stop time [s]."""
 LAYER, FORGETS = 1e-3, 1e-4
-"""As the component has them [1], [s]."""
+"""Layer width [1] and time constant [s] of the Modelica component."""
 
 
 class Drive:
-    """The equations: states phi1, w1, phi2, w2, sliders of the friction, perhaps those of the hysteresis."""
+    """Equations of the drive component; states: phi1, w1, phi2, w2, friction sliders, and hysteresis sliders
+    if any."""
 
     def __init__(self, friction, turns):
         given = OTHERS | (FRICTION if friction else {})
@@ -57,12 +59,12 @@ class Drive:
         self.held, self.place = np.zeros(self.law.hysteresis.friction_limit.size), 0.0
 
     def seen(self, x):
-        """Wind-up [rad], slope of the error, its rate [rad/s]."""
+        """Wind-up [rad], derivative of the kinematic error, rate of the wind-up [rad/s]."""
         error, slope, _ = kinematic_error(self.law.joint, x[0])
         return wind_up(self.law.joint, x[:4], error), slope, x[3] - x[1] / self.law.joint.ratio - slope * x[1]
 
     def hysteresis(self, phi):
-        """Torques of its sliders [N.m] from the last turn on."""
+        """Torques of the hysteresis sliders [N.m] since the last reversal."""
         found = self.law.hysteresis
         return np.clip(
             self.held + found.stiffness * (phi - self.place), -found.friction_limit, found.friction_limit
@@ -94,7 +96,7 @@ class Drive:
         return np.concatenate([own, rate, found.stiffness * (rise - slipped)])
 
     def run(self, tolerance):
-        """Steps, right-hand sides, Jacobians, states and events."""
+        """Numbers of steps, right-hand sides, Jacobians, states and events of a simulation."""
         size = 4 + self.brakes + (0 if self.turns else self.held.size)
         x, t, counts = np.zeros(size), 0.0, np.zeros(3, dtype=int)
         scale = np.concatenate([[1e-3, 0.1, 1e-3, 0.1], np.full(size - 4, 0.01)])
@@ -124,7 +126,7 @@ class Drive:
 
 
 class Bolted:
-    """The equations: states s, v, perhaps forces (2, n) of the sliders."""
+    """Equations of the bolted joint component; states: s, v, with history also slider forces (2, n)."""
 
     def __init__(self, kept):
         spring = BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
@@ -147,7 +149,7 @@ class Bolted:
         self.last = force, s, stiffness, friction, self.tight + float(self.load(-s[2]))
 
     def sliders(self, c, v_c):
-        """Stiffness, friction and their rates, of the sliders that slip earlier, then of the others."""
+        """Stiffness, friction limit and their rates: of the sliders that slip earlier, then of the others."""
         load, stiff, bend = (float(part(c)) for part in self.curve)
         h, g, k = self.heights.T
         on, far = c > h[:-1], c > h[1:]
@@ -163,7 +165,8 @@ class Bolted:
         return *(x.ravel() for x in half), *(x.ravel() * v_c for x in rates)
 
     def slid(self, s):
-        """Forces of the sliders, straight from where they were last kept, stiffness and friction."""
+        """Forces of the sliders by a straight path from the last stored state, their stiffness and friction
+        limit."""
         force, place, first, most, _ = self.last
         K, Q, _, _ = self.sliders(-s[2], 0.0)
         before = first
@@ -202,7 +205,8 @@ class Bolted:
         return abs(self.tight + float(self.load(-x[2])) - self.last[4]) - CHANGED * self.tight
 
     def run(self, tolerance, stop):
-        """Steps, right-hand sides but those of Jacobians, Jacobians, states and events."""
+        """Numbers of steps, right-hand sides without those of Jacobians, Jacobians, states and events of a
+        simulation."""
         amplitude = np.array(RINGING) * self.reach
         x = np.concatenate([[0.0, amplitude[1], 0.0], amplitude * self.rate * [1.0, 0.0, 1.0]])
         usual = np.concatenate([self.reach, self.reach * self.rate])
@@ -234,7 +238,7 @@ NAMES = "steps", "right-hand sides", "Jacobians", "states", "events"
 
 
 def print_drive():
-    """Motor and link on the equations of the drive."""
+    """Print the numbers for a motor and a link on the drive equations."""
     heading("Motor and link on the component's equations, BDF", "drive", *NAMES)
     for friction in (False, True):
         for turns in (False, True):
@@ -245,7 +249,7 @@ def print_drive():
 
 
 def print_bolted_joint():
-    """A mass on the equations of the bolted joint."""
+    """Print the numbers for a mass on the equations of the bolted joint."""
     heading("A mass on a bolted joint, BDF", "friction", *NAMES)
     cases = ((False, 1e-6, 4e-4), (True, 1e-6, 4e-4), (True, 1e-6, 2e-2), (True, 1e-8, 2e-2))
     for kept, tolerance, stop in cases:

@@ -34,19 +34,20 @@ from oracles.joint_elements import (
 Array = NDArray[np.float64]
 POLE_COUNT = 200
 PATHS = ((0.7, 48), (7.0, 48), (7.0, 16), (7.0, 8))
-"""Closed paths: motion over that of the largest force in a linear joint [1], steps."""
+"""Closed paths: (motion over that of the largest force in a linear joint [1], number of steps)."""
 MIN_STEPS = 48
-"""Fewest steps for which the trapezoidal rule gives the work."""
+"""Smallest number of steps for which the trapezoidal rule gives the work."""
 ATTACHMENTS = ("faces", "heads", "edge")
 MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 LEVELS = (0.1, 0.3, 0.5, 0.8, 1.0, 1.3)
-"""Motions over that at which the linear joint reaches the friction limit, or loses the clamping force [1]."""
+"""Motions over the one at which the linear joint reaches the friction limit or loses the clamping force [1].
+"""
 
 plate_joint = cache(PlateJoint.of)
 
 
 def print_stiffness(_: argparse.Namespace) -> None:
-    """Stiffness of the reduced joint over that of finite elements."""
+    """Print the stiffness of the reduced joint over that of finite elements."""
     heading("", "attached", *AXES)
     for attached in ATTACHMENTS:
         found, expected = stiffnesses(plate_joint(attached))
@@ -54,7 +55,7 @@ def print_stiffness(_: argparse.Namespace) -> None:
 
 
 def first_loading(joint: PlateJoint, count: int) -> Array:
-    """Deviation (5, levels) [1] of the force from that with all compliances of `count` cells.
+    """Deviation (5, levels) [1] of the force from that of a joint with all compliances of `count` cells.
 
     Along x, y, z, about y, z; over the force of gross slip or opening.
     """
@@ -69,7 +70,7 @@ def first_loading(joint: PlateJoint, count: int) -> Array:
 
 
 def print_first_loading(options: argparse.Namespace) -> None:
-    """Largest deviation of the force on first loading."""
+    """Print the largest deviation of the force on first loading."""
     heading("", "attached", "along x", "along y", "along z", "about y", "about z")
     for attached in ATTACHMENTS[:2]:
         worst = np.max(np.abs(first_loading(plate_joint(attached), options.cells)), axis=1)
@@ -77,14 +78,14 @@ def print_first_loading(options: argparse.Namespace) -> None:
 
 
 def print_poles(_: argparse.Namespace) -> None:
-    """Deviation of the force in gross slip about poles, over the friction limit."""
+    """Print the deviation of the force in gross slip about poles, over the friction limit."""
     joint = plate_joint("faces")
     deviations = pole_deviations(joint.spring, joint.preload, POLE_COUNT)
     print("{} poles: 95 % within {:.1%}, all within {:.1%}".format(POLE_COUNT, *deviations))
 
 
 def print_closed_paths(options: argparse.Namespace) -> None:
-    """Smallest work of closed paths over their heat, and how many paths the FMU refuses."""
+    """Print the smallest work of closed paths over their heat, and how many paths the FMU refuses."""
     joint = plate_joint("faces")
     unit = joint.load() / stiffnesses(joint)[0]
     with tempfile.TemporaryDirectory() as folder:

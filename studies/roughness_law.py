@@ -13,9 +13,9 @@ from jointfmu.contact.interface import stiffness_curve
 from jointfmu.progress import track_progress
 
 CHOICES = [(area, spot) for area in ("continuity", "printed", "yield") for spot in ("family", "hertz")]
-"""Choices of the law `zhao2018`: critical area, spot stiffness."""
+"""Choices of the law `zhao2018`: of the critical area and of the spot stiffness."""
 WAVES = (5e-3, 40e-3)
-"""Longest waves [m] beside the default; the second is the side of the joints."""
+"""Longest waves [m] in addition to the default; the second one is the side of the joints."""
 HEIGHTS = (0.3e-6, 1e-6, 3e-6)
 """Rms heights [m] of a second roughness scale."""
 FITTED = slice(0, 4)
@@ -23,7 +23,7 @@ FITTED = slice(0, 4)
 
 
 def wave_name(roll_off):
-    """Longest wave as text."""
+    """Text that describes the longest wave."""
     return "side" if roll_off == 1 else f"side/{roll_off}"
 
 
@@ -33,7 +33,7 @@ def two_digits(values):
 
 
 def print_elastic():
-    """Law over boundary elements, elastic, on surfaces with fresh seeds."""
+    """Print the law over boundary elements, elastic, on surfaces not used to choose its constants."""
     print(f"\nseeds of development {list(cases.DEVELOPMENT)}, here {cases.SEEDS}")
     kinds = [(H, roll_off) for H in cases.HURST for roll_off in cases.LOADS]
     found = {kind: cases.elastic_contacts(*kind) for kind in track_progress(kinds, "surfaces")}
@@ -62,7 +62,7 @@ def print_elastic():
 
 
 def print_plastic():
-    """Law over boundary elements with a hardness."""
+    """Print the law over boundary elements with a hardness."""
     names = ("longest wave", "H over E* h'", "p/H", "K_loading", "K_N", "A_r")
     heading("law over boundary elements with a hardness, H = 0.3 and 0.8", *names)
     for roll_off in track_progress((1, 4), "hardness"):
@@ -72,7 +72,7 @@ def print_plastic():
 
 
 def print_joints():
-    """Law over measured joints, and the other three laws over measured joints."""
+    """Print the law over measured joints, and the other three laws over measured joints."""
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
     heading("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
     for joint in cases.joints_with_roughness():
@@ -96,7 +96,7 @@ def print_joints():
 
 
 def print_second_scale():
-    """Law with longer waves, and with a second scale in series, over measured joints."""
+    """Print the law with longer waves, and with a second scale in series, over measured joints."""
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
     heading("law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures)
     for joint in cases.joints_with_roughness():
@@ -136,7 +136,7 @@ def fit_second_scale(joint, middle):
 
 
 def print_brake_reuss():
-    """Law over the published contact law of the Brake-Reuss beam, for two longest waves."""
+    """Print the law over the published contact law of the Brake-Reuss beam, for two longest waves."""
     published = measured("brake_reuss")
     heading("law over published, Brake-Reuss beam", "longest wave [mm]", *cases.brake_reuss())
     for wave in (LONGEST, cases.filtered_wave(published["filter_sigma"])):

@@ -24,12 +24,12 @@ DIMENSIONS = (1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8)
 ROUGHNESSES = (1e-12, 1e-9, 1e-7)
 SEEDS = range(9)
 FIRST_SEED = 770000
-"""First seed: the method and its constants were chosen without these surfaces."""
+"""First seed; surfaces with these seeds were not used to choose the method and its constants."""
 SHAPES = {"isotropic": 1000, "textured": 2048, "profile": 4096}
 
 
 def weierstrass_mandelbrot(shape, points, D, G, seed):
-    """Weierstrass-Mandelbrot surface whose profile (textured: along x) has the dimension D."""
+    """Heights of a Weierstrass-Mandelbrot surface whose profiles (textured: along x) have the dimension D."""
     waves = synthesis.Waves(sample_length=1e-3, point_count=points, gamma=1.5)
     if shape == "isotropic":
         return synthesis.synthesize_isotropic(waves, D + 1.0, G, 20, seed)
@@ -40,7 +40,7 @@ def weierstrass_mandelbrot(shape, points, D, G, seed):
 
 
 def gaussian(points, D, G, rng, areal):
-    """Gaussian self-affine surface, cut from a periodic one four times as long."""
+    """Heights of a Gaussian self-affine surface, a part of a periodic one four times as long."""
     dx, n, H = 1e-6, 4 * points, 2.0 - D
     f = np.fft.rfftfreq(n, dx)
     shape = (n, n) if areal else (n,)
@@ -94,12 +94,12 @@ def print_errors(title, direction, cases):
 
 
 def print_identification(options):
-    """Errors of identified D and G, coverage of their intervals, and the time of a million points."""
+    """Print errors of identified D and G, coverage of their intervals, and the time for a million points."""
     for shape, points in SHAPES.items():
         direction = {"isotropic": "areal", "textured": "x"}.get(shape, "profile")
 
         def cases(D, shape=shape, points=points):
-            """Surfaces with different phases; G only scales the heights, so the seeds share the values."""
+            """Surfaces with different phases; all seeds share the heights, which G only scales."""
             for seed in SEEDS:
                 G = ROUGHNESSES[seed % len(ROUGHNESSES)]
                 yield weierstrass_mandelbrot(shape, points, D, G, FIRST_SEED + 1000 * round(10 * D) + seed), G
@@ -127,11 +127,11 @@ def print_identification(options):
 # scans
 
 SHARES = (1.0, 0.5, 0.25)
-"""Longest wave over the side of the scan."""
+"""Longest waves over the side of the scan [1]."""
 
 
 def scan_ratios(heights, D, G):
-    """(2, 3) h and slope over those of the spectrum, for each longest wave."""
+    """Ratios (2, 3) of h and slope to those of the spectrum, for each longest wave."""
     flat, H = remove_form(heights), 2.0 - D
     rows = []
     for share in SHARES:
@@ -144,7 +144,7 @@ def scan_ratios(heights, D, G):
 
 
 def print_scans(options, points=128):
-    """Height and slope of scans over those of the spectrum; h of the specimen of Zhao 2018."""
+    """Print height and slope of scans over those of the spectrum, and h of the specimen of Zhao 2018."""
     print(f"Gaussian map, {points} x {points} points, {options.draws} each: mean and standard deviation")
     print("| D | h: " + " | ".join(f"{share:g} L" for share in SHARES) + " | slope: L |")
     for D in (1.2, 1.5, 1.8):

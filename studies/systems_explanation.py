@@ -46,7 +46,7 @@ def build_unpacked(path: Path, out: Path) -> str:
 
 
 def potential(joint, widest: float):
-    """Elastic energy [J] over the wind-up [rad], without losses."""
+    """Elastic energy [J] as a function of the wind-up [rad], without losses."""
     given = {name: 0.0 for name in LOSSES if name in joint.values}
     turns = np.linspace(-widest, widest, 4001)
     torque = joint.with_values(given).evaluate("HarmonicDriveSpring", phi2=turns)["tau"]
@@ -55,7 +55,7 @@ def potential(joint, widest: float):
 
 
 def print_energy_drift() -> None:
-    """Drift of the energy at each tolerance of the host."""
+    """Print the drift of the energy for each solver tolerance of the importing tool."""
     with tempfile.TemporaryDirectory() as name:
         drift_in(Path(name))
 
@@ -103,7 +103,8 @@ def drift_in(folder: Path) -> None:
 
 
 def print_random_states() -> None:
-    """Largest rise of energy less work, and whether all values are finite, without and with hysteresis."""
+    """Print the largest increase of energy minus work, and whether all values are finite, without and with
+    hysteresis."""
     with tempfile.TemporaryDirectory() as name:
         random_states_in(Path(name))
 
@@ -158,7 +159,7 @@ def random_states_in(folder: Path) -> None:
 
 
 def prove_long_system() -> None:
-    """Time of the build, end of the proof, and failures, over the duration of the system."""
+    """Print build time, end of the proof, and failures, for several durations of the system."""
     with tempfile.TemporaryDirectory() as name:
         prove_long_system_in(Path(name))
 

@@ -80,14 +80,14 @@ EXAMPLES: dict[str, dict[str, object]] = {
 
 The third joint is a tapped M16 with its mirror image."""
 PULL_COUNT, LOAD = 81, 30e3
-"""Number of pulls at the heads, and the load [N] of the last example."""
+"""Number of tensile loads at the heads, and the last load of the last example [N]."""
 LENGTH_RATIOS = (0.5, 2.0, 6.0)
 """Lengths of the lap over the length of shear lag [1]."""
 
 
 @dataclass(frozen=True)
 class TensileJoint:
-    """ReducedBeam joint under a tensile load at its heads.
+    """Reduced joint under a tensile load at its bolt heads.
 
     bolt, members, interface : [N/m] stiffness of each; the members without the interface
     factor : load factor of small loads [1]
@@ -131,7 +131,7 @@ class TensileJoint:
 
 
 def print_vdi() -> None:
-    """Stiffnesses, load factor, additional bolt force and opening, beside VDI 2230."""
+    """Print stiffnesses, load factor, additional bolt force and opening load, compared with VDI 2230."""
     columns = "bolt", "members", "VDI", "ratio", "load factor", "VDI", "added [kN]", "VDI", "opens at", "VDI"
     heading("", "joint", *columns)
     for name, example in EXAMPLES.items():
@@ -144,7 +144,7 @@ def print_vdi() -> None:
 
 
 def print_shear_lag() -> None:
-    """Compliance of the lap over the closed form of shear lag."""
+    """Print the compliance of the lap over the closed form of shear lag."""
     columns = "length over that of shear lag", "modes over closed form", "finite elements over closed form"
     heading("", *columns)
     lap = Lap.of()
@@ -166,9 +166,9 @@ VARIANTS = {
     "60 patches": (16, 60),
     "60 modes, 60 patches": (60, 60),
 }
-"""Modes and patches of the reduced joint."""
+"""Numbers of modes and patches of the reduced joint."""
 CELL_COUNTS = (120, 300)
-"""Cells of a joint without modes and patches."""
+"""Numbers of cells of a joint without modes and patches."""
 
 
 @contextmanager
@@ -208,7 +208,7 @@ def friction_deviations(
 
 
 def load_sequences() -> dict[str, Array]:
-    """First loading, and cycles."""
+    """Load sequences: first loading, and cycles."""
     return {"first": np.array(LEVELS)} | {f"{level:g}": cycle_loads(level) for level in CYCLES}
 
 
@@ -246,7 +246,7 @@ def compare_friction(name: str, variants: bool, refinement: float) -> None:
 
 
 def print_friction(options: argparse.Namespace) -> None:
-    """Force and loss of the reduced joint beside finite elements with friction."""
+    """Print force and loss of the reduced joint compared with finite elements with friction."""
     cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
     heading("", "joint", "reduction", "patches", "most force", "first way", *cells)
     for name in options.joint or JOINTS:
@@ -258,12 +258,13 @@ def print_friction(options: argparse.Namespace) -> None:
 LAP_LENGTH = 4.0
 """Length of the lap over that of shear lag [1]."""
 MAX_MOTION, LAP_STEPS = 1.0, 6
-"""Largest motion over that at which the linear lap reaches the friction limit [1]; steps from end to end."""
+"""Largest motion over that at which the linear lap reaches the friction limit [1]; steps from one end to the
+other."""
 STATIC_STEP = "*STEP, INC=50\n*STATIC\n1., 1."
 
 
 def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[float]) -> Iterator[str]:
-    """CalculiX deck: side 2 moves by `levels` of a motion [m] from the pressed state; N and mm."""
+    """CalculiX deck: side 2 moves by `levels` of a motion [m] from the pressed state; units N and mm."""
     joint, mu, curve = lap.bodies, lap.values.mu, spring.curve
     pressure = LAP_LOAD / lap.values.A_0
     normal = float(curve.derivatives(curve.inverse(pressure), 1)[1])
@@ -293,7 +294,7 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
 
 
 def read_forces(printed: str) -> Array:
-    """Total forces along x [N], step by step."""
+    """Total forces along x [N] of all steps."""
     rows = [line.split() for line in printed.splitlines()]
     return np.array([float(row[0]) for row in rows if len(row) == 3])
 
@@ -305,7 +306,7 @@ def loop_area(force: Array, shift: Array) -> float:
 
 
 def compare_with_calculix(refinement: float, top: float) -> tuple[Array, dict[str, Array]]:
-    """Motions [m], and forces [N] of CalculiX, of friction at every element and of the reduced joint."""
+    """Motions [m] and forces [N]: by CalculiX, with friction at every element, and of the reduced joint."""
     lap = Lap.of(refinement)
     shear, spring, linear = lap.linear(LAP_LENGTH)
     normal, friction = shear / spring.friction_law.foundation().stiffness_ratio, lap.values.mu * LAP_LOAD
@@ -328,7 +329,7 @@ def compare_with_calculix(refinement: float, top: float) -> tuple[Array, dict[st
 
 
 def print_calculix(options: argparse.Namespace) -> None:
-    """Force and loss of the loop beside CalculiX."""
+    """Print force and loss of the loop compared with CalculiX."""
     motion, found = compare_with_calculix(options.refinement or 0.5, MAX_MOTION)
     reference = found["CalculiX"]
     largest = np.max(np.abs(reference))

@@ -20,22 +20,22 @@ from jointfmu.progress import track_progress
 
 NU = 0.3
 MEAN_SEPARATIONS = {500: 1.0, 501: 1.5, 700: 1.0, 701: 1.5}
-"""{seed: separation of the mean planes [rms heights]}: two loads."""
+"""Distance of the mean planes {seed: distance [rms heights]}: two loads."""
 HURST = (0.3, 0.55, 0.8)
 SEEDS = {1: (700, 701), 4: (700, 701), 8: (700,)}
 """{roll-off: seeds} of surfaces with waves up to side/1, side/4 and side/8."""
 STRETCH = 4
 """Textured surfaces: factor by which their waves are shorter along x."""
 SPHERES = tuple(product((0.0, NU), (24, 48, 96)))
-"""Poisson's ratio and grid points along a side."""
+"""Poisson's ratios and numbers of grid points along a side, for spheres."""
 GRIDS = (1, 2, 4)
-"""Refinements of one surface with COARSE grid points along a side."""
+"""Refinement factors for one surface with COARSE grid points along a side."""
 COARSE = 64
 
 
 @dataclass(frozen=True)
 class Surface:
-    """Rough surface, sheared along x and along y."""
+    """Rough surface that is sheared along x and along y."""
 
     hurst: float
     roll_off: int
@@ -84,12 +84,12 @@ LOOP_COLUMNS = [f"loop at {amplitude:g}" for amplitude in cases.AMPLITUDES]
 
 
 def print_solver(pressure, approach):
-    """Deviation of the normal contact from tamaas."""
+    """Print the deviation of the normal contact from tamaas."""
     print(f"\nbeside tamaas: pressure {pressure:.1e} mean pressures at most, approach {approach:.1e} heights")
 
 
 def print_spheres(which, found):
-    """Errors of spheres against closed forms."""
+    """Print the errors for spheres against closed forms."""
     heading("sphere over Cattaneo and Mindlin", "nu", "points", "load", "u, worst", *LOOP_COLUMNS)
     for (nu, points), (load, shifts, areas) in zip(which, found, strict=True):
         worst = shifts[np.argmax(np.abs(shifts))]
@@ -97,7 +97,7 @@ def print_spheres(which, found):
 
 
 def print_grids(points, found):
-    """One surface on finer grids."""
+    """Print the results for one surface on finer grids."""
     heading(
         "one surface, theory over boundary elements",
         "points",
@@ -111,7 +111,7 @@ def print_grids(points, found):
 
 
 def print_displacements(kinds):
-    """Displacement, theory over boundary elements, by Hurst exponent and longest wave."""
+    """Print displacements, theory over boundary elements, by Hurst exponent and longest wave."""
     title = "displacement, theory over boundary elements: mean (least to largest)"
     heading(title, "longest wave", "H", "real area", *cases.FORCES)
     for (H, roll_off), found in kinds.items():
@@ -120,7 +120,7 @@ def print_displacements(kinds):
 
 
 def print_loops(kinds):
-    """Loop area, theory over boundary elements, by Hurst exponent and longest wave."""
+    """Print loop areas, theory over boundary elements, by Hurst exponent and longest wave."""
     title = "area of a loop, theory over boundary elements: mean (least to largest)"
     heading(title, "longest wave", "H", *cases.AMPLITUDES)
     for (H, roll_off), found in kinds.items():
@@ -128,7 +128,8 @@ def print_loops(kinds):
 
 
 def print_summary(groups):
-    """Mean and largest deviation of groups of surfaces; number of deviations above 5 and 10 percent."""
+    """Print mean and largest deviation of groups of surfaces, and the number of deviations above 5 and 10
+    percent."""
     names = ("theory, u", "beyond 5", "theory, loop", "beyond 10", "sliders, loop", "beyond 10")
     heading(
         "deviation, mean and largest", "surfaces", *names, "sphere, u", "sphere, loop", "across", "loops end"
@@ -144,7 +145,7 @@ def print_summary(groups):
 
 
 def print_exponents(groups):
-    """Exponent of the loss over the amplitude of the displacement, at the two smallest amplitudes."""
+    """Print the exponent of the loss over the displacement amplitude, at the two smallest amplitudes."""
     heading("exponent of the loss, 0.1 to 0.2", "surfaces", "boundary elements", "theory", "sphere")
     for name, found in groups.items():
         shares = {"boundary elements": None, "theory": "loop_theory", "sphere": "loop_sphere"}
@@ -153,7 +154,7 @@ def print_exponents(groups):
 
 
 def loss_exponent(one, share=None):
-    """d ln(loss)/d ln(displacement) between the two smallest amplitudes.
+    """Exponent of the loss, d ln(loss)/d ln(displacement), between the two smallest amplitudes.
 
     share : name of the predicted loss over that of boundary elements
     """
@@ -163,7 +164,7 @@ def loss_exponent(one, share=None):
 
 
 def wave_name(roll_off):
-    """Longest wave as text."""
+    """Text that describes the longest wave."""
     return "side" if roll_off == 1 else f"side/{roll_off}"
 
 
@@ -187,7 +188,7 @@ def extents(found, name):
 # picture
 
 PLOT_STATIONS = np.polynomial.legendre.leggauss(12)
-"""Gauss points on the branches of the loops that are drawn."""
+"""Number of Gauss points on the branches of the drawn loops."""
 
 
 def draw(contact, found):
@@ -252,7 +253,7 @@ def draw_losses(axes, found):
 
 
 def compare_all(options):
-    """Compare spheres, grids and rough surfaces; print all tables; --images draws the picture."""
+    """Compare theory and boundary elements for spheres, grids and rough surfaces; print all tables."""
     surfaces = [*ISOTROPIC, *(s for some in OTHERS.values() for s in some)]
     with ProcessPoolExecutor() as pool:
         spheres = [pool.submit(cases.sphere_errors, points, nu) for nu, points in SPHERES]

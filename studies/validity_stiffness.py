@@ -33,12 +33,13 @@ from jointfmu.parameters import load_default
 from jointfmu.progress import track_progress
 
 GAMMA = 0.48
-"""k = p/(GAMMA h_rms): Persson 2007, with the factor of Akarapu, Sharp and Robbins 2011."""
+"""Factor gamma of the estimate k = p/(gamma h_rms): Persson 2007, with the value of Akarapu, Sharp and
+Robbins 2011."""
 HURST = (0.3, 0.58, 0.8)
 COLORS = (plots.BLUE, plots.RED, plots.GREEN)
 ROLL_OFF = (1, 4)
 LOADS = (0.003, 0.006, 0.012, 0.025, 0.05, 0.1)
-"""Pressures of the elastic contacts [E* h'_rms]."""
+"""Pressures of the elastic contacts over E* h'_rms [1]."""
 JUDGED = np.array([0.5e6, 1e6, 2e6, 8e6])
 MEASURED = np.array([0.1e6, 1e6, 2.45e6, 9.8e6])
 
@@ -47,7 +48,8 @@ MEASURED = np.array([0.1e6, 1e6, 2.45e6, 9.8e6])
 
 
 def print_sizes():
-    """Laws over the nominal area; roughness height of their stiffness; share of small spots."""
+    """Print laws over the nominal area, the rms height that corresponds to their stiffness, and the share of
+    small spots."""
     heading("k ~ A_0^x at a given pressure", "law", "x at the joint's A_0", "x of waves up to the side, -H/2")
     for name, case in compare.cases().items():
         areas = case.law.A_0 * np.array([0.5, 1.0, 2.0])
@@ -72,7 +74,8 @@ def print_sizes():
 
 
 def print_parameters():
-    """K over G, and over D at a given height of the waves up to 1 mm, at each law's fourth pressure."""
+    """Print K for several G, and for several D at a given height of the waves up to 1 mm, at each law's
+    fourth pressure."""
     names = ("law", "y of K ~ G^y", "of 1/h_rms, 2 - D", "K at D + 0.1 over K at D - 0.1, same h_rms")
     heading("K over the surface's parameters", *names)
     for name, case in compare.cases().items():
@@ -93,7 +96,8 @@ def print_parameters():
 
 
 def print_levels():
-    """Choices of `zhao2018` and law `roughness`, beside the published Ra, K_T/K_N, measured cast iron."""
+    """Print choices of `zhao2018` and the law `roughness`, with the published Ra, K_T/K_N, and measured cast
+    iron."""
     file = load_default("bolted_joint")
     h = combined_height(file.roughness)
     names = [f"{p / 1e6:g} MPa" for p in JUDGED]
@@ -121,7 +125,7 @@ def rows_within_factor_2(k):
 
 
 def print_joints():
-    """Measured joints beside the laws."""
+    """Print the stiffness of measured joints and of the laws."""
     pressures = [f"{p / 1e6:g} MPa" for p in MEASURED]
     data = measured()
     for kind in ("normal", "tangential"):
@@ -160,7 +164,7 @@ def print_joints():
 
 
 def print_verification():
-    """Boundary elements beside closed forms, refinement, ratio of tangential to normal stiffness."""
+    """Print boundary elements against closed forms, refinement, and the stiffness ratio K_T/K_N."""
     heading(
         "Hertz, Westergaard: relative errors", "points", "a²", "p_0", "approach", "k", "width", "gap", "k"
     )
@@ -180,7 +184,7 @@ def print_verification():
 
 
 def print_elastic():
-    """Elastic stiffness and real area without units; returns {(H, roll-off): results}."""
+    """Print dimensionless elastic stiffness and real area; returns {(H, roll-off): results}."""
     found = {(H, r): compare.elastic(H, r, loads=LOADS) for H in HURST for r in ROLL_OFF}
     for name, title in (
         ("alpha", "alpha = k h_rms/p"),
@@ -204,7 +208,7 @@ def print_elastic():
 
 
 def print_laws():
-    """The three laws on their own surfaces; returns {(law, side): (case, boundary elements, law)}."""
+    """Print the three laws on their own surfaces; returns {(law, side): (case, boundary elements, law)}."""
     results = {}
     for name, case in compare.cases().items():
         for side in track_progress(case.sides, name):
@@ -245,7 +249,7 @@ def print_laws():
 
 
 def print_grids():
-    """Influence of band and grid: the surface of `zhao2018`, two seeds."""
+    """Print the influence of wave band and grid on the surface of `zhao2018`, with two seeds."""
     case = compare.cases()["zhao2018"]
     case = replace(case, pressures=case.pressures[[0, -1]])
     names = ("side [mm]", "points", "spacings in the shortest wave", "0.5 MPa", "16 MPa", "A_r/A_0 at 16 MPa")
@@ -268,7 +272,7 @@ def print_grids():
 
 
 def draw_elastic(found, loads):
-    """Draw alpha over the load."""
+    """Draw alpha = k h_rms/p over the load."""
     with plots.open_figure(IMAGES / "validity_elastic.svg", (6.4, 4.0)) as figure:
         axes = figure.subplots()
         for (H, r), one in found.items():
@@ -327,28 +331,28 @@ def draw_joints():
 
 
 def measured_joints_section(options):
-    """Measured joints beside the laws."""
+    """Print and draw measured joints and laws."""
     print_joints()
     if options.images:
         draw_joints()
 
 
 def elastic_section(options):
-    """Elastic contacts."""
+    """Print and draw elastic contacts."""
     found = print_elastic()
     if options.images:
         draw_elastic(found, LOADS)
 
 
 def own_surfaces_section(options):
-    """Laws on their own surfaces."""
+    """Print and draw the laws on their own surfaces."""
     results = print_laws()
     if options.images:
         draw_laws(results)
 
 
 def roughness_section(_):
-    """The law `roughness`."""
+    """Print the results of the law `roughness`."""
     roughness_law.print_brake_reuss()
     roughness_law.print_joints()
     roughness_law.print_second_scale()

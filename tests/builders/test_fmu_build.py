@@ -140,7 +140,7 @@ def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
 
 
 def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> None:
-    """All flavours list them, use them without being told, and the page says so."""
+    """All flavours list the start values, start with them, and state them on the page."""
     file = replace(load_default("bolted_joint"), inputs={"preload": 9e3})
     model = MODELS["BoltedJoint"]
     loaded = model.evaluate(
@@ -199,7 +199,7 @@ instance.free_instance()
 
 
 def test_a_process_in_which_a_python_fmu_runs_builds_the_same(fmus: Path, tmp_path: Path) -> None:
-    """The FMU's own copy of pythonfmu, which has no libraries, is imported first."""
+    """The FMU's copy of pythonfmu, which has no libraries, is imported before the build."""
     done = run_host(BESIDE_AN_INSTANCE, fmus / "GearContact.fmu", tmp_path)
     assert done.returncode == 0, done.stderr
     built = tmp_path / "python" / "GearContact.fmu"
@@ -473,7 +473,8 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
 
 @needs("Chromium")
 def test_the_report_can_be_read_on_a_phone(job: Job) -> None:
-    """A tab per joint: charts with lines, no text below 11 px, nothing wider than the screen, all checks."""
+    """The page has a tab per joint with line charts, no text below 11 px, nothing wider than the screen, and
+    all checks."""
     with browser() as shown:
         shown.shape(390, 800, phone=True)
         shown.open(job.folder / "report" / "index.html")
@@ -498,7 +499,8 @@ def test_the_report_can_be_read_on_a_phone(job: Job) -> None:
 
 
 def test_the_main_job_proves_every_fmu(job: Job) -> None:
-    """All flavours, partners and drives of systems, with all their experiments, in all interfaces."""
+    """The proof covers all flavours, partners and drives of systems, with all experiments in all
+    interfaces."""
     proofs = {pipeline.report_name(proof.fmu): proof for proof in job.outcome.proofs}
     flavours = {f"{flavour}/{name}" for flavour in FLAVOUR_BUILDERS for name in NAMES}
     partners = {f"{version}/{name}" for version in VERSIONS for name in PARTNERS}
@@ -519,7 +521,7 @@ def test_the_main_job_proves_every_fmu(job: Job) -> None:
 
 
 def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> None:
-    """Near the formulas, or it had missed; frequencies rise with the load, damping with the amplitude."""
+    """Results are near the formulas; frequencies increase with the load, damping with the amplitude."""
     found = job.outcome.free_vibrations
     assert len(checks.check_free_vibrations(found)) == 3  # the column has no dashpot
     for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):
@@ -536,8 +538,8 @@ def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> 
 def test_the_main_job_fails_when_a_check_or_a_proof_misses(
     job: Job, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With what the job has found, but for an FMU whose reference is changed and integrals that no ramp
-    meets: the checks decide, and the report shows what was missed."""
+    """The results of the main job are used, except for an FMU with a changed reference and integrals that no
+    ramp meets. The exit status is then 1, and the report shows the failures."""
     name = NAMES[0]
     path = tmp_path / "fmi2" / f"{name}.fmu"
     path.parent.mkdir()

@@ -93,7 +93,7 @@ def test_a_step_with_unchanged_inputs_changes_nothing(fmu: Host, name: str) -> N
 
 
 def test_outputs_do_not_depend_on_the_way_there(fmu: Host, name: str) -> None:
-    """Without memory."""
+    """Models without history."""
     there, back = random_inputs(name, 2, seed=6)
     instance = fmu(name).start(there | CASES[name].tuning.also)
     before = instance.get()
@@ -216,7 +216,7 @@ def test_a_restored_instance_is_past_initialization(fixed: Host) -> None:
 def test_parameters_are_tuned_during_a_run_as_in_the_native_flavour(
     fmu: Host, native: Path, name: str, moves: tuple[str, tuple[float, ...]], tuned: dict[str, float]
 ) -> None:
-    """The path goes on from where it is; the friction of the drive acts too."""
+    """The path continues from the accepted inputs; the friction of the drive acts too."""
     acting = {"BoltedJoint": {"preload": 9e3}, "HarmonicDriveSpring": {"hysteresis_loss": 3e-4}}[name]
     found = []
     for instance in (fmu(name), fmu(name, folder=native / "fmi2")):

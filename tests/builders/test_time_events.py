@@ -128,8 +128,8 @@ def driven(load: Fmu, mass: Fmu, stop: float, with_events: bool) -> NDArray[np.f
 
 
 def test_a_solver_at_rest_meets_the_pulse(exchange: Make) -> None:
-    """Twice the integral of the force is exact: the pulse's mean edge is half of its height; without the
-    events the solver steps over it and the mass stays where it is."""
+    """Twice the integral of the force is exact, because the mean edge of the pulse is at half its height.
+    Without events the solver steps over the pulse, and the mass stays at rest."""
 
     def run(with_events: bool) -> Any:
         return driven(exchange("ForceProfile").start(PULSE), exchange("TranslationalMass").start({"m": MASS}),

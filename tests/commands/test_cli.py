@@ -119,7 +119,7 @@ def test_law_by_pressure(law_json, law):
 
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "roughness"])
 def test_law_by_largest_spot(law_json, law):
-    """And back: the pressure that it gives finds the same spot."""
+    """The pressure that the command returns gives the same largest spot."""
     areas = [1e-7, 1e-9]
     found = law_json(law, "--largest-spot", *areas)["rows"]
     parameters = build_law_parameters(law, None, {})
@@ -135,7 +135,7 @@ def test_law_by_largest_spot(law_json, law):
 
 @each_law
 def test_law_without_load(law_json, law):
-    """At zero pressure: no force, no stiffness, and no infinity in the JSON."""
+    """At zero pressure there is no force and no stiffness, and the JSON has no infinity."""
     (row,) = law_json(law, "--pressure", 0)["rows"]
     assert (row["F"], row["K_N"], row["A_r"], row["pressure"]) == (0.0, 0.0, 0.0, 0.0)
     assert row["K_T"] in (0.0, None)
@@ -161,7 +161,8 @@ def test_a_roughness_is_stated_in_the_terms_that_people_have(law_json, case):
 
 
 def test_a_roughness_out_of_the_file_of_another_law(law_json, tmp_path, run):
-    """R_a of the specimen goes before its D and G; material, area and friction are the file's."""
+    """Ra of the specimen replaces D and G of its surface; material, area and friction are those of
+    the file."""
     path = tmp_path / "mine.toml"
     specimen = load_default("bolted_joint").with_values({"mu": 0.2, "side1.E": 2e11}, "user", "test")
     path.write_text(format_parameter_file(specimen))
@@ -220,7 +221,7 @@ def test_of_named_choices_the_first_is_the_default(law_json, law, name, words):
 
 @each_law
 def test_printed_parameters_are_settings(law_json, law):
-    """The parameters of the JSON, set one by one on top of nothing, give the same rows."""
+    """The parameters of the JSON object, set one by one without a file, give the same rows."""
     everything = [f"{name}={value}" for name, value in SETTABLE[law].items()]
     first = law_json(law, "--pressure", 1e6, 3e7, "--set", *everything)
     again = law_json(
@@ -235,7 +236,7 @@ def test_printed_parameters_are_settings(law_json, law):
 
 @each_law
 def test_parameter_file(law_json, tmp_path, law):
-    """A changed file counts, and --set goes over it."""
+    """Values of a changed file are used; --set overrides them."""
     joint = _first(law)
     name = "traction_ratio" if law in ("zhao2018", "roughness") else "A_0"
     value = 0.002 if law == "hu2023" else 0.25
@@ -255,7 +256,8 @@ def test_parameter_file(law_json, tmp_path, law):
 
 @each_law
 def test_law_as_text(run, law):
-    """A header with units and one line of numbers per pressure; a dash where the law defines nothing."""
+    """The text has a header with units and one line of numbers per pressure, with a dash for undefined
+    quantities."""
     status, out, err = run("law", law, "--pressure", 1e6, 2e6)
     assert (status, err) == (0, "")
     heads, *lines = (re.split(r"\s\s+", line.strip()) for line in out.splitlines())
@@ -341,7 +343,7 @@ def test_a_missed_point_gives_status_1(run, monkeypatch):
 
 
 def test_a_missed_calibration_point_is_shown(run, monkeypatch):
-    """It is a miss in the table; the status follows the points that are not calibrated."""
+    """The table shows the miss; the exit status depends on the points that are not calibrated."""
     monkeypatch.setitem(PUBLISHED_NUMBERS.observable_functions, "p_max", lambda values, preload: 8e6)
     status, out, err = run("validate")
     assert (status, err) == (0, "")
@@ -545,7 +547,8 @@ def test_a_parameter_beyond_what_is_possible_is_refused_in_one_line(run, tmp_pat
     ids=" ".join,
 )
 def test_numbers_at_the_ends_of_floats(run, args):
-    """Either a force, a real area and a stiffness, or one line; never a traceback or a warning."""
+    """The command prints force, real area and stiffness, or one error line; never a traceback or a
+    warning."""
     status, out, err = run("law", *args, "--json")
     if status == 0:
         assert err == ""
@@ -583,7 +586,7 @@ def test_version(run):
 
 
 def test_as_a_module():
-    """`python -m jointfmu`, a process of its own: status, standard output and standard error."""
+    """`python -m jointfmu` runs in a process of its own: exit status, standard output and standard error."""
     command = [sys.executable, "-m", "jointfmu", "law", "zhao2018", "--json", "--pressure"]
     good = subprocess.run([*command, "1e6"], capture_output=True, text=True, timeout=60)
     assert (good.returncode, good.stderr) == (0, "")
@@ -594,7 +597,7 @@ def test_as_a_module():
 
 
 def test_a_closed_pipe_is_no_error():
-    """`jointfmu validate | head -1` ends quietly."""
+    """`jointfmu validate | head -1` ends without a message."""
     program = "import sys, time; time.sleep(0.5); from jointfmu_tools.cli import main; sys.exit(main())"
     with subprocess.Popen(
         [sys.executable, "-c", program, "validate"],
@@ -610,7 +613,7 @@ def test_a_closed_pipe_is_no_error():
 @pytest.mark.parametrize("package", ["argparse", "numpy", "fmpy"])
 @pytest.mark.parametrize("raised", ["KeyboardInterrupt", "ImportError"])
 def test_ctrl_c_while_packages_are_imported(package, raised, tmp_path):
-    """One line, however early: while the commands are imported or while one imports what it needs.
+    """The command prints one line, even if Ctrl-C comes during the import of commands or packages.
 
     Packages that are bound to C++ make an ImportError of it.
     """

@@ -113,7 +113,7 @@ def folder(read: Path, tmp_path: Path) -> Path:
 def test_an_example_runs(
     line: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """But for that of a plate, which tests/drawing/test_new.py runs."""
+    """All examples except that of a plate, which tests/drawing/test_new.py runs."""
     monkeypatch.chdir(folder)
     monkeypatch.setenv(CACHE_ENVIRONMENT_VARIABLE, str(folder / "parts"))  # a user's may be large
     if line.startswith("robot"):
@@ -183,7 +183,7 @@ def test_an_fmu_lists_its_parameters(name: str, capsys: pytest.CaptureFixture[st
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_law_lists_what_set_takes(law: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """Every default, set as it is listed, is taken."""
+    """Every default value, set as it is listed, is accepted."""
     for name, row in listed(capsys, law).items():
         value = 1e-6 if row["default"] is None else row["default"]
         setting = f"{name}={str(value).lower() if isinstance(value, bool) else value}"

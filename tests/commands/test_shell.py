@@ -50,7 +50,7 @@ def test_long_work_says_what_it_does_on_a_terminal(
 
 
 def test_long_work_prints_one_line_where_there_is_no_terminal(monkeypatch):
-    """A pipe, or a notebook: silence looks like a program that hangs."""
+    """In a pipe or a notebook, a command without output would look like a program that hangs."""
     monkeypatch.setenv(progress.STATUS_DELAY_ENVIRONMENT_VARIABLE, "0.2")
     monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
     with progress.show_status("jointfmu report"):
@@ -124,6 +124,6 @@ def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: pytest.Cap
 
 @pytest.mark.parametrize("to", ["1e300", "-1e13"])
 def test_a_ramp_to_what_cannot_be(to: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """Refused before the FMU is opened."""
+    """An impossible ramp is refused before the FMU is opened."""
     line = refused_line(capsys, "ramp", tmp_path / "none.fmu", "--input", "tau", "--to", to, "--step", to)
     assert f"to = {float(to):g} is outside [-1e+12, 1e+12] (SI)" in line

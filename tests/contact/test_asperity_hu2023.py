@@ -124,7 +124,7 @@ def sheared(law, traction):
 
 @given(case=cases, tau=st.floats(1e-3, 1.5))
 def test_shear_traction(case, tau):
-    """Eqs. 39-43 with t = tau s on the spot's own load, clipped to full slip."""
+    """Eqs. 39-43 with t = tau s and the load of each spot, clipped to full slip."""
     law, u = case
     paper = Paper(law)
     strength = tau * paper.law.mu * paper.H  # as a fraction of the friction of a fully plastic spot
@@ -161,7 +161,7 @@ def test_shear_traction(case, tau):
 
 
 def test_full_slip():
-    """The printed tau_b = sigma_s/sqrt(3) with mu = 0.15: every spot slips, K_T is zero."""
+    """With the printed tau_b = sigma_s/sqrt(3) and mu = 0.15 every spot slips, so K_T is zero."""
     slipping = sheared(HU, HU.sigma_y / sqrt(3))
     assert slipping.sum_over_spots("tangential", 5.0) == 0.0
     assert slipping.sum_over_spots("tangential", 40.0) == 0.0
@@ -244,7 +244,8 @@ def test_exponents():
 
 
 def test_regimes_above_a_large_smallest_spot():
-    """A smallest spot above s_ec takes the elastic stiffness, one above s_epc2 all stiffness."""
+    """With a smallest spot above s_ec no spot has the elastic stiffness; above s_epc2 no spot has any
+    stiffness."""
     s_ec = hu2023.critical_area(HU)
     for multiple in (2.0, 50.0, 300.0):
         law = changed(HU, {"surface.s_min": multiple * s_ec})
@@ -338,7 +339,7 @@ def test_closed_forms(D):
 
 @pytest.mark.parametrize("k", range(2, 15))
 def test_near_the_ends_of_the_dimension(k):
-    """The exponent 1 - D/2 of Eq. 30 is singular at D = 2, 3/2 - D/2 of the areas at D = 3."""
+    """The exponent 1 - D/2 of Eq. 30 is singular at D = 2, and 3/2 - D/2 of the areas at D = 3."""
     for D in (2 + 10.0**-k, 3 - 10.0**-k):
         law = changed(HU, {"surface.D": D})
         paper, s = Paper(law), law.spot_distribution()

@@ -44,7 +44,8 @@ def test_inversion_residual(kind, data):
 @each_kind
 @given(data=st.data(), v=st.floats(-30.0, 30.0))
 def test_newton_step(kind, data, v):
-    """The step is the residual over d ln F/dv, which lies within the bracket the safeguard assumes."""
+    """The step is the residual over d ln F/dv; this derivative is within the bounds that the safeguard
+    assumes."""
     spots = data.draw(RANDOM[kind]).spot_distribution()
 
     def log_load(v):
@@ -217,7 +218,7 @@ def test_dimensions_without_a_representable_area_are_refused(law, values):
 
 
 def test_spots_below_the_smallest_stiff_one():
-    """They carry load (Eq. 23 from 0) and have no stiffness (Eqs. 30, 41 from s_min)."""
+    """Such spots carry load (Eq. 23 from 0) and have no stiffness (Eqs. 30, 41 from s_min)."""
     state = evaluate_at_largest_spot(HU, [0.1 * HU.surface.s_min, 10.0 * HU.surface.s_min])
     assert np.all(state["F"] > 0.0)
     assert (state["K_N"][0], state["K_T"][0]) == (0.0, 0.0)
@@ -258,7 +259,7 @@ def test_everything_grows_with_the_pressure(kind, data):
 
 @each_law
 def test_no_jump_across_the_regimes(law):
-    """The single spot may jump at an edge of the fits, the sum over all spots may not."""
+    """A single spot may jump at a regime bound of the fits, the sum over all spots may not."""
     s = law.spot_distribution()
     ends = {
         end
@@ -287,7 +288,7 @@ UNITS = {
 @each_kind
 @given(data=st.data(), stress=decades(1e-3, 1e3), length=decades(1e-3, 1e3), mass=decades(1e-3, 1e3))
 def test_dimensional_homogeneity(kind, data, stress, length, mass):
-    """Another unit of stress, length and mass must not change the physics."""
+    """The results do not depend on the units of stress, length and mass."""
     law = data.draw(RANDOM[kind])
     factor = {
         "one": 1.0,
@@ -324,7 +325,8 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
 @pytest.mark.parametrize("spot_stiffness", ["family", "hertz"])
 @pytest.mark.parametrize("D", [1.1, 1.2, 1.3, 1.4, 1.6, 1.7, 1.9])
 def test_growth_of_the_elastic_limit(D, spot_stiffness):
-    """K ~ F^(D/(3 - D)) for D < 1.5 and ~ F above, once the largest spots are far into the elastic."""
+    """K ~ F^(D/(3 - D)) for D < 1.5 and K ~ F above, if the largest spots are far inside the
+    elastic regime."""
     law = changed(ZHAO, {"surface.D": D, "spot_stiffness": spot_stiffness})
     pressure = law.spot_distribution().sum_over_spots("load", 290.0) / law.A_0
     k, slope = stiffness_curve(law, pressure)
@@ -390,7 +392,8 @@ VARIANTS = {
 @pytest.mark.parametrize("variant", VARIANTS)
 @pytest.mark.parametrize("name", ["load", "normal", "area"])
 def test_laws_take_symbols(variant, name):
-    """No branch on a value and nothing written in place: one expression holds for all values."""
+    """The laws have no branch on a value and write nothing in place, so one expression holds for
+    all values."""
     law = changed(*VARIANTS[variant])
     clone, symbols = symbolic(law)
     u = casadi.SX.sym("u")
@@ -406,7 +409,7 @@ def test_laws_take_symbols(variant, name):
 @pytest.mark.usefixtures("casadi_numpy")
 @pytest.mark.parametrize("kind", LAWS)
 def test_derivatives_with_respect_to_parameters(kind):
-    """The derivative of the expression is the derivative of the law: no constant hides a parameter."""
+    """The derivative of the expression is the derivative of the law: no parameter is hidden in a constant."""
     law = LAWS[kind]
     clone, symbols = symbolic(law)
     u = 3.0 + (10.0 if law is HU else 0.0)

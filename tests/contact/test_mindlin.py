@@ -83,7 +83,7 @@ def backbone(t):
 
 @given(x=st.floats(0.05, 0.999))
 def test_masing_loop(x):
-    """Unloading and reloading are the backbone at half scale (Masing), the loop is what they enclose."""
+    """Unloading and reloading follow the doubled backbone (Masing); the loop is the area between them."""
 
     def width(t):
         unloading = backbone(x) - 2 * backbone((x - t) / 2)

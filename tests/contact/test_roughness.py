@@ -36,7 +36,7 @@ def loaded(tmp_path):
 
 
 def test_height_of_both_surfaces():
-    """Gaussian: R_q is 1.25 R_a; a side that is not stated is smooth; h stands for both."""
+    """R_q is 1.25 R_a (Gaussian); a side that is not stated counts as smooth; h stands for both sides."""
     assert roughness.rms_height(1.0) == pytest.approx(1.2533, abs=1e-4)
     assert roughness.combined_height({"Ra1": 1.6e-6, "Ra2": 1.6e-6}) == pytest.approx(2.83e-6, rel=0.003)
     assert roughness.combined_height({"Rq1": 3e-6, "Rq2": 4e-6}) == pytest.approx(5e-6)
@@ -47,7 +47,7 @@ def test_height_of_both_surfaces():
 
 
 def test_mean_height_of_a_gaussian_surface():
-    """R_q/R_a by the integral of |z| over the normal density."""
+    """R_q/R_a by the integral of |z| with the normal density."""
     step = 1e-3
     mean = sum(2.0 * z * math.exp(-0.5 * z * z) * step for z in (step * (i + 0.5) for i in range(10_000)))
     assert math.sqrt(2.0 * math.pi) / mean == pytest.approx(roughness.RQ_OVER_RA, rel=1e-6)
@@ -108,7 +108,7 @@ WITHOUT_H = re.compile(r"^h = .*\n", re.MULTILINE)
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_it_is_the_height_of_the_law_of_that_name(joint):
-    """A file without h takes it from the heights of both sides; sqrt(pi/2) Ra each, Gaussian."""
+    """Without h, the height is computed from both sides: sqrt(pi/2) Ra each (Gaussian)."""
     text = format_parameter_file(load_default(joint, "roughness"))
     found = load_text(WITHOUT_H.sub("", text) + SECTION + entry("Ra1", 0.8e-6) + entry("Rq2", 1e-6))
     name = next(name for name in found.values_by_name if name.split(".")[-1] == "h")
@@ -121,7 +121,7 @@ def test_it_is_the_height_of_the_law_of_that_name(joint):
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_another_height_of_the_law_beside_it_is_refused(joint):
-    """Within 1 % both may stand there, and the law's own acts."""
+    """Within 1 % both heights may be stated, and the law's own height is used."""
     file = load_default(joint, "roughness")
     name = next(name for name in file.values_by_name if name.split(".")[-1] == "h")
     near = load_text(format_parameter_file(file) + SECTION + entry("h", 1.009 * file.values_by_name[name]))
@@ -134,7 +134,8 @@ def test_another_height_of_the_law_beside_it_is_refused(joint):
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_a_law_has_the_height_that_was_stated_last(joint):
-    """Of its surfaces, or its own in place of theirs: what is written loads again."""
+    """The height is that of the surfaces, or the law's own if it is set later; the written file
+    loads again."""
     file = load_default(joint, "roughness").with_roughness({"Ra1": 1e-6, "Rq2": 2e-6}, "user", "drawing")
     name = next(name for name in file.values_by_name if name.split(".")[-1] == "h")
     assert load_text(format_parameter_file(file)).values_by_name[name] == pytest.approx(
@@ -146,7 +147,7 @@ def test_a_law_has_the_height_that_was_stated_last(joint):
 
 
 def test_a_roughness_acts_or_is_refused(tmp_path):
-    """Beside a law without a height it stands in a section that says what it does."""
+    """For a law without height, the heights are in a section whose name says that they do not act."""
     path = tmp_path / "joint.toml"
     path.write_text(format_parameter_file(load_default("gear_contact")) + SECTION + entry("Ra1", 0.8e-6))
     with pytest.raises(

@@ -69,7 +69,7 @@ def test_the_exponent_is_that_of_boundary_elements(pressed):
 
 @slow
 def test_many_hills_are_stiffer_than_the_law_at_light_load():
-    """The tail of the heights: k h/p rises with falling load however many hills there are."""
+    """Because of the tail of the heights, k h/p increases with decreasing load for any number of hills."""
     one = cases.elastic_contacts(0.55, 16, seeds=range(400, 402), points=256)
     ratio = (one["law"] / one["k"]).mean(axis=0)
     assert ratio[0] < ratio[-1] - 0.1
@@ -79,7 +79,8 @@ def test_many_hills_are_stiffer_than_the_law_at_light_load():
 
 @slow
 def test_plastic_loading_is_softer_in_the_law_than_in_boundary_elements():
-    """Half as stiff, as the document says; unloading and area are bounds from below."""
+    """The law has half the stiffness, as the documentation says; unloading stiffness and area are lower
+    bounds."""
     loading, unloading, area = cases.plastic(0.8, 4, 0.15, 0.1, seeds=SEEDS[4][:2])
     assert np.all((loading > 0.3) & (loading < 0.8))
     assert np.all(unloading < 0.8)
@@ -96,7 +97,7 @@ def test_every_cast_iron_joint_of_known_roughness_is_met_within_a_factor():
 
 
 def test_the_plain_line_has_the_published_ratios():
-    """p/(0.45 h) at 1 MPa over C = 0.65, m = 0.45; C = 0.3 and 0.5, m = 0.5 in um, kgf/cm2."""
+    """Ratios of p/(0.45 h) at 1 MPa to C = 0.65, m = 0.45, and to C = 0.3 and 0.5, m = 0.5 in um, kgf/cm2."""
     p = np.array([1e6])
     expected = {"cast_iron.ground": 1.04, "cast_iron.scraped_fine": 0.66, "cast_iron.scraped_medium": 0.63}
     for joint in cases.joints_with_roughness():
@@ -135,7 +136,7 @@ def test_a_filter_leaves_half_of_its_wave():
 
 
 def test_a_second_scale_in_series_does_not_explain_light_load():
-    """A series element only softens, and the joints are stiffer than the law at 0.1 MPa."""
+    """An element in series reduces the stiffness, but the joints are stiffer than the law at 0.1 MPa."""
     p = cases.MEASURED[:1]
     for joint in cases.joints_with_roughness():
         law = joint_law(joint)

@@ -30,7 +30,7 @@ def rough(joint, h):
 
 
 def test_the_ratio_is_that_of_the_joint():
-    """K_zz of the uneven joint over F/(0.45 h): the law at the mean pressure says it within 10 %."""
+    """K_zz of the joint with uneven pressure over F/(0.45 h); the law at the mean pressure is within 10 %."""
     found = judge_joint_stiffness(BOLTED, [9e3, 15e3])
     for ratio, preload in zip(found.stiffness_comparison.ratio, (9e3, 15e3), strict=True):
         K = BoltedJointSpring.for_joint(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
@@ -39,7 +39,7 @@ def test_the_ratio_is_that_of_the_joint():
 
 
 def test_the_law_roughness_is_judged_by_its_own_height():
-    """Many spots on 0.04 m2: the line itself, and a little for the few spots."""
+    """With many spots on 0.04 m2 the ratio is that of the estimate, plus a small part for the few spots."""
     found = judge_joint_stiffness(load_default("bolted_joint", "roughness"), [9e3])
     assert found.stiffness_comparison.ratio == pytest.approx([1.0], abs=0.05)
 
@@ -114,7 +114,8 @@ def test_beyond_the_hardness_and_the_nominal_area():
 
 
 def test_the_law_roughness_is_proven_in_a_range():
-    """x = p A_0/(E* h longest_wave) from 0.3, y = p longest_wave/(E* h) to 1.5 (validity_stiffness.md)."""
+    """Validated for x = p A_0/(E* h longest_wave) >= 0.3 and y = p longest_wave/(E* h) <= 1.5
+    (validity_stiffness.md)."""
     law = load_default("gear_mesh", "roughness").values
     modulus = 0.5 * 206e9 / (1.0 - 0.26**2) * law.h
     few, flat = 0.3 * modulus * law.longest_wave / law.A_0, 1.5 * modulus / law.longest_wave
@@ -132,7 +133,7 @@ def test_the_law_roughness_is_proven_in_a_range():
     ("d", "area", "proof"), [(12, 84.3, 81_800), (16, 157, 152_000), (20, 245, 238_000), (30, 561, 544_000)]
 )
 def test_bolts_of_iso_898_1(d, area, proof):
-    """Stress areas and proof loads of class 12.9 as the standard's tables print them, three digits."""
+    """Stress areas and proof loads of class 12.9 as in the standard's tables, three digits."""
     assert 1e6 * stress_area(read_threads()[f"M{d}"]) == pytest.approx(area, rel=4e-3)
     load, name = proof_load(1e-3 * (d + 1.5))
     assert load == pytest.approx(proof, rel=4e-3)
@@ -243,7 +244,8 @@ def test_pressures_of_the_users_nodes(tmp_path, capsys):
 
 
 def test_alike_bolts_with_unlike_pressures():
-    """Eight bolts of a frame; the one hot hole is named, under a moment its mirror along y may differ."""
+    """Eight bolts of a frame: the hole with the higher pressure is named; under a moment, mirror images in y
+    may differ."""
     bolts = np.array([(x, y) for y in (-0.15, 0.0, 0.15) for x in (-0.1, 0.0, 0.1) if x or y])
     rng = np.random.default_rng(3)
     around = rng.uniform(-0.01, 0.01, (200, 2))

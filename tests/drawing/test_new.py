@@ -187,7 +187,7 @@ def test_bad_numbers_are_refused(text):
 
 @pytest.mark.parametrize("name", NEW)
 def test_every_number_has_its_quantity(name):
-    """An option whose help states a unit is in the table, with this unit."""
+    """Each option whose help states a unit is in the table of quantities, with this unit."""
     for option in NEW[name].options:
         if unit := re.search(r"\[(1|[A-Za-z][\w./]*)\b[^]]*\]", option.help_text):
             if option.name == "temperature":
@@ -267,7 +267,7 @@ def test_the_unit_of_a_range_is_of_both_ends():
     ],
 )  # fmt: skip
 def test_a_number_that_is_not_plausible_is_asked_about(option, text, message):
-    """One line: the value as read, what is plausible, and what to write."""
+    """The error is one line: the value as read, the plausible range, and what to write."""
     with pytest.raises(ValueError, match=f"^--{option.replace('_', '-')} = ") as refusal:
         parse_quantity(option, text)
     if message == "unit '60HRC'":

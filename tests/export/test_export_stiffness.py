@@ -235,7 +235,8 @@ BODY = """*NODE, NSET=BODY
 
 @needs("CalculiX")
 def test_calculix_turns_a_rigid_body(tmp_path):
-    """The rotation nodes are those of rigid bodies: a force beside the reference node turns the body."""
+    """The rotation nodes are those of rigid bodies: a force at a distance from the reference node rotates the
+    body."""
     stiffness = JointStiffness.from_tangent(coupled(), POSITIONS)
     text = keywords.format_coupled_springs(stiffness, Placement(MM, "z", FIRST), ["about"])
     (tmp_path / "joint.inp").write_text(text)

@@ -148,7 +148,7 @@ def test_calculix_refuses_more_rows_than_it_holds():
 
 @pytest.mark.parametrize("finish", ["ground", "milled", "turned", "lapped"])
 def test_calculix_gets_the_smallest_error_that_fits(finish, tmp_path, capsys, monkeypatch):
-    """The contact of an ordinary steel joint: more than 200 rows at the default error."""
+    """The contact of an ordinary steel joint needs more than 200 rows at the default error."""
     monkeypatch.chdir(tmp_path)
     new = "new bolted-joint --plate 80x40 --bolts 2xM10 --at 40x0 --grip 10 15 --hole 11 --sides rigid"
     assert cli.main([*new.split(), "--material", "steel", "--finish", finish, "--out", "c.toml"]) == 0
@@ -318,7 +318,7 @@ def test_header_is_plain_text():
 
 
 def test_a_catalogue_drive_has_rows_for_a_per_cent_of_its_stiffness(tmp_path, capsys):
-    """Also in its corners, smooth or none."""
+    """The limit of 1 % also holds at the corners of the stiffness, smooth or sharp."""
     for corner in (0.04, 0.0):
         file = jointfmu.drive("CSG-25-100", corner=corner).save(tmp_path / "drive.toml")
         out = tmp_path / "curve.txt"

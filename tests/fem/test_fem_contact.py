@@ -184,7 +184,7 @@ def test_pressures_balance_the_moment(plates, law):
 
 @needs("gmsh")
 def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
-    """The same as from the beginning, without a factorisation, in fewer steps."""
+    """The result is the same as from scratch, without a factorisation and in fewer steps."""
     expected = plates.solve(law, 4e3, 30.0)
     first = plates.solve(law, 4e3)
     factorised = []
@@ -255,7 +255,7 @@ def test_without_a_load_to_close_it_the_contact_is_refused(plates, law, factor):
 
 @needs("gmsh")
 def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
-    """Without the look at the loads: by the solver, or by the look at the contact that it returns."""
+    """Without the check of the loads, the solver or the check of the contact forces refuses it."""
     monkeypatch.setattr(RigidBodyBalance, "check_loads", lambda self: None)
     monkeypatch.setattr(newton, "MAX_NEWTON_STEPS", 15)
     model, loads = pulled(plates, law, 1.0, 1.0)
@@ -281,7 +281,8 @@ def test_contact_forces_are_checked_by_their_sums(plates, law):
 
 @needs("gmsh")
 def test_the_resultant_must_meet_the_contact(plates, law):
-    """Bolts at y = 15 mm, faces to 30 mm: forces f1, f2 have their resultant at 15 mm (f1 - f2)/(f1 + f2)."""
+    """With bolts at y = 15 mm and faces up to 30 mm, forces f1, f2 have their resultant at 15 mm (f1 -
+    f2)/(f1 + f2)."""
     model, inside = pulled(plates, law, 0.3e3, -1e3)  # at 27.9 mm
     pressure = model.solve(inside, 1e6).pressure
     assert 0.0 < np.mean(pressure > 0.0) < 0.5
@@ -293,7 +294,7 @@ def test_the_resultant_must_meet_the_contact(plates, law):
 
 @needs("gmsh")
 def test_a_side_load_is_refused(plates, law):
-    """Without friction nothing carries it: the supports must not do so in silence."""
+    """Without friction only the supports could carry a lateral load, which must not remain unnoticed."""
     model, loads = pulled(plates, law, -4e3, -4e3)
     loads[0][::3] += 10.0 * plates.bolt_head_loads[0][2::3, 0]
     with pytest.raises(RuntimeError, match="the loads do not balance"):
@@ -334,7 +335,7 @@ def test_neighbours_of_bolts():
 
 @needs("gmsh")
 def test_a_stiff_side_does_not_tell_how_a_bolt_holds_it(law):
-    """Head and nut, or head and thread: the same pressure, also off the middle."""
+    """Head and nut, or head and thread, give the same pressure on a stiff body, also off the centre."""
     stiff = STEEL | {"E": 1e5 * STEEL["E"]}
     sizes = {"length": 0.08, "width": 0.06, "thickness": 0.012}
     bolts = BoltList(x=(-0.011, 0.015), y=(-0.004, 0.007), hole_diameter=0.009, head_diameter=0.016)
@@ -351,8 +352,8 @@ def test_a_stiff_side_does_not_tell_how_a_bolt_holds_it(law):
 
 @needs("gmsh")
 def test_a_thread_pulls_beside_its_hole(law):
-    """Two halves whose bolts pull at the wall of the hole press nearer to it than halves under heads, in the
-    mirror image alike; the wall bears all of the force in the bolt's own axis."""
+    """Two halves whose bolts pull at the hole wall have the pressure nearer to the hole than halves with
+    heads, mirror images included. The wall carries the whole bolt force along the axis of the bolt."""
     sizes = {"length": 0.06, "width": 0.06, "thickness": 0.015}
     bolt = BoltList(x=(0.004,), y=(0.0,), hole_diameter=0.009, head_diameter=0.016)
     reach = []

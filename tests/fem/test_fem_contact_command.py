@@ -170,7 +170,7 @@ def test_refused(plates, capsys, given, text):
 
 
 def test_observed_orders():
-    """Values that behave like 1 + h^2 have the order two; one that does not settle has none."""
+    """Values like 1 + h^2 have the order two; values that do not converge have none."""
     rows = [
         MeshResult(refinement, 1, 1, dict.fromkeys(RESULT_UNITS, 1.0 + 1e-4 / refinement**2))
         for refinement in refinement_series(3)

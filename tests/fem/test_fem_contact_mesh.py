@@ -125,8 +125,8 @@ def test_rigid_motions_cost_nothing_and_carry_the_mass():
 
 @pytest.mark.parametrize(("by", "order"), [(0.0, 2.9), (0.2, 1.9)])
 def test_elasticity_converges_to_a_smooth_solution(by: float, order: float):
-    """L2 error of u = (s, s, s), s = sin pi x sin pi y sin pi z: third order on bricks, second on distorted
-    elements, which serendipity shape functions do not follow to the end."""
+    """L2 error of u = (s, s, s), s = sin pi x sin pi y sin pi z: third order on bricks, second order on
+    distorted elements, on which serendipity shape functions are less accurate."""
     lame, shear = lame_parameters(1.0, 0.3)
     errors = []
     for n in (2, 4, 8) if by == 0.0 else (4, 8):

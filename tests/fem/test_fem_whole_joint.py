@@ -32,9 +32,9 @@ def block(nu=0.0):
 @needs("gmsh")
 @pytest.mark.parametrize("reach", [0.5, 2.0, 6.0])
 def test_a_lap_has_the_compliance_of_shear_lag(reach):
-    """d'' = beta^2 d with beta^2 = 2 k/(E t): the displacement at an end against the other one is
-    F/(E t w) (1/(beta tanh(beta L/2)) + L/2). The closed form leaves out shear through the thickness, which
-    is (beta t)^2/6 of d, 2.4e-3 here at most, and the small hole."""
+    """Closed form from d'' = beta^2 d with beta^2 = 2 k/(E t): the relative displacement of the ends is F/(E
+    t w) (1/(beta tanh(beta L/2)) + L/2). It neglects shear through the thickness, at most (beta t)^2/6 =
+    2.4e-3 of d here, and the small hole."""
     assembly = lap()
     joint = JointFiniteElements.from_assembly(assembly, "edge")
     plate, beta = assembly.side1, reach / assembly.side1.length
@@ -56,8 +56,8 @@ def test_a_lap_has_the_compliance_of_shear_lag(reach):
 @needs("gmsh")
 @pytest.mark.parametrize("attached", ATTACHMENT_NODES)
 def test_bodies_without_compliance_leave_the_interface(attached):
-    """Plates 1e6 times as stiff: what is left of them is 1e-6 of the compliance that they had, which is up to
-    13 times that of the interface."""
+    """With plates 1e6 times as stiff, 1e-6 of their compliance remains, which was up to 13 times that of the
+    interface."""
     assembly = block()
     stiff = replace(assembly.side1, E=206e15)
     joint = JointFiniteElements.from_assembly(replace(assembly, side1=stiff, side2=stiff), attached)
@@ -84,7 +84,8 @@ def test_each_stiffer_part_makes_a_stiffer_joint():
 
 @needs("gmsh")
 def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
-    """It is not solved for. A softer side is none, nor other heads, nor edges, held at opposite ends."""
+    """The mirrored side is not solved for. A softer side, other heads, or edges at opposite ends are no
+    mirror image."""
     joint = JointFiniteElements.from_assembly(block(nu=0.3), "heads")
     near = SimpleNamespace(points=SimpleNamespace(position=joint.contact_interface.centred_position[::40]))
     springs = even(joint, 1e12, 2e12)

@@ -22,7 +22,8 @@ BAR = replace(cases.beam(), lap=cases.beam().length, bolts=())
 @needs("gmsh")
 @pytest.mark.parametrize(("shear", "height"), [(GLUED_STIFFNESS, 1.0), (0.0, 0.5)])
 def test_bars_on_each_other_have_the_frequency_of_timoshenko(shear, height):
-    """Glued they are one bar, sliding two of half the height, which slide rigidly too; 0.05 %: the mesh."""
+    """Glued bars are one bar; sliding bars have half the height and also rigid sliding modes. Tolerance 0.05
+    %: the mesh."""
     structure = Structure.of(BAR, Fineness(far=12e-3, layers=2))
     normal = np.full(structure.interface.quadrature_area.size, GLUED_STIFFNESS)
     found, _ = spectrum(structure, np.column_stack([shear * np.ones_like(normal)] * 2 + [normal]))
@@ -49,7 +50,7 @@ def test_the_bolts_press_with_their_preload(joint):
 
 @needs("gmsh")
 def test_small_loads_meet_the_linear_mode(joint):
-    """A load of which the patches slip by less than 1e-4 of their displacement."""
+    """Under this load the patches slip by less than 1e-4 of their displacement."""
     q = 1e-9
     state = joint.apply_load(joint.at_rest(), q * joint.square)
     assert state.q == pytest.approx(q, rel=1e-5)
@@ -60,9 +61,9 @@ def test_small_loads_meet_the_linear_mode(joint):
 
 @needs("gmsh")
 def test_frequency_falls_and_damping_rises_with_amplitude(joint):
-    """The loss of a small cycle grows with the third power of amplitude at constant pressure, so the damping
-    ratio with the first; patches of little pressure slip wholly, which takes up to 0.15 off the exponent, and
-    the finite number of sliders scatters it by 0.1."""
+    """At constant pressure the loss of a small cycle grows with the third power of the amplitude, so the
+    damping ratio is proportional to it. Patches with little pressure slip completely, which reduces the
+    exponent by up to 0.15; the finite number of sliders scatters it by 0.1."""
     states = joint.backbone(AMPLITUDES)
     zeta = np.array([damping(*pair) for pair in zip(masing_losses(states), states, strict=True)])
     assert np.all(np.diff([frequency(state) for state in states]) < 0.0)
@@ -73,8 +74,9 @@ def test_frequency_falls_and_damping_rises_with_amplitude(joint):
 
 @needs("gmsh")
 def test_a_whole_cycle_closes_and_its_area_is_its_loss(joint):
-    """The area by trapezia over 8 steps each way is known to 3 %; Masing's rules leave out that bending opens
-    one end of the lap and closes the other, 10 % at most, and 5 loads take 5 % off their loss."""
+    """The area by the trapezoidal rule with 8 steps per half cycle is accurate to 3 %. Masing's rules neglect
+    that bending opens one end of the lap and closes the other, at most 10 %; with 5 loads their loss is 5 %
+    too small."""
     states = joint.backbone(np.geomspace(3e-6, 3e-5, 5))
     loss, cycle = joint.cycle(states[-1], 8)
     load, q = (np.array([getattr(state, name) for state in cycle]) for name in ("load", "q"))
@@ -86,6 +88,7 @@ def test_a_whole_cycle_closes_and_its_area_is_its_loss(joint):
 
 @needs("gmsh")
 def test_damping_by_masing_is_never_negative(joint):
-    """With much friction little slips; the contact then stiffens under the load, which is no loss."""
+    """With high friction there is little slip; the contact becomes stiffer under the load, which is
+    no loss."""
     states = with_friction(joint, 0.6).backbone(AMPLITUDES)
     assert np.all(masing_losses(states) > 0.0)

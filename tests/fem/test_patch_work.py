@@ -77,7 +77,7 @@ def test_ways_are_single_and_paired_motions(disc):
 
 
 def test_patches_lose_and_resist_as_all_points(disc):
-    """At their means they lose too little in partial slip; fitted, hardly anything."""
+    """Patches at the mean displacements dissipate too little in partial slip; fitted patches do not."""
     law, points, rows, few, means, shears = disc
     aim = compute_friction_work(law, shears, points, rows)
     fitted = fit(disc).fit(means)
@@ -94,7 +94,7 @@ def test_patches_lose_and_resist_as_all_points(disc):
 
 
 def test_the_tightened_joint_stays_as_stiff(disc):
-    """What linear ways store without slip, while the same fit meets the loss."""
+    """The fitted patches keep the stiffness of linear states without slip, and have the same loss."""
     law, few, means = disc[0], disc[3], disc[4]
     working, full = fit(disc), tightened(disc).contact_stiffness
     fitted = working.fit(means)

@@ -59,14 +59,14 @@ def test_a_bar_of_any_width_has_the_frequency_of_a_square_one():
 
 
 def test_vdi_2230_vdi_2230():
-    """M16 through 2 x 20 mm under 60 kN with 30 kN at its heads."""
+    """M16 through 2 x 20 mm at 60 kN preload, with 30 kN at its heads."""
     factor, added, opens = vdi_2230(5.575e8, 2.487e9, 9.4e10, 30e3)
     assert (round(factor, 3), round(added, -2), round(opens, 2)) == (0.187, 5600.0, 1.23)
 
 
 def test_springs_of_coulomb_have_backbone_and_loop_of_the_theorem():
-    """What the distance of the springs takes: 0.17 % of the force and 3 % of the loss at the first amplitude,
-    0.08 % of the loss at the others."""
+    """Error by the distance of the springs: 0.17 % of the force; of the loss 3 % at the first amplitude, 0.08
+    % at the others."""
     law = tabulate_approach(cases.laws()["roughness"])
     springs = Springs.of(law, 0.8, 0.15)
     exact = Foundation(law, 0.8, 0.15, springs.edges)
@@ -88,7 +88,8 @@ def test_springs_of_coulomb_have_backbone_and_loop_of_the_theorem():
 @needs("gmsh")
 @pytest.mark.slow
 def test_elements_with_friction_are_linear_first_and_slip_at_last():
-    """A thin lap under an even pressure: its linear stiffness, then Coulomb's force, over any mesh."""
+    """A thin lap under uniform pressure: first its linear stiffness, finally Coulomb's force, for
+    any mesh."""
     lap = Lap.of(0.5)
     _, spring, _ = lap.linear(4.0)
     bodies = replace(lap.bodies, contact_interface=patches(lap.bodies.contact_interface))
@@ -112,8 +113,8 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
 @needs("gmsh")
 @pytest.mark.slow
 def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
-    """To its slip, three times as far, and back: 1.2 % of either force were measured, 0.7 % of the heat.
-    Coarse elements, of which the joint is made too, serve as well.
+    """Loading to slip, three times as far, and back. Measured: 1.2 % of the force, 0.7 % of the heat, with
+    coarse elements.
 
     Friction has the normal force of the contact, however it bends: patches that open by themselves do not,
     and find no equilibrium on the wide way of six directions at the end.

@@ -72,7 +72,7 @@ def listed():
 @pytest.mark.parametrize("per_line", [9, 3, 2])
 @pytest.mark.parametrize("name", ["CPRESS", "CPRESS   ASSEMBLY_LOWER/ASSEMBLY_UPPER"])
 def test_a_report_with_areas(tmp_path, name, per_line):
-    """Alone it has all: pressure, coordinates, areas; nodes without area are no contact."""
+    """The report contains pressure, coordinates and areas; nodes without area are no contact nodes."""
     table, path = listed(), tmp_path / "a.rpt"
     table[5, [0, 4]] = 0.0
     path.write_text(report([name, *AREAS], table, per_line=per_line))
@@ -84,7 +84,7 @@ def test_a_report_with_areas(tmp_path, name, per_line):
 
 
 def test_columns_in_reports_of_their_own(tmp_path):
-    """Coordinates of the first frame count for the last one, pressures of earlier frames do not."""
+    """Coordinates of the first frame are used for the last one; pressures of earlier frames are not used."""
     table = listed()
     first, second = tmp_path / "p.rpt", tmp_path / "coord.rpt"
     early = report(["CPRESS"], 0.5 * table[:, :1], increment=0)
@@ -97,7 +97,7 @@ def test_columns_in_reports_of_their_own(tmp_path):
 
 
 def test_nodes_of_two_parts_are_two(tmp_path):
-    """Both parts number their nodes from 1; Abaqus gives areas to one side alone."""
+    """Both parts number their nodes from 1; Abaqus prints areas of one side only."""
     table, path = listed(), tmp_path / "a.rpt"
     other = table.copy()
     other[:, 4] = 0.0
@@ -121,7 +121,7 @@ def deck(points, cells, kind, labels):
 
 
 def test_a_report_on_the_faces_of_a_deck(tmp_path):
-    """Both sides of the contact of two blocks; Abaqus lists the nodes of the contact alone."""
+    """Abaqus lists the contact nodes only, on both sides of the contact of two blocks."""
     points, bricks, p, n = blocks()
     labels = [7 * i + 3 for i in range(4 * n)]
     mesh, path = tmp_path / "joint.inp", tmp_path / "a.rpt"
@@ -172,7 +172,7 @@ def printed(columns, table, labels, status=""):
 
 
 def test_a_data_file_on_the_faces_of_a_deck(tmp_path):
-    """The last increment counts; nodes without pressure are left out, as CalculiX leaves them out."""
+    """The last increment is used; nodes without pressure are missing in the file, as with CalculiX."""
     points, cells = faces("quad8", 3)
     place = np.column_stack([points, np.full(len(points), 5.0)])
     labels = list(range(1, len(points) + 1))

@@ -35,7 +35,8 @@ def pressures(p, points, cells):
 
 
 def test_contact_elements_of_an_archive(tmp_path):
-    """The same as from NLIST and ELIST; those of another contact and targets are passed over."""
+    """The result is the same as from NLIST and ELIST; elements of another contact, and targets, are
+    ignored."""
     points, cells = faces("quad8", 3)
     p = np.round(1.0 + points[:, 0] * points[:, 1], 4)
     path, mesh = tmp_path / "p.lis", tmp_path / "mesh.cdb"
@@ -64,7 +65,7 @@ def test_contact_elements_of_an_archive(tmp_path):
 
 
 def test_solids_of_an_archive(tmp_path):
-    """Bricks below; above wedges, which are bricks with K = L and O = P."""
+    """The lower body has bricks; the upper one has wedges, which are bricks with K = L and O = P."""
     points, bricks, p, _ = blocks()
     half = len(bricks) // 2
     wedges = [

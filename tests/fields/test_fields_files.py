@@ -52,7 +52,7 @@ def test_areas_are_positive_and_make_the_whole_surface(kind):
 
 @pytest.mark.parametrize("kind", SURFACE_CELLS)
 def test_sums_of_a_nonlinear_function_converge_with_the_second_order(kind):
-    """k(p) = p^0.9 of a smooth pressure; order by three meshes, the trapezoidal rule has two."""
+    """Sum of k(p) = p^0.9 for a smooth pressure on three meshes; the trapezoidal rule has second order."""
 
     def total(n):
         points, cells = faces(kind, n)
@@ -70,7 +70,7 @@ def test_sums_of_a_nonlinear_function_converge_with_the_second_order(kind):
     ("pyramid13", 5, 2.0 + np.sqrt(2.0)),
 ])  # fmt: skip
 def test_boundary_of_one_cell_is_all_its_faces(kind, count, area):
-    """Unit cells of known surface; a middle node out of place would change areas."""
+    """Unit cells with a known surface area; a wrong mid-side node would change the areas."""
     corners = np.array(
         [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1.0]]
     )
@@ -159,7 +159,7 @@ def test_open_nodes_are_kept_or_left_out(tmp_path):
 
 @pytest.mark.parametrize(("name", "nodes"), [("blocks.frd", 35), ("blocks_quadratic.frd", 21)])
 def test_calculix_result(name, nodes):
-    """Written by CalculiX 2.20 from the deck beside it: 8 kN on 40 x 30 mm.
+    """The file was written by CalculiX 2.20 from the deck next to it: 8 kN on 40 x 30 mm.
 
     The area is the blocks' own. CalculiX extrapolates the pressure to the nodes, which costs half a per
     cent of the force on these coarse meshes; 1 % is what the import lets pass.
@@ -172,7 +172,7 @@ def test_calculix_result(name, nodes):
 
 
 def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
-    """NODE TO SURFACE contact, by CalculiX 2.20: of the open end it lists the nearer nodes only."""
+    """NODE TO SURFACE contact by CalculiX 2.20: at the open end the file lists only the nearer nodes."""
     path = DATA / "blocks_open.frd"
     listed = path.read_text().split(" -4  CONTACT")[1].split(" -3")[0].count("\n -1")
     assert listed < 35
@@ -193,7 +193,7 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
 
 
 def test_middles_of_upright_edges_are_where_calculix_has_them():
-    """Every middle node of every boundary face lies between its corners, on the upright faces too."""
+    """Every mid-side node of every boundary face lies between its corners, on the vertical faces too."""
     from jointfmu_tools.inputs.fields import frd
 
     found = frd.read_frd(DATA / "blocks_quadratic.frd", 1e-3, 1e6)
@@ -228,7 +228,7 @@ def blocks(quadratic=False):
 
 
 def test_volume_mesh_of_two_bodies(tmp_path):
-    """Pressure on both sides of the contact is ambiguous until a side is stated; then it is that surface."""
+    """With pressure on both sides of the contact, a side must be stated; the surface is then that side."""
     points, bricks, p, n = blocks()
     both = np.concatenate([0 * p, p, 1.1 * p, 0 * p])
     path = tmp_path / "a.vtu"
@@ -253,7 +253,7 @@ def test_volume_mesh_of_two_bodies(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".vtk", ".vtu", ".xdmf"])
 def test_surface_mesh_in_another_plane(tmp_path, suffix, monkeypatch):
-    """The contact lies in y-z: normal x, so y is along the rows unless stated otherwise."""
+    """The contact lies in the y-z plane: the normal is x, so y is along the rows unless stated otherwise."""
     monkeypatch.chdir(tmp_path)
     points, cells = grid(4, 3)
     place = np.column_stack([np.full(len(points), 7.0), points])

@@ -5,7 +5,7 @@ from jointfmu_tools.inputs.fields.reduction import recombine_weights
 
 
 def test_few_nodes_keep_the_sums():
-    """Polynomials on random nodes: as many nodes as sums, positive weights, sums to round-off."""
+    """Polynomials on random nodes: as many nodes as sums, positive weights, sums accurate to round-off."""
     rng = np.random.default_rng(1)
     x, weights = rng.uniform(-1.0, 1.0, 4000), rng.uniform(0.5, 1.5, 4000)
     values = np.polynomial.chebyshev.chebvander(x, 19)

@@ -82,7 +82,7 @@ def test_calibrated_values_are_those_the_code_marks(joint):
 
 @each_joint
 def test_dumped_numbers_are_exact(joint):
-    """Read by the standard library alone: every float comes back bit by bit."""
+    """Read by the standard library alone, every float has the same bits."""
     file = load_default(joint)
     document = tomllib.loads(format_parameter_file(file))
     for name, value in flatten_parameters(file.values).items():
@@ -130,7 +130,8 @@ PRELOAD = 'preload = { value = 0.0, unit = "N"'
 
 
 def test_start_values_of_inputs(file):
-    """Those of the file, with their origin; zero elsewhere, and where there is no such section."""
+    """The file states start values with their origin; other inputs, and files without the section,
+    have zero."""
     path = file(bolts(PRELOAD, PRELOAD.replace("0.0", "9e3")))
     found = load_parameter_file(path)
     assert found.inputs == {"preload": 9e3, "moment": 0.0}
@@ -147,7 +148,7 @@ def test_start_values_of_inputs(file):
 
 @each_joint
 def test_default_start_values_are_at_rest(joint):
-    """The shipped files start every input at zero, as all before them did."""
+    """The shipped files start every input at zero."""
     file = load_default(joint)
     assert file.inputs
     assert set(file.inputs.values()) == {0.0}
@@ -362,7 +363,7 @@ def test_text_that_cannot_be_encoded_leaves_nothing_behind(tmp_path):
 
 
 def test_places_that_cannot_be_written(tmp_path):
-    """Below a regular file, on a folder, under a name that is too long: also refused to root."""
+    """Paths below a regular file, of a folder, and with a too long name are refused, also for root."""
     (tmp_path / "plain").write_text("a file")
     (tmp_path / "folder").mkdir()
     for path in (
@@ -380,7 +381,7 @@ def test_places_that_cannot_be_written(tmp_path):
 
 
 def test_a_byte_order_mark_is_passed_over(tmp_path):
-    """Editors on Windows write one."""
+    """Editors on Windows write a byte order mark."""
     given = load_default("gear_contact")
     path = tmp_path / "joint.toml"
     path.write_text(format_parameter_file(given), encoding="utf-8-sig")

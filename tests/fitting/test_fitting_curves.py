@@ -41,7 +41,7 @@ def stiffness(tmp_path):
 
 
 def test_a_line_has_its_textbook_covariance():
-    """ln y = ln a + b ln x: the covariance is noise^2 (X^T X)^-1 with the columns 1 and b ln x."""
+    """For ln y = ln a + b ln x the covariance is noise^2 (X^T X)^-1 with the columns 1 and b ln x."""
     rng, x = np.random.default_rng(1), np.geomspace(1.0, 10.0, 50)
     y = np.log(3.0 * x**0.7) + 0.01 * rng.standard_normal(x.size)
     unknowns = [Unknown("a", "1", 1.0, 0.0, np.inf), Unknown("b", "1", 1.0, 0.0, np.inf)]
@@ -57,7 +57,7 @@ def test_a_line_has_its_textbook_covariance():
 
 @pytest.mark.parametrize("case", measurements.CASES)
 def test_round_trip(case, tmp_path):
-    """The script's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
+    """A small version of the script's 100 seeds: by chance 1 % of the fits are outside three deviations."""
     found = [measurements.errors(measurements.CASES[case], seed, tmp_path) for seed in range(3)]
     within = [all(abs(z) <= 3.0 for _, z in one.values()) for one in found]
     assert sum(within) >= 2
@@ -68,7 +68,7 @@ def test_round_trip(case, tmp_path):
 
 
 def test_loop_is_taken_apart(loops):
-    """What the script put in: its loop without noise, drift 0.3 arcmin, offset 5 arcmin."""
+    """The fit finds what the script added to the loop: drift 0.3 arcmin, offset 5 arcmin."""
     facts = torque_angle.fit(loops).facts
     torque, angle = measurements.loops(np.random.default_rng(1), noise=0.0, drift=0.0)
     (fall, up), (rise, down) = (
@@ -86,7 +86,8 @@ def test_loop_is_taken_apart(loops):
 
 
 def test_the_loop_of_a_drive_has_its_midline():
-    """At the tips friction acts on both branches: their mean is half the gap at zero torque off there."""
+    """At the tips of the loop friction acts on both branches, so their mean deviates by half the gap at zero
+    torque."""
     line = find_backbone(*measurements.loops(np.random.default_rng(1), noise=0.0, drift=0.0))
     drive = load_default("harmonic_drive").with_values(measurements.DRIVE, "user", "true").values
     rest = line.angle - 5.0 * ARCMIN - wind_up(drive, line.torque)
@@ -95,7 +96,7 @@ def test_the_loop_of_a_drive_has_its_midline():
 
 
 def test_torque_before_angle_before_unit(loops, tmp_path):
-    """Units and column order are the heading's; other columns are passed over."""
+    """Units and column order are those of the heading; other columns are ignored."""
     torque, arcmin = np.loadtxt(loops, delimiter=",", skiprows=1).T
     other = tmp_path / "other.csv"
     text = [
@@ -144,14 +145,14 @@ def test_what_is_not_determined_is_said_by_name(loops):
 
 
 def test_a_small_range_leaves_the_end_open(tmp_path):
-    """Up to 2 N m hardly anything of K_FTS0 is seen."""
+    """Up to 2 N.m the data hardly depend on K_FTS0."""
     torque, angle = measurements.loops(np.random.default_rng(1), amplitude=2.0, gap=0.0)
     path = save(tmp_path / "small.csv", "torque [N.m], angle [rad]", torque, angle)
     assert "K_FTS0" in torque_angle.fit(path).warnings()[0]
 
 
 def test_another_size_of_drive(tmp_path):
-    """A drive 50 times stiffer at 50 times the torque has the same wind-up."""
+    """A drive 50 times as stiff at 50 times the torque has the same wind-up."""
     torque, angle = measurements.loops(np.random.default_rng(1))
     path = save(tmp_path / "big.csv", "torque [N.m], angle [rad]", 50.0 * torque, angle)
     found = torque_angle.fit(path, rated_torque=250.0)
@@ -181,7 +182,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
 
 @pytest.mark.parametrize("direction", ["normal", "tangential"])
 def test_joint_stiffness_is_the_exported_one(direction):
-    """Also at 20 N of preload, where most nodes are still closing."""
+    """Checked also at 20 N preload, where the contact of most nodes is still closing."""
     joint = load_default("bolted_joint").values
     spring = BoltedJointSpring.for_interface_nodes(replace(joint, memory=False))
     loads = np.array([20.0, 2e3, 3e4])
@@ -192,7 +193,7 @@ def test_joint_stiffness_is_the_exported_one(direction):
 
 
 def test_area_has_no_effect(stiffness):
-    """The law knows loads, no pressures: a start elsewhere stays there."""
+    """The law depends on loads, not on pressures, so another start value of the area stays unchanged."""
     start = load_default("bolted_joint").with_values({"A_0": 0.05}, "user", "test")
     found = preload.fit(stiffness, start, ["surface.D", "surface.G", "A_0"])
     rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
@@ -212,7 +213,7 @@ def test_frequency_without_mass_keeps_the_surface(tmp_path):
 
 
 def test_series_stiffness_is_in_series(tmp_path):
-    """K/2 where the joint is as stiff as the structure."""
+    """The stiffness is K/2 if the joint is as stiff as the structure."""
     joint = load_default("bolted_joint").values
     P = np.array([1e4])
     K = float(preload.joint_stiffness(joint, P)[0])
@@ -335,7 +336,8 @@ def started(folder):
 
 
 def test_the_joint_to_start_from_must_be_stated(tmp_path, capsys):
-    """Without it the fit took the specimen of a paper, whose bolts and area are not the user's."""
+    """Without a start file the fit would use the specimen of a paper, whose bolts and area are not the
+    user's."""
     path = tmp_path / "stiffness.csv"
     path.write_text("\n".join(["preload [N], stiffness [N/m]", *RISING]))
     line = refused_line(capsys, "fit", "preload", path)
@@ -344,7 +346,7 @@ def test_the_joint_to_start_from_must_be_stated(tmp_path, capsys):
 
 @pytest.mark.parametrize("quantity", ["stiffness", "frequency"])
 def test_one_measured_number_fits_the_level(tmp_path, quantity):
-    """Of a joint twice as stiff: the exponent stays, and the law goes through the point."""
+    """For a joint twice as stiff, the exponent is unchanged and the law passes through the point."""
     start = load_default("bolted_joint")
     P = np.array([12e3])
     K = 2.0 * float(preload.joint_stiffness(start.values, P)[0])
@@ -413,7 +415,7 @@ def test_another_joints_file(loops, tmp_path, capsys):
 
 
 def test_the_mid_line_of_200_000_rows_takes_seconds():
-    """The friction torque had one knot for every 20 samples, in a dense matrix of 3 GB."""
+    """With one knot for every 20 samples, the dense matrix would need 3 GB."""
     rng, phase = np.random.default_rng(0), np.linspace(0.0, 10.0 * np.pi, 200_000)
     torque, friction_torque = 25.0 * np.sin(phase), 0.3
     angle = (torque - friction_torque * np.sign(np.cos(phase))) / 8e3 + 1e-6 * rng.standard_normal(phase.size)

@@ -32,7 +32,8 @@ AMPLITUDES = np.array([1e-7, 1e-6, 1e-5])
 
 
 def test_first_loading_is_the_normal_curve_once_more():
-    """B(u) = mu (F_N(0) - F_N(kappa u/mu)) with the normal force of the exported joint, all of its nodes."""
+    """B(u) = mu (F_N(0) - F_N(kappa u/mu)) with the normal force of the exported joint at all of
+    its nodes."""
     joint = load_default("bolted_joint").values
     law, told = loop.make_shear_loop_law(joint, PRELOAD)
     spring = BoltedJointSpring.for_interface_nodes(joint)
@@ -63,7 +64,7 @@ def test_work_is_the_integral_of_the_friction():
 
 
 def test_loop_of_a_parabola():
-    """In phase K - C a, area 4/3 C a^3; the loop by trapezoids has the same area."""
+    """The stiffness is K - C a, the area 4/3 C a^3; the loop by the trapezoidal rule has the same area."""
     stiffness, loss = PARABOLA.equivalent_spring(AMPLITUDES)
     np.testing.assert_allclose(stiffness, K - C * AMPLITUDES, rtol=1e-12)
     area = 4.0 / 3.0 * C * AMPLITUDES**3
@@ -75,7 +76,7 @@ def test_loop_of_a_parabola():
 
 
 def test_decay_of_a_parabola():
-    """First and second order of the decrement by hand: (2/3) e (1 + 2 e), e = C h/K."""
+    """The decrement to second order, by hand: (2/3) e (1 + 2 e), e = C h/K."""
     e = np.array([1e-3, 2e-3])
     omega, decrement = PARABOLA.free_decay(e * K / C, 5.0)
     np.testing.assert_allclose(decrement, 2.0 / 3.0 * e * (1.0 + 2.0 * e), rtol=2e-5)  # third order
@@ -83,7 +84,7 @@ def test_decay_of_a_parabola():
 
 
 def test_decay_of_a_viscous_spring():
-    """No friction: sqrt(K/M), and the decrement pi d/(2 sqrt(K M)) of half a period."""
+    """Without friction: frequency sqrt(K/M), decrement pi d/(2 sqrt(K M)) per half period."""
     law = HysteresisLaw(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous_damping=200.0)
     omega, decrement = law.free_decay(AMPLITUDES, 5.0)
     np.testing.assert_allclose(omega, np.sqrt(K / 5.0), rtol=1e-9)
@@ -91,7 +92,8 @@ def test_decay_of_a_viscous_spring():
 
 
 def test_free_vibration_agrees_with_integration_in_time():
-    """Velocity Verlet, 1e-5 with 500 steps a period; the windows miss what their own spreads say."""
+    """Velocity Verlet with 500 steps per period is accurate to 1e-5; the windows deviate by less than their
+    own estimate."""
     found = decay.analyse_decay(*measurements.joint_decay())
     law, mass = measurements.joint_law(), measurements.MASS
     frequency, damping = Oscillator(law, mass).free_vibration(found.amplitude)
@@ -101,7 +103,7 @@ def test_free_vibration_agrees_with_integration_in_time():
 
 
 def test_response_agrees_with_integration_in_time():
-    """Amplitude of a steady state; the first harmonic alone leaves out 1/9 of the third: below 1 %."""
+    """Amplitude of the steady state; the first harmonic neglects 1/9 of the third one, less than 1 %."""
     law, mass, force, frequency = measurements.joint_law(), measurements.MASS, 800.0, 1080.0
     expected = Oscillator(law, mass).response_amplitude(
         np.array([frequency]), np.array([force]), np.array([1e-6])
@@ -130,7 +132,7 @@ def test_branches_follow_their_law():
 
 
 def test_a_branch_ends_where_it_passes_the_turning_point_before():
-    """Growing swings: what goes beyond the last loop has another history."""
+    """Growing amplitudes: the part beyond the last loop has another history."""
     turns = np.array([0.0, 1.0, -1.5, 2.0, -2.0])
     motion = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in pairwise(turns)])
     found = branches.cut_branches([("", motion, motion)])
@@ -156,7 +158,7 @@ def swung(law, turns):
 
 @pytest.mark.parametrize("middle", [0.0, 4e-6])
 def test_the_place_of_rest_is_found_in_loops(middle):
-    """Of a spring that stiffens, wherever the motion has its zero, also where it is loaded to one side."""
+    """A stiffening spring, for any zero of the motion, also if it is loaded to one side."""
     hardening = NonlinearSpring(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
     law = replace(PARABOLA, elastic_spring=hardening)
     motion, force = swung(law, [middle + a for a in (5e-6, -5e-6, 5e-6, -5e-6)])
@@ -178,7 +180,7 @@ def test_a_linear_spring_has_no_place_of_rest():
 
 
 def test_noise_does_not_widen_the_loops():
-    """The largest of several noisy samples lies two deviations too far out; the parabola does not."""
+    """The largest of several noisy samples is two deviations too large; the vertex of the parabola is not."""
     rng = np.random.default_rng(1)
     motion = np.cos(np.linspace(1.0, 99.0, 98 * 300)) + 1e-3 * rng.standard_normal(98 * 300)
     turns = branches.find_turning_points(motion)
@@ -189,7 +191,7 @@ def test_noise_does_not_widen_the_loops():
 
 
 def test_motion_at_the_turning_points_is_part_of_the_doubt():
-    """Coarse triangles miss their corners by up to half a step."""
+    """Coarse triangular motion misses its corners by up to half a step."""
     motion = np.abs((np.arange(200) * 0.07 + 0.03) % 4.0 - 2.0)
     found = branches.cut_branches([("", motion, 2.0 * motion)])
     assert np.all(found.start_motion_deviation > 0.02)
@@ -201,7 +203,8 @@ def test_motion_at_the_turning_points_is_part_of_the_doubt():
 @pytest.mark.slow
 @pytest.mark.parametrize("case", measurements.CASES)
 def test_round_trip(case, tmp_path):
-    """The benchmark's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
+    """A small version of the benchmark's 100 seeds: by chance 1 % of the fits are outside three
+    deviations."""
     found, true = measurements.CASES[case](np.random.default_rng(3), tmp_path / "measured.csv")
     for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
@@ -292,7 +295,7 @@ def test_loops_that_are_none(change, message, tmp_path, capsys):
 
 
 def test_a_small_loop_that_runs_back_is_refused(tmp_path, capsys):
-    """Its area is below a percent of its box, yet many times its noise."""
+    """The loop area is below a percent of its bounding box, yet many times the noise."""
     run, motion, force = measurements.loops(
         measurements.joint_law(), (1e-7,), np.random.default_rng(1), noise=1e-5
     )
@@ -390,7 +393,7 @@ def test_kinds_of_files(tmp_path):
 
 @pytest.mark.slow
 def test_frequency_and_damping_over_the_amplitude(tmp_path):
-    """A backbone that somebody else has evaluated; the structure's own damping ratio is found beside."""
+    """A backbone that another program evaluated; the damping ratio of the structure is fitted too."""
     a = np.geomspace(1e-7, 3e-6, 25)
     frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS, 0.004).free_vibration(a)
     rng = np.random.default_rng(1)
@@ -410,7 +413,8 @@ def test_frequency_and_damping_over_the_amplitude(tmp_path):
 
 @pytest.mark.slow
 def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
-    """No beam is a joint alone: stated or fitted in series the joint is found, without it it is not."""
+    """A beam is no joint alone: with a stated or fitted series stiffness the fit finds the joint, without it
+    it does not."""
     true = measurements.file("bolted_joint", measurements.JOINT)
     joint, series = loop.shear_stiffness_at_rest(true.values, PRELOAD), 0.5
     law = loop.make_shear_loop_law(true.values, PRELOAD, series * joint)[0]
@@ -447,7 +451,7 @@ def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
 
 @pytest.mark.parametrize(("end", "areas"), [(1.5, []), (1.76, [0.4])])
 def test_an_area_is_that_of_a_loop_that_closes(end, areas):
-    """From a tip on; half a branch after the last whole one closes none."""
+    """The area counts from a tip on; the half branch after the last complete one closes no loop."""
     t = np.linspace(0.25, end, 400)
     motion = np.sin(2.0 * np.pi * t)
     found = branches.cut_branches(
@@ -467,7 +471,7 @@ def test_runs_of_their_own_size_have_their_own_noise():
 
 @pytest.mark.slow
 def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(tmp_path):
-    """The stiffness is known a hundred times better than level and exponent; the search ends all the same."""
+    """The stiffness is known a hundred times better than level and exponent; the search ends nevertheless."""
     a = np.geomspace(1e-7, 6e-6, 25)
     frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS).free_vibration(a)
     rng = np.random.default_rng(1)
@@ -506,7 +510,7 @@ def test_titles_as_people_write_them(tmp_path, titles):
 
 @pytest.mark.slow
 def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
-    """A record of an elastic bar: its loop has no area but noise."""
+    """The record is of an elastic bar: the area of its loop is noise."""
     monkeypatch.chdir(tmp_path)
     motion = 1e-6 * np.sin(np.linspace(0.0, 6.0 * np.pi, 241))
     force = 1e9 * motion + np.random.default_rng(0).normal(0.0, 1.0, motion.size)
@@ -541,7 +545,7 @@ def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
     ],
 )
 def test_what_a_fit_does_not_say(stuck, deviation, h, says):
-    """Two unknowns of which the data see a little, or nothing."""
+    """Two unknowns: the data determine one of them weakly, the other not at all."""
     wanted = tuple(Unknown(name, "1", 0.1, 1e-3, 10.0) for name in ("mu", "h"))
     seen, nothing = np.eye(2), np.zeros(2)
     values = {"mu": 0.1, "h": h}

@@ -71,7 +71,7 @@ def test_stiffness_after_reversals_is_no_secant_of_a_slipped_loop():
 
 
 def test_the_work_decides_and_not_the_rows():
-    """Rows are dense after reversals: most of them have a force against the displacement."""
+    """After reversals rows are dense, so most rows have a force against the displacement."""
     table = np.loadtxt(DATA / "sampled_densely_after_reversals.csv", delimiter=",", skiprows=1)
     motion, force = table.T
     assert np.cov(motion, force)[0, 1] < 0.0
@@ -131,7 +131,7 @@ def test_noise_on_a_loop_that_sticks_is_no_bearing(samples):
 
 
 def test_a_plausible_slip_force_leaves_the_displacement_alone(tmp_path, capsys):
-    """Displacements in mm under a heading in m: the plateau shows that the force is right."""
+    """Displacements in mm under a heading in m: the plateau of the force shows that the force is right."""
     motion, force = jenkins_loop(2e-6)
     path = save(tmp_path / "m.csv", 1e3 * motion, force)
     line = refused_line(capsys, "fit", "loop", path, *OPTIONS)

@@ -35,7 +35,8 @@ def test_first_loading_then_whole_cycles(shape):
 
 @pytest.mark.parametrize("amplitude", range(2))
 def test_hysteresis_appears(drive, amplitude):
-    """Area by Masing's rule, from the law and not from the FMU; trapezoids of 400 points, and the sliders."""
+    """Area by Masing's rule from the law, not from the FMU. Errors: trapezoidal rule with 400 points, and the
+    sliders."""
     row = drive.compute_loop_results()[amplitude]
     law = hysteresis.make_law(load_default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
     u = np.array([AMPLITUDES[amplitude]])
@@ -47,7 +48,7 @@ def test_hysteresis_appears(drive, amplitude):
 
 
 def test_force_acts_on_the_joint(drive):
-    """tau2 is the torque on the flange, against the motion."""
+    """tau2 is the torque on the flange, opposite to the motion."""
     assert (drive.motion_name, drive.force_name, drive.force_sign, drive.units) == (
         "phi2",
         "tau2",
@@ -61,7 +62,8 @@ def test_force_acts_on_the_joint(drive):
 
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
 def test_without_memory_nothing_is_lost(native, version):
-    """A force drives, a motion answers; about a working point, as the contact takes no pull."""
+    """With force as input and motion as output, about a working point, because the contact carries no
+    tension."""
     fmu = native / version / "GearContact.fmu"
     found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
     assert (found.motion_name, found.force_name) == ("s_rel", "f")
@@ -104,7 +106,7 @@ def test_the_command_prints_a_table_and_writes_what_fit_reads(native, tmp_path, 
 
 
 def test_loops_of_a_bolted_joint_give_its_friction_and_level_back(native, tmp_path):
-    """The FMU's few sliders and patches against the law of all nodes: loops alike within 2 %."""
+    """The FMU has few sliders and patches, the law all nodes: the loops agree within 2 %."""
     path, true = tmp_path / "shear.csv", load_default("bolted_joint").values
     fmu, amplitudes = native / "fmi3" / "BoltedJoint.fmu", ["5e-7", "2e-6", "6e-6"]
     words = ["--input", "s_rel_x", "--loop", *amplitudes, "--set", "preload=9e3", "--csv", path, "--json"]

@@ -100,7 +100,7 @@ def test_a_drive_by_name_in_one_line():
 
 
 def test_a_joint_prints_its_numbers_with_units_and_sources(plate):
-    """Numbers, tuples and lists of other forms are the same drawing."""
+    """Numbers, tuples and lists are different forms of the same drawing."""
     one = plate()
     for text in (repr(one), one._repr_html_()):
         for part in ("side1.E", "210", "GPa", "EN 1993-1-1", "inputs.preload", "30", "kN", "K_zz"):
@@ -112,7 +112,7 @@ def test_a_joint_prints_its_numbers_with_units_and_sources(plate):
 
 @pytest.mark.parametrize("form", [list, tuple, np.array])
 def test_of_each_side_or_bolt_in_any_form(plate, form):
-    """Several values, or one of several numbers: as the option declares it."""
+    """Several values, or one text with several numbers, as the option declares."""
     flanks = {"width": 20, "load": 3000, "material": form(["steel", "cast iron"])}
     made = jointfmu.gear_contact(**flanks, radii=form([30, 50]), Ra=form([0.4, 0.8]))
     assert made.file.roughness == pytest.approx({"Ra1": 0.4e-6, "Ra2": 0.8e-6})
@@ -190,7 +190,8 @@ def test_a_law_evaluates_arrays():
     ],
 )
 def test_a_law_evaluates_arrays_of_parameters(name, varied):
-    """Point by point what the law of each point gives; the inversion's residual is 1e-12."""
+    """Each point equals the result of the law with its own parameters; the inversion has a residual
+    of 1e-12."""
     law = jointfmu.law(name, **{key: np.array(value) for key, value in varied.items()})
     found = law.at_pressure([1e6, 2e6])
     alone = [
@@ -207,7 +208,7 @@ def test_a_law_evaluates_arrays_of_parameters(name, varied):
 
 
 def test_a_law_is_judged_as_by_the_command(capsys):
-    """By the height that its default file states, unless the surface is another one."""
+    """The height is that of the default file, unless another surface is stated."""
     for varied in ({"critical_area": "printed"}, {"surface.D": 1.2}):
         settings = [f"{name}={value}" for name, value in varied.items()]
         assert cli.main(["law", "zhao2018", "--pressure", "1e6", "--json", "--set", *settings]) == 0
@@ -265,7 +266,7 @@ def test_a_required_name_is_said_by_python():
 
 @pytest.mark.slow  # a process of its own
 def test_a_missing_package_is_named_with_what_brings_it(tmp_path, monkeypatch):
-    """As in a bare environment: numbers work, what needs more says so in one line."""
+    """Without extras, numbers are computed; what needs a package names the extra in one line."""
     asked = """
 import sys
 sys.modules.update(dict.fromkeys(("matplotlib", "casadi")))

@@ -39,7 +39,7 @@ def test_no_pressure_gives_empty_columns():
 
 
 def test_a_law_that_no_joint_has_is_evaluated(monkeypatch):
-    """As docs/architecture.md describes the steps: a class, and a line in LAWS."""
+    """The steps are those of docs/architecture.md: a class, and a line in LAWS."""
 
     @dataclass(frozen=True, kw_only=True)
     class NewLaw(RoughnessLaw):

@@ -44,7 +44,7 @@ def built(toy, tmp_path_factory):
 
 
 def test_it_is_short():
-    """All that its author writes: code, page, parameters, icon."""
+    """Length of all that its author writes: code, page, parameters, icon."""
     folder = Path(toy_joint.__file__).parent
     written = [path for path in folder.rglob("*") if path.suffix in (".py", ".html", ".toml", ".svg")]
     assert sum(len(path.read_text().splitlines()) for path in written) < 100
@@ -94,7 +94,7 @@ def test_modelica_has_its_interface_and_wrapper():
 
 
 def test_uncertainty_of_a_line(capsys):
-    """f is linear in c: the quantiles are those of c times the elongation."""
+    """f is linear in c, so its quantiles are those of c times the elongation."""
     assert cli.main(["uncertainty", "toy", "--set", "c=9000..11000", "--samples", "1024", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     median = np.array(found["outputs"]["f"]["quantiles"]["0.5"])
@@ -123,7 +123,8 @@ def test_its_parameter_file_is_read_and_written():
 
 
 def test_it_has_a_page_of_its_own_file(tmp_path, monkeypatch):
-    """Of a joint that says nothing of pages and loops: the line over its load, and its parameters."""
+    """The joint defines neither page contents nor loops: the page has the curve over the load and the
+    parameters."""
     monkeypatch.chdir(tmp_path)
     Path("mine.toml").write_text(format_parameter_file(load_default("toy")))
     assert cli.main(["report", "mine.toml"]) == 0

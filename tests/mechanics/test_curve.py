@@ -79,7 +79,7 @@ def test_polynomials_up_to_degree_five(nodes, coefficients, t):
 
 @given(nodes=node_lists(), t=st.floats(0.0, 1.0))
 def test_degree_six_leaves_the_node_polynomial(nodes, t):
-    """x^6 minus its Hermite interpolant over [a, b] is (x - a)^3 (x - b)^3: it is not more than quintic."""
+    """x^6 minus its Hermite interpolant over [a, b] is (x - a)^3 (x - b)^3, so the interpolant is quintic."""
     a, b = nodes[:2]
     x = a + t * (b - a)
     curve = polynomial_curve(Polynomial([0.0] * 6 + [1.0]), nodes[:2])
@@ -104,7 +104,7 @@ def test_each_derivative_is_the_slope_of_the_one_before(curves):
 
 
 def test_nodes_are_met(curves):
-    """Load, stiffness and both one-sided bends at every node."""
+    """Load, stiffness and both one-sided second derivatives at every node."""
     for curve in curves.values():
         x = curve.displacement
         load, stiffness = curve.derivatives(x, 1)
@@ -180,7 +180,7 @@ def test_energy_of_a_polynomial(nodes, coefficients, t):
 
 @pytest.mark.parametrize("name", [*SETS, "drive"])
 def test_load_is_the_slope_of_the_energy(curves, name):
-    """Between the nodes; a segment's energy is one polynomial, of degree six, as the stencil wants it."""
+    """Between nodes; the energy in a segment is one polynomial of degree six, as the stencil requires."""
     curve = curves[name]
     x0, h = curve.displacement[:-1], np.diff(curve.displacement)
     x = x0 + h * (0.5 + 0.1 * np.arange(-3, 4)[:, None])
@@ -193,7 +193,7 @@ def test_load_is_the_slope_of_the_energy(curves, name):
 
 
 def test_energy_of_the_closing():
-    """V = p L z^4 (a/4 + b z/5 + c z^2/6) from first touch on, without loss at the smallest z."""
+    """V = p L z^4 (a/4 + b z/5 + c z^2/6) from first contact on, accurate down to the smallest z."""
     curve = tabulate_approach(ZHAO)
     p, length = curve.closing_end_load, -curve.displacement[0]
     i = int(np.searchsorted(curve.displacement, 0.0))
@@ -206,7 +206,7 @@ def test_energy_of_the_closing():
 
 
 def test_energy_beyond_the_ends_is_that_of_the_tangents():
-    """y = 1 + 2x + x^2 on [0, 1]: 7/3 in between."""
+    """y = 1 + 2x + x^2 on [0, 1]; the energy inside is 7/3."""
     found = straight_ends().energy([-3.0, 0.0, 1.0, 11.0])
     # -3 + 2*9/2; 7/3 + 4*10 + 4*100/2
     np.testing.assert_allclose(found, [6.0, 0.0, 7.0 / 3.0, 7.0 / 3.0 + 240.0], rtol=1e-12)  # round-off
@@ -242,7 +242,7 @@ def test_a_flat_beginning_is_inverted_to_the_first_node():
 
 
 def test_pieces_keep_their_bends():
-    """2x + x^2 below, 2x + 3x^2 above zero: quintics meet both exactly, only the bend jumps."""
+    """2x + x^2 below and 2x + 3x^2 above zero: quintics reproduce both, only the second derivative jumps."""
     pieces = []
     for ends, bend in (((-0.5, 0.0), 2.0), ((0.0, 1.0), 6.0)):
         x = np.linspace(*ends, 5)
@@ -268,7 +268,7 @@ SMOOTH = {
 @pytest.mark.parametrize("name", SMOOTH)
 @pytest.mark.parametrize("segments", [16, 32, 64])
 def test_measured_error_covers_the_true_error(name, segments):
-    """Of load and stiffness, anywhere between the nodes."""
+    """Error of load and stiffness, everywhere between the nodes."""
     f, slope, bend = SMOOTH[name]
     x = np.linspace(1.0, 3.0, segments + 1)
     curve = assemble_curve([(x, f(x), slope(x), bend(x))])
@@ -283,7 +283,7 @@ def test_measured_error_covers_the_true_error(name, segments):
 
 @each_set
 def test_approach_is_the_integral_of_dp_over_k(law):
-    """Pressure and stiffness at an approach integrated by adaptive quadrature, to MAX_ERROR."""
+    """Pressure and stiffness at an approach, integrated by adaptive quadrature, to MAX_ERROR."""
     curve = tabulate_approach(law)
     spots = law.spot_distribution()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
@@ -307,7 +307,7 @@ def test_approach_is_the_integral_of_dp_over_k(law):
 
 @each_set
 def test_stiffness_is_the_laws(law):
-    """Everywhere between the nodes, at the pressure that the table gives there."""
+    """Everywhere between the nodes, at the pressure of the table."""
     curve = tabulate_approach(law)
     x = curve.displacement[curve.displacement >= 0.0]
     t = np.linspace(0.0, 1.0, 11)[:-1, None]
@@ -363,7 +363,7 @@ def test_closing_begins_at_nothing_and_joins_smoothly(law):
     growth=st.floats(0.75, 2.7),
 )
 def test_closing(p, k, growth):
-    """One quintic, its derivatives, C2 at both ends, monotone; growth = d ln k/d ln p of the laws.
+    """One quintic, C2 at both ends, monotone, and its derivatives; growth = d ln k/d ln p of the laws.
 
     With c = 8 growth - 6 the stiffness is z^2 (3 c + 4 (1 - 2 c) z + 5 c z^2) k, which has no zero inside up
     to c = 8 + sqrt(60), a growth of 2.718.

@@ -39,7 +39,7 @@ patterns = st.builds(
 @settings(max_examples=10)
 @given(pattern=patterns)
 def test_force_is_conserved(pattern):
-    """1 N in a bolt is 1 N in the contact, for each bolt and for the shapes of all."""
+    """1 N in a bolt gives 1 N in the contact, for each bolt and for all together."""
     areas, points = frame_cells(pattern)
     np.testing.assert_allclose(bolt_pressures(pattern, areas, points, points) @ areas, 1.0, rtol=SUM)
     shape = pressure_distribution(pattern)
@@ -50,7 +50,7 @@ def test_force_is_conserved(pattern):
 
 
 def test_cells_fill_the_frame():
-    """Their area is that of the frame without its holes, and they lie on its solid part."""
+    """Their area is that of the frame without holes, and they lie in its solid part."""
     pattern = JOINT.pattern
     areas, points = frame_cells(pattern)
     width = pattern.flange_width
@@ -116,7 +116,7 @@ def test_pressure_of_one_bolt_falls_outwards():
 
 @pytest.mark.parametrize(("preload", "moment"), [(9e3, 0.0), (15e3, 4500.0), (15e3, -2000.0)])
 def test_pressures_are_those_of_the_bolt_forces(preload, moment):
-    """Every bolt's own force spread by the decay: rows of three, changed by M/(L_a N_b)."""
+    """Pressure of every bolt by the decay: rows of three, changed by M/(L_a N_b)."""
     shift = moment / (JOINT.row_distance * 3)
     forces = preload + shift * np.array([1, 1, 1, 0, 0, -1, -1, -1])
     assert row_forces(JOINT, preload, moment) == pytest.approx((forces[0], forces[-1]), rel=1e-15)
@@ -130,7 +130,7 @@ def test_pressures_are_those_of_the_bolt_forces(preload, moment):
 
 
 def test_published_bolt_forces():
-    """Zhao 2018, section 3: 15 kN and 4500 N m give 20 and 10 kN."""
+    """Zhao 2018, section 3: 15 kN and 4500 N.m give 20 and 10 kN."""
     assert row_forces(JOINT, 15e3, 4500.0) == pytest.approx((20e3, 10e3), rel=1e-15)
 
 
@@ -228,7 +228,7 @@ def test_translation_and_mean():
 
 
 def test_calibrated_values_are_marked():
-    """What the published pressures fixed says so in the parameter file."""
+    """Values that the published pressures determined have the origin `calibration` in the parameter file."""
     kinds = load_default("bolted_joint").origins
     fitted = {name for name in flatten_parameters(JOINT) if kinds.get(name) == "calibration"}
     assert fitted == {"pattern.decay_length", "pattern.decay_exponent"}
@@ -236,7 +236,8 @@ def test_calibrated_values_are_marked():
 
 @pytest.mark.parametrize("moment", [True, False])
 def test_merged_nodes_keep_the_sums(moment):
-    """Area, pressure and second moments of area in total, and node by node those that only mirrors share."""
+    """Area, pressure and second moments of area in total; node by node for those that only mirror images
+    share."""
     shape = pressure_distribution(JOINT.pattern)
     merged = shape.merge_nodes(keeps_moment_pressure=moment)
     mirrors = 2 if moment else 4  # the frame's axes; a moment tells its two rows apart

@@ -123,7 +123,8 @@ def test_the_normal_contact_is_that_of_another_solver():
 
 
 def test_a_square_that_does_not_repeat_answers_like_points_far_from_the_load():
-    """Boussinesq and Cerruti, E* = 1: P/(pi r) down, Q/(pi r) beside and 1 + nu/(1 - nu) times it ahead."""
+    """Boussinesq and Cerruti, E* = 1: P/(pi r) normal, Q/(pi r) across and 1 + nu/(1 - nu) times it along the
+    force."""
     space, nu = partial_slip.single_square(POINTS, 0.3), 0.3
     force = np.zeros((2, POINTS, POINTS))
     force[0, 0, 0] = POINTS**2

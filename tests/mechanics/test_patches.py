@@ -72,7 +72,7 @@ def balance(shape: PressureDistribution) -> np.ndarray:
 @pytest.mark.parametrize("count", [40, 160])
 @pytest.mark.parametrize("name", CONTACTS)
 def test_few_points_keep_share_and_moments_to_rounding(name, count):
-    """Area, centroid, second moments, force and moment of the preload and of the moment; shares positive."""
+    """Area, centroid, second moments, force and moment by preload and by moment; positive shares."""
     shape = contact(name)
     points = reduced(name, count)
     assert points.area_share.size <= count
@@ -83,7 +83,7 @@ def test_few_points_keep_share_and_moments_to_rounding(name, count):
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_patches_that_left_the_nodes_keep_the_same_sums(name):
-    """As few as the friction has; pressed inside the contact."""
+    """As few points as the friction has patches, inside the contact."""
     shape, patches = contact(name), moved(name)
     assert patches.area_share.size <= 22
     assert np.min(patches.area_share) > 0.0
@@ -94,7 +94,7 @@ def test_patches_that_left_the_nodes_keep_the_same_sums(name):
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_largest_pressure_is_that_of_all_nodes(name):
-    """Under moments of both signs; which of the nodes that symmetry makes equal is rounding."""
+    """Under moments of both signs; rounding decides between nodes that symmetry makes equal."""
     shape = contact(name)
     points = reduced(name, 160)
     for moment in np.linspace(-1.0, 1.0, 41):
@@ -113,7 +113,7 @@ def test_few_nodes_stay_as_they_are():
 
 
 def test_equations_are_solved_as_lapack_does():
-    """Within eps times the condition, some 1e5."""
+    """Within eps times the condition number, about 1e5."""
     slopes = np.random.default_rng(2).standard_normal((300, 110)) * np.geomspace(0.1, 10.0, 110)
     matrix, right = slopes.T @ slopes, np.ones(110)
     there = np.linalg.solve(matrix, right)
@@ -142,7 +142,7 @@ def spring() -> BoltedJointSpring:
 )
 @pytest.mark.parametrize("name", CONTACTS)
 def test_force_and_stiffness_are_those_of_all_nodes(spring, name, states, force, stiffness):
-    """160 points, over preload, moment, displacement and tilt: about four times what the benchmark prints."""
+    """160 points, over preload, moment, displacement and tilt: about four times the benchmark's values."""
     shape = contact(name)
     states = contact_patches.ranges(contact_patches.opening_moment(shape))[states]
     mean = contact_patches.mean_pressure(spring)
@@ -153,9 +153,9 @@ def test_force_and_stiffness_are_those_of_all_nodes(spring, name, states, force,
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
-    """Coulomb alone, by a law that the patches do not know: the sum of p |r - pole|, with a kink at the pole,
-    of tilted contacts. Over 400 poles 95 % are within 1.7 % of the friction, all within 4 %: a patch has one
-    pressure, where tilts change it across. Seen: 1.6 % and 2.9 %.
+    """Coulomb friction with a law that the patches were not fitted to: the sum of p |r - pole|, with a kink
+    at the pole, for tilted contacts. Of 400 poles, 95 % are within 1.7 % of the friction limit, all within 4
+    %: a patch has one pressure, which a tilt changes across it. Measured: 1.6 % and 2.9 %.
     """
     shape, patches, rng = contact(name), moved(name), np.random.default_rng(6)
     gyration = np.sqrt(shape.area_share @ np.sum(shape.position**2, axis=1))
@@ -189,8 +189,9 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
     ("name", "most"), [("frame", 0.01), ("square", 0.01), ("annulus", 0.01), ("row", 0.013)]
 )
 def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
-    """A patch at the pole pulls no way: 95 % of 400 poles within 1 % of the friction (three bolts in a row:
-    1.3 %), all within 2 %. Seen: 0.9, 1.0, 0.8 and 1.2 %; largest 1.8 %. Points would have 4 to 5 and 9 %.
+    """A patch at the pole has no direction of slip: 95 % of 400 poles are within 1 % of the friction limit
+    (three bolts in a row: 1.3 %), all within 2 %. Measured: 0.9, 1.0, 0.8 and 1.2 %; largest 1.8 %. Points
+    instead of patches have 4 to 5 and 9 %.
     """
     patches = moved(name)
     found = contact_patches.pole_deviations(contact(name), patches)
@@ -211,7 +212,7 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
     ],
 )
 def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion, monkeypatch):
-    """22 patches with the FMU's sliders: forces within 1 % of gross slip, areas of loops within 3 %.
+    """22 patches with the FMU's sliders: forces within 1 % of gross slip, loop areas within 3 %.
 
     A turn about a pole under a bolt has less friction, and 3 % of it. Every second of the benchmark's ways,
     the last one with them.

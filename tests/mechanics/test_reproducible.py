@@ -68,7 +68,7 @@ def searched(monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*CONTACTS, "field", "readme"])
 def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
-    """All numbers within 1e-9, and the exact sums those of the perturbed contact."""
+    """All numbers agree within 1e-9; the exact sums are those of the perturbed contact."""
     shape, rng = shape_of(name), np.random.default_rng(4)
     before = [point_reduction.reduce_points(shape, 120), reduction.reduce_patches(shape, 22)]
     searches = len(searched)
@@ -90,7 +90,8 @@ def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
 
 
 def test_rounded_numbers_keep_their_place():
-    """A number is moved by half a step at most but for the shift of the border, and not twice."""
+    """Rounding moves a number by at most half a step plus the offset of the rounding limit; rounding again
+    changes nothing."""
     rng = np.random.default_rng(2)
     shape = PressureDistribution(
         rng.random(99), rng.standard_normal((99, 2)), rng.random(99), rng.standard_normal(99)

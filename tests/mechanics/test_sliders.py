@@ -41,7 +41,7 @@ def along(*ways: float, approach: float = APPROACH) -> np.ndarray:
 
 
 def test_backbone_is_cattaneos(sliders):
-    """Within 1e-3 of the friction; gross slip at it exactly."""
+    """Within 1e-3 of the friction limit; gross slip is exact."""
     way = np.linspace(0.0, 1.3 * GROSS, 66)
     found = follow_path(sliders, along(*way))[0][:, 0]
     np.testing.assert_allclose(found, backbone(APPROACH, way[1:]), rtol=0.0, atol=1e-3 * LARGEST)
@@ -49,7 +49,7 @@ def test_backbone_is_cattaneos(sliders):
 
 
 def test_full_stick_is_exact(sliders):
-    """A displacement that lets no slider slip meets the ratio of the normal stiffness."""
+    """A displacement without slip has the stiffness ratio of the normal stiffness."""
     found = follow_path(sliders, along(0.0, 1e-5 * GROSS))[0][0, 0]
     np.testing.assert_allclose(found, RATIO * stiffness(APPROACH) * 1e-5 * GROSS, rtol=1e-9)
 
@@ -63,7 +63,7 @@ def test_area_of_a_loop_is_mindlins(sliders, part):
 
 
 def test_area_is_the_integral_of_the_force(sliders):
-    """The loss of a loop is what the force does around it; trapezoids of 400 steps a side."""
+    """The loss of a loop is the work of the force; trapezoidal rule with 400 steps per side."""
     u = float(displacement(APPROACH, 0.7))
     way = np.concatenate([np.linspace(u, -u, 401), np.linspace(-u, u, 401)[1:]])
     before = follow_path(sliders, along(0.0, u))
@@ -73,7 +73,7 @@ def test_area_is_the_integral_of_the_force(sliders):
 
 
 def test_small_loops_lose_with_the_third_power():
-    """Exponent 3.00 +- 0.05 from 2 to 6 % of the friction; by Mindlin it is 3.02 to 3.04 there."""
+    """Exponent 3.00 +- 0.05 from 2 to 6 % of the friction limit; Mindlin's sphere has 3.02 to 3.04 there."""
     fine, parts = foundation(0.004), np.geomspace(0.02, 0.06, 9)
     size = displacement(APPROACH, parts)
     losses = [np.sum(follow_path(fine, along(0.0, u, -u, u))[1][1:]) for u in size.tolist()]
@@ -83,7 +83,7 @@ def test_small_loops_lose_with_the_third_power():
 @pytest.mark.parametrize("start", [0.0, 0.2])
 @pytest.mark.parametrize("slope", [0.2, 0.35])
 def test_force_and_load_that_grow_in_a_line_do_not_slip(sliders, slope, start):
-    """dT/dN = slope mu < 0.4 mu: T = slope mu dN, hardly a loss, and back it is the same.
+    """dT/dN = slope mu < 0.4 mu: T = slope mu dN with hardly any loss, and the same on return.
 
     What the springs of one height lose and do not come back with is a part of their force: 1e-5 of the whole.
     """
@@ -99,7 +99,7 @@ def test_force_and_load_that_grow_in_a_line_do_not_slip(sliders, slope, start):
 
 @pytest.mark.parametrize("slope", [0.6, 0.9])
 def test_nearly_as_steep_as_friction_does_not_slip(sliders, slope):
-    """As above; the slider that is touching slips too early, which the number of heights makes small."""
+    """As above. The slider that comes into contact slips too early, less with more heights."""
     path = np.array([[0.1, 0.0, 0.0], [0.6, slope * FRICTION / RATIO * 0.5, 0.0]])
     found = follow_path(sliders, path, 40)[0][0, 0]
     np.testing.assert_allclose(found, slope * FRICTION * (load(0.6) - load(0.1)), rtol=4e-3)
@@ -108,7 +108,8 @@ def test_nearly_as_steep_as_friction_does_not_slip(sliders, slope):
 @pytest.mark.parametrize("start", [0.0, 0.2])
 @pytest.mark.parametrize("slope", [1.1, 1.5, 3.0])
 def test_steeper_than_friction_slips_as_under_the_last_load(sliders, slope, start):
-    """Mindlin and Deresiewicz 1953: dT/dN > mu leads where the last load and the displacement do alone."""
+    """Mindlin and Deresiewicz 1953: for dT/dN > mu the state depends on the last load and
+    displacement only."""
     end, way = 0.6, slope * FRICTION / RATIO * (0.6 - start)
     found = follow_path(sliders, np.array([[start, 0.0, 0.0], [end, way, 0.0]]), 40)[0][0, 0]
     np.testing.assert_allclose(found, backbone(end, way), rtol=0.0, atol=1e-3 * FRICTION * load(end))
@@ -117,7 +118,8 @@ def test_steeper_than_friction_slips_as_under_the_last_load(sliders, slope, star
 @pytest.mark.parametrize("slope", [0.2, 0.35])
 @pytest.mark.parametrize("end", [0.5, 0.3, 0.1])
 def test_less_load_lets_an_inclined_contact_slip_from_its_edge(sliders, slope, end):
-    """Load and force grew in a line, then the load falls: springs above h slip, below it they keep a part.
+    """Load and force increased in proportion, then the load decreases: springs above h slip, those below keep
+    a part.
 
     h (1 - slope) = end - slope 0.6 (all: none sticks), T = mu (slope P_h(0.6) + P(end) - P_h(end)),
     P_h(x) = P(h) + P'(h) (x - h) the load of the springs below h.
@@ -132,7 +134,7 @@ def test_less_load_lets_an_inclined_contact_slip_from_its_edge(sliders, slope, e
 
 
 def test_unloading_and_reloading_are_twice_the_backbone(sliders):
-    """Masing's rule, which Mindlin's sphere follows under constant load."""
+    """Masing's rule, which Mindlin's sphere follows at constant load."""
     u = float(displacement(APPROACH, 0.8))
     way = np.linspace(u, -u, 41)
     found = follow_path(sliders, along(0.0, *way))[0][:, 0]
@@ -141,7 +143,7 @@ def test_unloading_and_reloading_are_twice_the_backbone(sliders):
 
 
 def test_minor_loops_close_and_larger_ones_wipe_out_memory(sliders):
-    """Every slider is where it was; after a larger loop nothing is left of the smaller ones."""
+    """Every slider returns to its state; a larger loop erases the smaller ones."""
     u = 0.8 * GROSS
     start = follow_path(sliders, along(0.0, u, 0.2 * u))[2]
     tractions, _, around = follow_path(
@@ -154,7 +156,7 @@ def test_minor_loops_close_and_larger_ones_wipe_out_memory(sliders):
 
 
 def test_new_load_touches_new_springs_without_force(sliders):
-    """More load at rest adds no force along the surface, and its springs are loaded from there on."""
+    """More load at rest adds no tangential force; the springs in new contact are loaded from then on."""
     u = 0.3 * GROSS
     path = np.array([[APPROACH, 0.0, 0.0], [APPROACH, u, 0.0], [0.6, u, 0.0], [0.6, u + 1e-6, 0.0]])
     tractions = follow_path(sliders, path)[0][:, 0]
@@ -171,7 +173,7 @@ def test_opening_forgets(sliders):
     "approaches", [(0.4, 0.4), (0.1, 0.6), (0.6, 0.2)], ids=["constant", "growing", "falling"]
 )
 def test_ten_times_larger_steps_agree_along_straight_paths(sliders, approaches):
-    """To rounding: under constant load with slip, under another one without."""
+    """To round-off, at constant load with slip, and at changing load without slip."""
     way = 1.2 * GROSS if approaches[0] == approaches[1] else 0.02 * GROSS
     path = np.array([[approaches[0], 0.0, 0.0], [approaches[1], 0.6 * way, 0.8 * way]])
     (one, loss, _), (ten, losses, _) = follow_path(sliders, path), follow_path(sliders, path, 10)
@@ -181,8 +183,8 @@ def test_ten_times_larger_steps_agree_along_straight_paths(sliders, approaches):
 
 
 def test_steps_on_a_circle_converge_with_second_order(sliders):
-    """Half the step leaves a quarter of what is missing, against 512; the loss of a turn of 1.5 times gross
-    slip in 24 steps is 1.6 % short, where a return straight to the centre has 9 %."""
+    """Half the step gives a quarter of the error, against 512 steps. In 24 steps the loss of a turn of 1.5
+    times gross slip is 1.6 % too small; a straight radial return has 9 %."""
 
     def around(count: int) -> tuple[np.ndarray, float]:
         angle = np.linspace(0.0, 6.0 * np.pi, 3 * count + 1)
@@ -200,7 +202,8 @@ def test_steps_on_a_circle_converge_with_second_order(sliders):
 
 
 def test_a_slipping_force_turns_towards_the_shift():
-    """tan(angle/2) falls as exp(-K way/limit), with the heat limit ln(cosh g + cos sinh g): within g^3."""
+    """tan(angle/2) decays as exp(-K displacement/limit), with the heat limit ln(cosh g + cos sinh g), within
+    g^3."""
     angle, g = np.meshgrid(np.linspace(0.0, 0.5 * np.pi, 31), np.geomspace(1e-3, 0.3, 31))
     slid = return_map([np.cos(angle), np.sin(angle)], 1.0, 1.0, [g, 0.0 * g], 1.0, 1.0, 1.0, 1.0)
     np.testing.assert_allclose(np.hypot(*slid.force), 1.0, rtol=1e-14)
@@ -217,7 +220,7 @@ def test_a_slipping_force_turns_towards_the_shift():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_combined_motions_follow_many_springs(name):
-    """Load and displacement swing together: 126 sliders against 20 000 springs."""
+    """Load and displacement oscillate together: 126 sliders against 20 000 springs."""
     path = MOTIONS[name]
     forces, loss = follow_springs(path)
     tractions, losses, _ = follow_path(foundation(0.1), path)
@@ -254,7 +257,7 @@ def closed_paths(few: Foundation, count: int, steps: int) -> tuple[np.ndarray, .
 
 @pytest.mark.slow
 def test_no_closed_path_makes_work():
-    """10 000 paths: no step wins energy, and the force's work around each is positive."""
+    """10 000 paths: no step creates energy, and the work around each path is positive."""
     least, work, lost, left = closed_paths(foundation(0.8), 10_000, 24)
     assert np.all(least >= 0.0)
     assert np.all(work >= 0.0)
@@ -263,7 +266,8 @@ def test_no_closed_path_makes_work():
 
 
 def test_work_is_stored_or_lost():
-    """Around closed paths; what trapezoids leave falls to a sixteenth with a quarter of the step."""
+    """Around closed paths; with a quarter of the step, the error of the trapezoidal rule falls to a
+    sixteenth."""
     few = foundation(0.8)
     errors = []
     for steps in (96, 384):

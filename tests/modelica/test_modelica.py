@@ -223,7 +223,7 @@ def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload
 
 
 def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """And of another preload."""
+    """For another preload too."""
     file = load_default("harmonic_drive").with_values({"ratio": 50.0}, "user", "test")
     params = tmp_path / "mine.toml"
     params.write_text(format_parameter_file(file).replace(file.name, "my drive, 50:1"), encoding="utf-8")
@@ -241,7 +241,8 @@ def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pyt
 
 
 def test_command_takes_the_preload_of_the_file(tmp_path: Path):
-    """Its own record comes first, so the component shows it; the shipped systems find theirs as before."""
+    """Its record comes first, so the component shows it; the shipped systems use the same records
+    as before."""
     text = format_parameter_file(load_default("bolted_joint")).replace(
         "preload = { value = 0.0", "preload = { value = 43.1e3"
     )
@@ -256,7 +257,7 @@ def test_command_takes_the_preload_of_the_file(tmp_path: Path):
 
 
 def test_a_held_drive_leaves_its_states_to_the_tool():
-    """`prefer` sends a tool that has no state to take into a set of states whose Jacobian divides by zero."""
+    """`prefer` would make a tool without need of states choose a set of states whose Jacobian is singular."""
     text = (COMMITTED / "JointStiffness/Components/HarmonicDriveSpring.mo").read_text(encoding="utf-8")
     assert "stateSelect=if use_damping then StateSelect.prefer else StateSelect.default" in text
 
@@ -346,7 +347,7 @@ def test_drive_component_errs_as_the_package(rumoca: Any, drive: HarmonicDriveSp
 
 
 def test_drive_without_damping_and_inertia_is_its_own_inverse(rumoca: Any, drive: HarmonicDriveSpring):
-    """A held motor and a given torque with d = 0: with the damper the speed would be a division by zero."""
+    """Locked motor and prescribed torque with d = 0: with a damper the speed would be a division by zero."""
     body = (
         "Modelica.Mechanics.Rotational.Components.Fixed motor;\n"
         "  Modelica.Mechanics.Rotational.Sources.Torque torque;\n"
@@ -379,7 +380,7 @@ def test_gear_component_gives_the_force_of_the_package(rumoca: Any, gear: GearCo
 
 
 def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: BoltedJointSpring):
-    """Without memory: far below the limit, which the FMU has for each of its nodes."""
+    """Without history, far below the friction limit, which the FMU has for each of its nodes."""
     s, v = (0.0, -2e-9, -4e-6), (2e-6, -1e-6, 6e-3)
     flags = {"memory": False, "damping": True, "plastic_damping": True}
     plastic = BoltedJointSpring.for_interface_nodes(replace_values(bolted.joint, flags))
@@ -407,8 +408,8 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
 
 
 def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tmp_path: Path):
-    """Rows lift off one after the other, as the moment loads them unevenly. Stiff bolts, so that the contact
-    is far from its end."""
+    """Rows lift off one after the other, because the moment loads them unevenly. Stiff bolts keep the contact
+    closed."""
     file = load_default("bolted_joint").with_values({"bolt_stiffness": 1e10}, "user", "test")
     params, stated = tmp_path / "stiff.toml", ["--preload", "15e3", "--moment", "4500"]
     params.write_text(format_parameter_file(file), encoding="utf-8")
@@ -427,7 +428,7 @@ def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tm
 
 
 def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: Any, bolted: BoltedJointSpring):
-    """Without memory, where the linear force would be more than twice the limit, while the load changes."""
+    """Without history, where the linear force would exceed twice the limit, while the load changes."""
     body = "JointStiffness.Components.BoltedJoint joint(memory=false, damping=false);"
     rates = (6e-6, -4e-6, -5e-7)
     body += "".join(f"\n  Move m{a}(at=0.0, rate={v!r});" for a, v in zip("xyz", rates, strict=True))
@@ -457,8 +458,8 @@ end Circle;
 
 
 def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointSpring):
-    """One and a half times round an ellipse, while the normal force changes by a fifth; the rest is of the
-    sliders, whose number and places differ, and of the package's steps."""
+    """One and a half turns of an ellipse while the normal force changes by a fifth. The remaining difference
+    comes from number and positions of the sliders, and from the package's steps."""
     body = "JointStiffness.Components.BoltedJoint joint;\n  Circle way;\n  Real loss(start=0, fixed=true);"
     wires = " ".join(f"connect(joint.flange_{a}, way.{a});" for a in "xyz")
     found = simulate(
@@ -483,7 +484,8 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
 
 
 def test_the_bolted_component_read_by_another_parser_holds_along_the_solution(rumoca: Any):
-    """All equations as pymoca reads them, at what rumoca found; states by trapezia over the corners."""
+    """All equations as pymoca reads them, at the solution of rumoca; states by the trapezoidal rule over the
+    corners."""
     body = "JointStiffness.Components.BoltedJoint joint;\n  Circle way;"
     wires = " ".join(f"connect(joint.flange_{a}, way.{a});" for a in "xyz")
     found = simulate(rumoca, top(body, wires, _CIRCLE), 0.7, 4e-3, rtol=1e-6)
@@ -541,7 +543,8 @@ _BLOCK_OUTPUTS = ("phi_rel", "tau", "tau1", "tau2")
 
 
 def test_wrapper_moves_as_the_component(rumoca: Any):
-    """The sign of the adaptors: a block with the FMU's signs in the wrapper, beside the component."""
+    """Signs of the adaptors: the wrapper contains a block with the FMU's signs, and is compared with the
+    component."""
     inertia = "Modelica.Mechanics.Rotational.Components.Inertia"
     body = "\n  ".join(
         [

@@ -9,7 +9,7 @@ from jointfmu_tools.exchange.thinning import decimate_table
 
 @given(reach=st.lists(st.integers(1, 40), min_size=2, max_size=60), extra=st.sets(st.integers(1, 59)))
 def test_every_segment_is_as_long_as_fits(reach, extra):
-    """Node i reaches `reach[i]` further, and never past a stop."""
+    """Node i reaches `reach[i]` further, and never beyond a stop."""
     last = len(reach) - 1
     stops = {i for i in extra if i < last} | {last}
     nodes = decimate_table(stops, lambda i, j: j - i <= reach[i]).tolist()

@@ -92,7 +92,7 @@ def test_a_warning_is_given_by_each_path_that_exceeds_the_law():
 
 @needs("gmsh")
 def test_a_plot_leaves_the_library_of_the_joint_as_it_is(elastic_joint):
-    """The bolt forces of elastic sides are outputs once, however often the model gets the parameters."""
+    """The bolt forces of elastic sides are outputs only once, even if the model gets the parameters twice."""
     plate = jointfmu.load(elastic_joint / "joint.toml")
     before = plate.follow(s_rel_x=[0.0, 1e-6])
     plate.plot()

@@ -107,8 +107,7 @@ def pointer(values: np.ndarray) -> object:
 
 
 def draw_foundation(library: CDLL, curve: Curve, rng: np.random.Generator) -> RandomFoundation:
-    """Foundation with random parameters; onset and lift-off approach lie in the onset, in the table or beyond
-    it."""
+    """Foundation with random parameters; onset and lift-off approach lie in the closing, in the table or above."""
     table = scaled(curve, *np.exp(rng.uniform(-2.0, 2.0, 2)))
     low, high = table.displacement[[0, -1]]
     onset, smallest, *path = low + (high - low) * (1.2 * rng.random(2 + APPROACHES) ** 3 - 0.1)
@@ -132,7 +131,7 @@ def draw_foundation(library: CDLL, curve: Curve, rng: np.random.Generator) -> Ra
 
 def test_properties_are_those_of_python(library: CDLL, curve: Curve) -> None:
     """Stiffness, friction limit and slope without contact, in partial and in full contact, on loading and
-    unloading: the search for the ranges in contact starts at those of the approach before."""
+    unloading. The search for the ranges in contact starts at those of the previous approach."""
     rng, contacts = np.random.default_rng(3), np.zeros(3, dtype=int)
     for _ in range(FOUNDATIONS):
         drawn = draw_foundation(library, curve, rng)
@@ -162,7 +161,7 @@ def test_properties_are_those_of_python(library: CDLL, curve: Curve) -> None:
 
 
 def test_the_friction_limit_grows_with_the_pressure_in_full_contact(library: CDLL, curve: Curve) -> None:
-    """Both limits of a range add up to mu times its normal force, below and beyond its last height."""
+    """Both limits of a range add up to mu times its normal force, below and beyond its upper height."""
     rng = np.random.default_rng(4)
     for _ in range(FOUNDATIONS):
         drawn = draw_foundation(library, curve, rng)

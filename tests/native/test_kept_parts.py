@@ -48,7 +48,7 @@ def part_name(model: Model, file: ParameterFile) -> str:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_numbers_are_data_and_choices_are_code(name: str) -> None:
-    """One part for all numbers, those that no tool may set too; another for each choice."""
+    """One compiled part serves all numbers, also those that no tool may set; each choice has its own."""
     model, file = of(name)
     given = split_parameters(model, file)
     assert {*given.variable_names} == {*model.parameter_fields()}
@@ -118,7 +118,7 @@ def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch:
 
 
 def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Old ones go, and nobody reads half a file."""
+    """Old parts are deleted, and no process reads a half-written file."""
     monkeypatch.setattr(compiled_models, "MAX_CACHED_FILES", 3)
     place, content = tmp_path / "new.tar.xz", compiled_models.pack_model(a_part())
     for i in range(6):
@@ -164,7 +164,7 @@ int main(void)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_table_in_c_has_the_bytes_of_the_binaries(name: str, native: Path, tmp_path: Path) -> None:
-    """As the compiler lays the struct out; and the placeholders are gone."""
+    """The bytes agree with the struct that the compiler lays out; no placeholder remains."""
     model, file = of(name)
     files = generate_sources(name, file)
     given = split_parameters(model, file)
@@ -222,8 +222,8 @@ sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [kind.models[0].name for kind in KINDS.values()])
 def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) -> None:
-    """In the bare installation, once the default FMU was built; with the numbers of the package. FMUs of one
-    joint have what is fixed in common."""
+    """In an installation without compiler, after the default FMU was built; with the numbers of the package.
+    FMUs of one joint share all fixed contents."""
     kind = KINDS[MODELS[name].joint]
     tuned = ({n: v} for n, v in CASES[name].tuning.tuned.items())
     alone = [one for one in tuned if not list(kind.find_contradictions(of(name, one)[1].values))]

@@ -113,7 +113,7 @@ def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Pa
 
 @pytest.mark.parametrize("platform", compiler.ZIG_TARGETS)
 def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path: Path) -> None:
-    """So that the licences of FMUs are complete: what links is our objects, and stubs of the system's."""
+    """Then the list of licences is complete: only our objects and stubs of the system are linked."""
     source = "#include <math.h>\nint run(double x);\nint run(double x) { return sin(x) > 0.5; }\n"
     (tmp_path / "run.c").write_text(source)
     own = Path(compiler.__file__).with_name("windows.c")
@@ -230,8 +230,8 @@ def test_no_fmu_is_large(native: Path) -> None:
 def test_another_process_with_a_cold_cache_builds_the_same_bytes(
     native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One FMU of FMI 3.0 has the whole runtime but for one file; that sources repeat for every FMU is tested
-    beside descriptions."""
+    """One FMU of FMI 3.0, which contains the whole runtime except one file; equality of the sources of all
+    FMUs is tested in test_native_description.py."""
     name, version = "GearContact", "fmi3"
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "cold cache"))
     monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))

@@ -270,7 +270,7 @@ every_version = pytest.mark.parametrize("version", VERSIONS)
 
 @pytest.mark.parametrize("name", [*MODELS, *FEW_PARTNERS, *ALONE])
 def test_no_warning(sanitizing: str, builder: Builder, name: str) -> None:
-    """Of clang, or of zig, which is clang: the objects are those that run below."""
+    """Warnings of clang, or of zig, which is clang; the objects are those of the tests below."""
     assert builder.objects(sanitizing, name, *sanitized(sanitizing))
 
 
@@ -281,7 +281,7 @@ def test_gcc_does_not_warn(builder: Builder, name: str) -> None:
 
 
 def test_files_use_each_other_in_one_direction() -> None:
-    """A .c file with its header is one; joint_model.h only names the joint's header."""
+    """A .c file and its header count as one; joint_model.h only names the header of the joint."""
     uses: dict[str, set[str]] = {}
     for path in RUNTIME_FOLDER.rglob("*.[ch]"):
         found = set(re.findall(r'#include "(\w+)\.h"', path.read_text(encoding="utf-8")))
@@ -312,8 +312,8 @@ def test_no_data_that_changes_and_little_of_the_c_library(native: Path, tmp_path
 def test_in_order_and_out_of_order(
     sanitizing: str, builder: Builder, program: str, name: str, version: str
 ) -> None:
-    """What the runtime does, without a memory and with one; all joints are fuzzed below, and run their lives
-    without sanitizers."""
+    """The runtime is tested with a joint without and a joint with history. All joints are fuzzed below, and
+    simulated elsewhere without sanitizers."""
     run = builder.program(sanitizing, program, name)
     assert builder.call(builder.work, str(run), "", version, *c_of(name).arguments) == SAID[program]
 
@@ -335,7 +335,8 @@ def test_memory(sanitizing: str, builder: Builder, version: str) -> None:
 @every_version
 @pytest.mark.parametrize("name", ["GearContact", "BoltedJoint", "passthrough"])
 def test_threads(sanitizing: str, builder: Builder, name: str, version: str) -> None:
-    """No joint has data that change, see above: what threads could share is the runtime's."""
+    """No joint has global data that change (test above); only the runtime could share data between
+    threads."""
     c, reference = c_of(name), 1 + c_of(name).inputs + c_of(name).outputs
     if model := MODELS.get(name):
         reference += list(model.parameter_fields()).index(JOINTS[model.joint].scaled)
@@ -375,7 +376,7 @@ def check_mutations(builder: Builder, compiler: str, name: str, version: str, co
 def test_a_mutated_state_is_refused_or_used_without_harm(
     sanitizing: str, builder: Builder, name: str, version: str
 ) -> None:
-    """Its checksum is right: that protects against accidents alone."""
+    """The checksum of the changed state is right, because it only protects against accidents."""
     check_mutations(builder, sanitizing, name, version, MUTATIONS[name])
 
 
@@ -383,7 +384,7 @@ def test_a_mutated_state_is_refused_or_used_without_harm(
 def test_a_mutated_state_of_elastic_sides_is_refused_or_used_without_harm(
     sanitizing: str, builder: Builder, elastic_joint: Path
 ) -> None:
-    """In both versions, whose states differ in their head alone."""
+    """In both FMI versions, whose states differ in their header only."""
     ELASTIC_FILES[:] = [load_parameter_file(elastic_joint / "joint.toml")]
     for version in VERSIONS:
         check_mutations(builder, sanitizing, ELASTIC, version, ELASTIC_MUTATIONS)
@@ -393,8 +394,7 @@ def test_a_mutated_state_of_elastic_sides_is_refused_or_used_without_harm(
 def test_a_library_exports_all_and_leaves_nothing_behind(
     builder: Builder, native: Path, tmp_path: Path, name: str
 ) -> None:
-    """As hosts use it: loaded at run time, without sanitizers, whose allocator shows no growth. FMUs have one
-    already."""
+    """The library is loaded at run time as by hosts, without sanitizers, whose allocator would hide leaks."""
     zig, host, library = COMPILERS["zig"], builder.work / "lifecycle", tmp_path / f"{name}.so"
     if name not in MODELS:
         objects = map(str, builder.objects("zig", name, *PLAIN["zig"]))

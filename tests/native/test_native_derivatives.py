@@ -84,7 +84,7 @@ def sides(instance: Fmu, state: dict[str, float], name: str, h: float) -> dict[s
 def test_stiffnesses_of_a_sheared_joint_have_the_slopes_of_their_differences(
     host: Host, version: str, accepted: bool
 ) -> None:
-    """Springs that begin to touch under the preload of the first shear count: stiff across it alone."""
+    """Springs that come into contact under the preload of the first shear are stiff across the shear only."""
     state = {"preload": 3e4, "s_rel_x": 5e-7, "s_rel_z": 0.0}
     instance = host("BoltedJoint", version).start({"preload": 3e4})
     instance.set_values(state)
@@ -174,7 +174,7 @@ def check_mean_of_sides(instance: Fmu, state: dict[str, float], nominal: dict[st
 def test_derivatives_in_random_states_are_the_mean_of_both_sides(
     host: Host, version: str, moment: str
 ) -> None:
-    """All outputs by all inputs."""
+    """All outputs with respect to all inputs."""
     nominal = {v.name: v.nominal for v in MODELS["BoltedJoint"].outputs}
     for seed in range(16):
         instance = host("BoltedJoint", version)
@@ -186,7 +186,7 @@ def test_derivatives_in_random_states_are_the_mean_of_both_sides(
 def test_derivatives_of_elastic_sides_are_the_mean_of_both_sides(
     host: Host, elastic_joint: Path, version: str, moment: str
 ) -> None:
-    """What slips on either side follows from how the sides deform in that direction."""
+    """The sliders that slip on either side depend on the deformation of the sides in that direction."""
     nominal = {v.name: v.nominal for v in MODELS["BoltedJoint"].outputs}
     for seed in (1, 3, 5, 7, 9):
         instance = host("BoltedJoint", version, elastic_joint)
@@ -194,7 +194,8 @@ def test_derivatives_of_elastic_sides_are_the_mean_of_both_sides(
 
 
 def test_the_largest_of_equal_pressures_has_the_mean_of_both_sides(host: Host, version: str) -> None:
-    """A tilt presses on one side and relieves the other, where pressures are equally large."""
+    """A tilt increases the pressure on one side and reduces it on the other, where pressures are equally
+    large."""
     instance = host("BoltedJoint", version).start({"preload": 1e4})
     state = {"preload": 1e4, "theta_x": 0.0, "theta_y": 0.0, "moment": 0.0}
     found = jacobian(instance)

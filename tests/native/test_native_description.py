@@ -484,7 +484,7 @@ for model in MODELS.values():
 
 @pytest.mark.slow
 def test_two_processes_write_the_same_bytes() -> None:
-    """Whatever the order of sets: this one hashes by another seed."""
+    """The order of sets does not matter: the second process uses another hash seed."""
     environment = {k: v for k, v in os.environ.items() if k != "SOURCE_DATE_EPOCH"}
     run = subprocess.run(
         [sys.executable, "-c", DIGEST],
@@ -540,7 +540,7 @@ def test_the_flanges_of_each_joint(name: str) -> None:
 
 
 def test_flows_are_signed_as_the_standard_asks(name: str) -> None:
-    """Inflow is applied to the element and winds it up; outflow is what it applies and opposes the motion."""
+    """Inflow acts on the element and winds it up; outflow is applied by the element against the motion."""
     rest = {v.name: 0.0 for v in MODELS[name].inputs} | CASES[name].numbers.rest
     for terminal in etree.fromstring(pictures(name)["terminalsAndIcons.xml"]).find("Terminals"):
         members = {m.get("memberName"): m for m in terminal.findall("TerminalMemberVariable")}
@@ -685,7 +685,8 @@ def test_the_page_draws_the_ramp_of_its_own_parameters() -> None:
 @pytest.mark.slow
 @needs("Chromium")
 def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> None:
-    """As many lines as the page has series, no number missing, on a phone's width too."""
+    """Each chart has as many lines as the page has series and no missing number, also on the width of a
+    phone."""
     text = pages(name)["index.html"].decode()
     found = re.findall(r'<script type="application/json">(.*?)</script>', text)
     lines = [len(panel["series"]) for panels in found for panel in json.loads(panels)]
@@ -714,7 +715,7 @@ def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> N
 
 
 def test_a_joint_may_say_nothing_of_flanges_and_plot() -> None:
-    """Then the page has no terminals, and the plot shows the first output over the driven input."""
+    """Then the page has no terminals, and its plot shows the first output over the ramped input."""
     model = MODELS["GearContact"]
     text = make_documentation(replace(model, name="Other"), load_default(model.joint))["index.html"].decode()
     assert "<h3>Terminals</h3>" not in text

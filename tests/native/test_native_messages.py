@@ -174,7 +174,7 @@ def test_inputs_too_large_for_an_output_are_named(host: Host, version: str) -> N
 
 
 def test_a_refusal_lists_the_largest_inputs_alone(host: Host, version: str) -> None:
-    """With all its inputs, the reason at the end of the line was cut off."""
+    """With all inputs, the reason at the end of the line would be cut off."""
     instance = host("HarmonicDriveSpring", version).start(GOOD["HarmonicDriveSpring"])
     instance.set_values({"phi1": 4.0, "w1": 5.0, "phi2": 1e308, "w2": 3.0})
     said = instance.refused(instance.step)

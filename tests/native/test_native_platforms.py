@@ -251,7 +251,7 @@ def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, versio
 @pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
 @every_machine
 def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: str) -> None:
-    """The runtime does: it is driven in the joint that starts fastest."""
+    """The runtime behaves alike; it is tested with the joint that starts fastest."""
     name = "HarmonicDriveCompliance"
     assert run(program, machine, name, version, *counts(MODELS[name])) == SAID[program]
 

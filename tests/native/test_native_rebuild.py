@@ -24,7 +24,8 @@ COMPILER_TOLERANCE = 1e-9
 def test_fmpy_compiles_the_sources_to_the_same_fmu(
     native: Path, tmp_path: Path, name: str, version: str
 ) -> None:
-    """The two with most C of their own, one of each version; test_native_c.py has the warnings of all."""
+    """Two FMUs with most C code of their own, one of each version; test_native_c.py checks the warnings of
+    all."""
     built, again = native / version / f"{name}.fmu", tmp_path / f"{name}.fmu"
     with zipfile.ZipFile(built) as old, zipfile.ZipFile(again, "w") as new:
         for member in old.namelist():

@@ -68,7 +68,7 @@ def test_a_state_as_bytes_goes_into_an_instance_that_was_never_initialized(
 
 
 def test_what_was_asked_before_does_not_matter(host: Host, name: str, version: str) -> None:
-    """Not one bit: what an instance keeps of other inputs only saves time."""
+    """Not by one bit: values that an instance stores for other inputs only save time."""
     fresh, used = host(name, version).start(), host(name, version).start()
     asked = random_inputs(name, 60, seed=61)
     swept = [asked[0] | {"s_rel_z": -2e-6 + 4e-9 * k} for k in range(1000)] if name == "BoltedJoint" else []
@@ -103,7 +103,7 @@ def test_what_was_warned_of_belongs_to_the_state(host: Host, version: str) -> No
 def test_a_state_of_a_joint_with_other_parameters_is_refused_by_name(
     host: Host, tmp_path: Path, version: str
 ) -> None:
-    """Both have the same size: only the instantiation token tells them apart."""
+    """Both states have the same size; only the instantiation token distinguishes them."""
     file = load_default(MODELS["BoltedJoint"].joint).with_values({"embedding": 800.0}, "user", "test")
     with here_alone(version[-1]):
         build_fmus(["BoltedJoint"], [version], file, tmp_path)
@@ -119,7 +119,7 @@ def test_a_state_of_a_joint_with_other_parameters_is_refused_by_name(
 
 
 def test_a_state_pointer_of_another_fmu_is_refused(host: Host, version: str, exchange: bool) -> None:
-    """A GearContact's state is smaller: what BoltedJoint reads of it stands before the first variable."""
+    """The state of a GearContact is smaller: BoltedJoint reads only its part before the first variable."""
     bolted, gear = (host(name, version, exchange=exchange).start() for name in ("BoltedJoint", "GearContact"))
     before, foreign = numbers(bolted), gear.fmu.getFMUState()
     sizes = [len(f.fmu.serializeFMUState(f.fmu.getFMUState())) for f in (gear, bolted)]

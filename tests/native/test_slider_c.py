@@ -155,7 +155,7 @@ def assert_close(found: object, expected: object, size: float) -> None:
 
 
 def test_along_one_direction(library: CDLL) -> None:
-    """Forces, sums, tangent and rates of a limit that changes, slope of the heat of one that stays."""
+    """Forces, sums, tangent and rates of a changing limit, and derivative of the heat at a constant limit."""
     moved, slipped = np.empty(SLIDERS), 0
     for K, before, after, force, (u, *_) in moves(plane=False):
         rows = rows_of(K, before, after, force)
@@ -256,8 +256,8 @@ def forces_together(
 
 
 def test_slopes(library: CDLL) -> None:
-    """Finite of whatever sliders; where none begins or ends to slip they are what differences tend to: within
-    the step over the least limit."""
+    """Finite for any sliders. Away from the start and end of slip they agree with differences, within the
+    step over the smallest limit."""
     rng, step, compared = np.random.default_rng(2), 1e-6, 0
     for K, before, after, force, shift in moves(plane=True):
         rates = rng.normal(size=(3, SLIDERS))
@@ -278,7 +278,7 @@ def test_slopes(library: CDLL) -> None:
 
 
 def test_a_path_that_moves_nothing_changes_nothing(library: CDLL) -> None:
-    """Sliders that came back to their limit stick: no heat, no other force, for any direction."""
+    """Sliders that return to their limit stick: no heat and no change of force, for any direction."""
     for K, limit, _, force, shift in moves(plane=True):
         there = in_plane(library, rows_of(K, limit, limit, force), shift)[:2]
         found = in_plane(library, rows_of(K, limit, limit, there), np.zeros(3))
@@ -287,7 +287,7 @@ def test_a_path_that_moves_nothing_changes_nothing(library: CDLL) -> None:
 
 
 def test_limits_grow_by_the_stiffness(library: CDLL) -> None:
-    """From what stands in the rows, and are never below nothing."""
+    """Limits grow from the stored value, and are never negative."""
     for K, before, after, force, shift in moves(plane=True):
         rows, found = rows_of(K, before, after, force), np.empty((2, 7, SLIDERS))
         grown = [
@@ -305,7 +305,7 @@ def test_limits_grow_by_the_stiffness(library: CDLL) -> None:
 
 
 def test_force_alone(library: CDLL) -> None:
-    """It is that of the whole, with its tangent."""
+    """The force without tangent equals the force with tangent."""
     for K, limit, _, force, (u, *_) in moves(plane=False):
         rows = rows_of(K, limit, limit, force)
         s = in_c(rows)

@@ -29,7 +29,7 @@ def fmu(path: Path, attributes: str) -> Path:
 
 @pytest.mark.parametrize("kind", [None, *ALGORITHMS])
 def test_a_file_with_its_checksum_is_read(tmp_path: Path, kind: str | None) -> None:
-    """Without a type it is SHA3-256; absent and distant files have none to compare."""
+    """Without a stated type the checksum is SHA3-256; missing files and web addresses are not compared."""
     name = (kind or "SHA3-256").lower()
     name = name.replace("-", "_") if name.startswith("sha3") else name.replace("-", "")
     digest = hashlib.new(name, EXPERIMENTS).hexdigest().upper()

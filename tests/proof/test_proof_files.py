@@ -116,7 +116,7 @@ def test_every_experiment_states_times_and_tolerance(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_references_are_those_of_the_joint_itself(name: str) -> None:
-    """By the joint's own function, without what the builders call."""
+    """Computed by the functions of the joint, without those that the builders call."""
     model, file = given(name)
     ramp = next(one for one in made(name) if one.name == "load ramp")
     joint = law(name, parameters(name))
@@ -132,7 +132,7 @@ def test_references_are_those_of_the_joint_itself(name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name in NAMES if MODELS[name].advance])
 def test_the_loop_shows_memory(name: str) -> None:
-    """At the same input on the way up and down outputs differ, by far more than the tolerance."""
+    """At the same input, outputs on loading and unloading differ by far more than the tolerance."""
     loop = next(one for one in made(name) if one.name == "loop")
     levels = loop.stimulus.levels
     first, second = (i for i in range(1, levels.size - 1) if levels[i] == levels[0])
@@ -150,7 +150,7 @@ def test_every_joint_with_memory_has_a_loop() -> None:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
-    """Towards the end of its interval the next value is refused, by the interval or by the joint."""
+    """The next value towards the end of the interval is refused, by the interval or by the joint."""
     model, file = given(name)
     found = [one for one in made(name) if one.doc.startswith("inside ")]
     assert found or name in PARTNERS  # whose numbers may have no end
@@ -218,7 +218,7 @@ def test_the_sources_of_parameters_can_be_built_from(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_it_is_small(name: str) -> None:
-    """Packed it is below 50 kB, a tenth of an FMU; unpacked below 120 kB."""
+    """Packed below 50 kB, a tenth of an FMU; unpacked below 120 kB."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for path, content in members(name).items():
@@ -237,7 +237,7 @@ def test_the_text_says_how_many_and_how_near(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["TorqueProfile", "ForceProfile", "AngleProfile"])
 def test_a_course_over_time_shows_itself_in_its_proof_alone(name: str) -> None:
-    """A system's file that states no pulse and no turn has none."""
+    """The file of a system that states no pulse and no reversal has none in its experiments."""
     model, file = given(name)
     assert not any(value for key, value in file.values_by_name.items() if key.endswith("height"))
     one = made(name)[1]
@@ -255,7 +255,7 @@ def test_a_mass_under_a_constant_force_moves_as_newton_says() -> None:
 
 
 def test_a_weight_keeps_its_energy() -> None:
-    """The integration of states: kinetic and potential energy against the work of the torque."""
+    """Integration of states: kinetic and potential energy against the work of the torque."""
     model, file = given("RotationalInertia")
     values = replace_values(file.values, {"m": 2.0, "l": 0.3})
     drive = Stimulus("tau_a", np.full(21, 1.0), 0.05)

@@ -76,7 +76,7 @@ def test_an_fmu_proves_itself(
 def test_fmus_of_other_laws_prove_themselves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], joint: str, law: str
 ) -> None:
-    """Under a name of the user's own, too."""
+    """Also under a name that the user chose."""
     name = KINDS[joint].models[-1].name
     with here_alone("3"):
         fmu = native_build(name, load_default(joint, law), tmp_path, "3", alias="own_joint")
@@ -158,7 +158,7 @@ def test_a_library_that_computes_something_else_fails_by_name(
 def test_a_library_that_crashes_fails_in_one_line(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Machine code overwritten by the instruction that traps."""
+    """Machine code is overwritten by the instruction that traps."""
 
     def change(name: str, data: bytes) -> bytes:
         if name != LIBRARY:
@@ -315,7 +315,7 @@ def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
 def test_an_fmu_agrees_with_the_parameter_file_that_it_is_of(
     native: Path, fmus: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What the FMU carries is not read: references come from the file."""
+    """The references come from the parameter file, not from the FMU."""
     own = KINDS[MODELS[NAME].joint].default_file()
     for path in (native / "fmi3" / f"{NAME}.fmu", fmus / f"{NAME}.fmu"):
         assert_all_pass(proved(capsys, path, "--against", str(own)))
@@ -324,7 +324,8 @@ def test_an_fmu_agrees_with_the_parameter_file_that_it_is_of(
 def test_a_changed_parameter_is_seen_though_references_were_changed_along(
     fmus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The python flavour with another parameter in all its files proves itself; the true file is missed."""
+    """A python FMU with another parameter in all its files passes its own proof; with the right file it
+    misses."""
     text = b"e = { value = 0.2,", b"e = { value = 0.3,"
     path = resealed(fmus / f"{NAME}.fmu", tmp_path / f"{NAME}.fmu", "e", 0.3)
     path = copy(path, tmp_path / "changed.fmu", replaced("resources/parameters.toml", *text))
@@ -356,7 +357,7 @@ STEP = (
 def test_a_manifest_of_an_older_draft_is_read(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Times as attributes, no tolerance, columns not quoted, an address with an escape, a start time."""
+    """Times as attributes, no tolerance, unquoted columns, an address with an escape, a start time."""
     with zipfile.ZipFile(fmu) as archive:
         text, drive = (
             archive.read(f"{REFERENCE_FOLDER}/experiments/01_load_ramp_{x}.csv").decode()
@@ -381,7 +382,7 @@ def test_a_manifest_of_an_older_draft_is_read(
 def test_memory_is_accepted_at_completed_steps(
     native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """An importer that is told to leave them out in model exchange misses the loop, and only that way."""
+    """An importer that omits completed steps misses the loop in model exchange, and only there."""
     name = next(model.name for model in MODELS.values() if model.load_cycle)
     with zipfile.ZipFile(native / "fmi3" / f"{name}.fmu") as archive:
         assert b'needsCompletedIntegratorStep="true"' in archive.read("modelDescription.xml")
@@ -473,7 +474,7 @@ def counter(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_an_fmu_of_another_kind_is_proved_by_its_manifest(
     counter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """x = 3 rate t, of a parameter set with a whole number; and x = 0 where it is off."""
+    """x = 3 rate t for a parameter set with an integer, and x = 0 if it is switched off."""
     space = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
     values = {
         "three.ssv": '<v:Parameter name="times"><v:Integer value="3"/></v:Parameter>',
@@ -521,7 +522,8 @@ def test_the_text_has_value_reference_and_tolerance(fmu: Path, capsys: pytest.Ca
 def test_the_listing_has_what_the_cross_check_asks_for(
     native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], version: str
 ) -> None:
-    """Read by fmpy's own readers; fmpy's own simulation meets the references in their rules' band."""
+    """fmpy's readers read the files, and fmpy's simulation meets the references within the band of
+    the rules."""
     import fmpy
 
     fmu = native / version / f"{NAME}.fmu"
@@ -570,7 +572,7 @@ def test_no_listing_of_an_fmu_that_fails(
 
 
 def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:
-    """In the midst of an experiment of a million steps."""
+    """During an experiment of a million steps."""
     one = '<Experiment name="long"><TransientSimulation stopTime="10" stepSize="2e-6"/></Experiment>'
     path = other_manifest(fmu, tmp_path / "long.fmu", one)
     command, own = [sys.executable, "-m", "jointfmu", "prove", str(path)], tmp_path / "own"
@@ -598,7 +600,7 @@ def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:
 def test_the_json_of_a_number_that_is_none_is_json(
     counter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """An output that is not finite misses; its value is null."""
+    """An output that is not finite misses; its JSON value is null."""
     files = {"u.csv": b"time,rate\n0,inf\n2,inf\n", "y.csv": b"time,x\n2,3\n"}
     one = (
         '<Experiment name="endless"><TransientSimulation stepSize="1"/>'

@@ -81,7 +81,7 @@ INPUT = csv(np.array([0.0, 3.0]), {"u": np.array([2.0, 2.0])})
 def test_events_of_all_kinds_are_met(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], importer: str
 ) -> None:
-    """It fires four times; an integer output is compared; an enumeration is given by the name of its item."""
+    """Four events occur; an integer output is compared; an enumeration is set by the name of its item."""
     files = {"u.csv": INPUT, "y.csv": csv(TIME, exact(TIME)), "double.csv": csv(TIME, exact(TIME, gain=2.0)),
              "double.ssv": ssv('name="gain"><v:Enumeration value="double"/>')}  # fmt: skip
     double = '<Parameters source="double.ssv"/><Stimuli source="u.csv"/><References source="double.csv"/>'
@@ -102,7 +102,7 @@ def test_events_of_all_kinds_are_met(
 def test_an_event_that_nearly_meets_a_communication_point_is_met(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Sampled every 0.1 s, which the FMU adds up: round-off apart from the points of a grid of 0.05 s."""
+    """The FMU samples every 0.1 s by addition, so its times differ by round-off from the grid of 0.05 s."""
     events = np.cumsum(np.full(30, 0.1))
     apart = np.abs(events - 0.05 * np.round(events / 0.05))
     assert np.any((apart > 0.0) & (apart < 1e-14))
@@ -117,7 +117,7 @@ def test_an_event_that_nearly_meets_a_communication_point_is_met(
 def test_inputs_jump_and_are_switched_off(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """u jumps from 0.8 to 0.5 at 1 s, a truth value turns it off at 2 s; results that jump there, too, are of
+    """u jumps from 0.8 to 0.5 at 1 s, a Boolean switches it off at 2 s; results at these times may be of
     either side."""
     begin = -0.8 * np.expm1(-1.0)
     middle = 0.5 + (begin - 0.5) * np.exp(-1.0)
@@ -135,7 +135,7 @@ def test_inputs_jump_and_are_switched_off(
 def test_an_input_that_rises_is_straight_in_model_exchange(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """x' = t/5 - x; co-simulation that holds an input for a step of 50 ms misses this tolerance."""
+    """x' = t/5 - x; co-simulation that holds the input for a step of 50 ms misses this tolerance."""
     x = (TIME - 1.0 + np.exp(-TIME)) / 5.0
     files = {"u.csv": b"Time,u\n0,0\n3,0.6\n", "y.csv": csv(TIME, {"x": x})}
     path = other_manifest(neuron, tmp_path / "n.fmu", experiment("rise", FILES), **files)
@@ -185,7 +185,7 @@ def test_an_fmu_for_model_exchange_only_is_refused_for_ecos(
 def test_a_missed_event_misses_by_name(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without its event indicator it does not fire in model exchange."""
+    """Without its event indicator the event does not occur in model exchange."""
     files = {"u.csv": INPUT, "y.csv": csv(TIME, {"fired": exact(TIME)["fired"]})}
     path = other_manifest(neuron, tmp_path / "all.fmu", experiment("one", FILES), **files)
     change = replaced("modelDescription.xml", b'numberOfEventIndicators="1"', b'numberOfEventIndicators="0"')
@@ -197,7 +197,7 @@ def test_a_missed_event_misses_by_name(
 def test_times_that_are_not_stated_are_those_of_the_results(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """No time, no tolerance, no input: it rests."""
+    """No time, no tolerance and no input are stated: the FMU stays at rest."""
     files = {"y.csv": b"time,x,fired\n0,0,0\n0.5,0,0\n"}
     one = '<Experiment name="rest"><TransientSimulation/><References source="y.csv"/></Experiment>'
     found = proved(capsys, other_manifest(neuron, tmp_path / "n.fmu", one, **files))
@@ -227,7 +227,7 @@ def test_values_that_do_not_fit_are_named(
 def test_what_lies_elsewhere_or_in_other_formats_is_left_out(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """An absolute address, an experiment of another format, two files of results."""
+    """A web address, an experiment in another format, two result files."""
     files = {"y.csv": b"time,x\n0,0\n3,0\n"}
     two = '<References source="y.csv"/><References source="z.csv"/>'
     path = other_manifest(neuron, tmp_path / "n.fmu", experiment("two", two), **files)
@@ -248,8 +248,8 @@ def test_what_lies_elsewhere_or_in_other_formats_is_left_out(
 def test_the_example_of_the_standard_is_read(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Its manifest as it stands, with labels, annotations, and files that are not there; experiments as the
-    example of the draft has them, one with results in HDF5."""
+    """Original manifest with labels, annotations and missing files; experiments as in the example of the
+    draft, one with results in HDF5."""
     manifest = (HERE / "standards" / "fmi_ls_ref_manifest_example.xml").read_bytes()
     smoke = b"""<?xml version="1.0" encoding="UTF-8"?>
 <Experiments name="Smoke Tests" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"

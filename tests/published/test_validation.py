@@ -124,7 +124,7 @@ def test_values_are_those_of_the_papers():
 
 
 def test_table_3_is_divided_by_the_experiment(rows):
-    """Zhao 2018, Table 3: what is computed is 100 (predicted/measured - 1)."""
+    """Zhao 2018, Table 3: the error is 100 (predicted/measured - 1)."""
     for row in rows:
         if row.point.quantity == "frequency_error":
             given = row.point.where
@@ -178,7 +178,7 @@ def test_compare(changes, computed, error, passed):
 
 @pytest.mark.parametrize("role", [role for role in ROLES if role != "claim"])
 def test_what_a_miss_means(role):
-    """It counts, unless the point was met by calibration or by construction."""
+    """A miss counts, unless the point was met by calibration or by construction."""
     row = compare_point(point(role=role), -300.0)
     assert not row.has_passed
     assert missed_points([row]) == ([] if role in UNTESTED_ROLES else [row])
@@ -260,7 +260,7 @@ def test_a_guess_that_is_none_is_refused(how, said):
 
 @pytest.mark.parametrize("name", ["x", "z", "missing"])
 def test_a_guess_from_what_was_not_calibrated_is_refused(name):
-    """From itself, from a prediction without a guess, from nothing."""
+    """A guess from the point itself, from a prediction without guess, or from no point."""
     asked = point(guess=Guess(rule="constant", points=[name]))
     with pytest.raises(ValueError, match=f"x: guess from '{name}', allowed are calibration points"):
         compute_trivial_guesses([point(id="z"), asked])
@@ -288,7 +288,7 @@ def test_modes_are_guessed_from_the_lower_preload():
 
 
 def test_a_wrong_computed_value_is_a_miss(monkeypatch):
-    """Every quantity in turn wrong by twice its tolerance, in either direction, and claims turned round."""
+    """Every quantity in turn is wrong by twice its tolerance, in both directions; claims are inverted."""
     for name in OBSERVABLES:
         first = next(p for p in ALL if p.quantity == name)
         for sign in (-1.0, 1.0):
@@ -351,7 +351,7 @@ def test_summary(rows):
 
 
 def test_another_parameter_set_is_compared():
-    """Those given count, the others are the defaults."""
+    """The given parameter sets are used, and defaults for the others."""
     soft = load_default("harmonic_drive").with_values({"K_FTS0": 1e4}, "user", "test")
     found = validate({"harmonic_drive": soft})
     names = {row.point.id for row in found if not row.has_passed}
@@ -383,7 +383,7 @@ def test_as_many_points_as_unknowns():
     ("curve", "most"), [("K_TS.max", 2), ("K_TS.min", 2), ("K_TS.eccentricity", 1), ("K_WTS.measured", 1)]
 )
 def test_part_of_every_curve_is_not_fitted(curve, most):
-    """At most two of three torques of a stiffness curve are fitted, one of the eccentricity's."""
+    """At most two of three torques of a stiffness curve are fitted, and one of the eccentricity's curve."""
     of_curve = [p for p in ALL if p.id.startswith(f"{curve}.")]
     assert len(of_curve) == (2 if curve == "K_WTS.measured" else 3)
     assert 1 <= sum(p.role == "calibration" for p in of_curve) <= most
@@ -413,8 +413,8 @@ def refitted(monkeypatch, fits):
 @pytest.mark.slow
 @pytest.mark.parametrize("joint", FITS)
 def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
-    """From other values in the file, from other starting values of the fit, with every other
-    point made unusable."""
+    """From other values in the file, other start values of the fit, and with every other point made
+    unusable."""
     committed = load_default(joint)
     paper, fits = FITS[joint]
     unknowns = [name for fit in fits for name in fit.unknowns]
@@ -443,7 +443,7 @@ def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
 
 
 def test_a_point_of_another_role_cannot_be_fitted(monkeypatch):
-    """A fit that names one does not find it."""
+    """A fit that names such a point does not find it."""
     _, (fit,) = FITS["bolted_joint"]
     peeking = replace(fit, point_ids=("p_max.9kN", "psi.1.5"))
     refitted(monkeypatch, (peeking,))
@@ -459,7 +459,7 @@ def test_a_joint_without_points_is_refused():
 
 @pytest.mark.slow
 def test_a_fit_that_cannot_be_met_is_reported(monkeypatch):
-    """A pressure between the bolts above the largest one."""
+    """A pressure between the bolts above the largest pressure."""
     paper = FITS["bolted_joint"][0]
     bad = [replace(p, value=9e6) if p.id == "p_between.9kN" else p for p in read_points(paper)]
     monkeypatch.setattr(calibration, "read_points", lambda asked: bad)
@@ -472,7 +472,7 @@ UNKNOWNS = [(joint, name) for joint, (_, fits) in FITS.items() for fit in fits f
 
 @pytest.mark.parametrize(("joint", "name"), UNKNOWNS)
 def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
-    """One per mille off moves a computed value; of the drive, one that was not fitted."""
+    """A change of one per mille moves a computed value; for the drive, a value that was not fitted."""
     file = load_default(joint)
     changed = file.with_values({name: flatten_parameters(file.values)[name] * 1.001}, "user", "test")
     paper = FITS[joint][0]
@@ -489,7 +489,7 @@ def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
 
 
 def test_validation_reads_nothing_but_the_parameter_set(rows, monkeypatch):
-    """Published values do not leak into what is computed."""
+    """Published values have no influence on computed values."""
     shifted = {
         paper: [
             p if isinstance(p.value, bool) else replace(p, value=0.1 * p.value) for p in read_points(paper)

@@ -49,7 +49,8 @@ def test_an_end_is_given_once(ends, names):
 
 
 def test_ends_may_be_arrays():
-    """Samples of a parameter and of the interval that others decide for it, in broadcast shapes."""
+    """Samples of a parameter, and samples of the interval that other parameters determine, in broadcast
+    shapes."""
     interval = Interval.from_bounds(ge=np.array([0.0, 1.0, np.nan]), lt=2.0)
     np.testing.assert_array_equal(interval.contains(1.0), [True, True, False])
     np.testing.assert_array_equal(

@@ -17,7 +17,8 @@ def test_ends_and_middle() -> None:
 
 
 def test_slopes_and_integral_are_those_of_the_step() -> None:
-    """Central differences err by h^2/6 times the third derivative, 60 of the step and 360 of its slope.
+    """Central differences have the error h^2/6 times the third derivative, 60 for the step and 360 for its
+    derivative.
 
     Round-off is some 1e-16/h.
     """

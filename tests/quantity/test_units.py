@@ -198,7 +198,7 @@ def test_other_symbols_keep_exponents():
 
 
 def test_sets_are_consistent():
-    """Newton's law and the pressure of a force have no factor in a set."""
+    """Newton's law, and pressure as force over area, have no factor in a set of units."""
     for one in SETS.values():
         assert conversion_factor(one.symbol("kg.m/s2"), one.symbol("N")) == 1.0
         assert conversion_factor(one.symbol("N/m2"), one.symbol("Pa")) == 1.0

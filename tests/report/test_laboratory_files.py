@@ -221,7 +221,7 @@ def test_a_shipped_file_is_shown_whatever_was_shown_before(shown: Browser, stem:
 def test_a_file_with_other_numbers_is_shown(
     shown: Browser, module: PageModule, seed: int, tmp_path: Path
 ) -> None:
-    """Whatever the page can take; start values of inputs too."""
+    """Files with all numbers that the page can change, start values of inputs included."""
     rng = np.random.default_rng(seed)
     choose(shown, module.model.name)
     drawn = random_values(module, rng, False)
@@ -241,7 +241,7 @@ def test_what_new_writes_without_lists_is_shown(
 
 @needed
 def test_a_file_is_read_however_it_is_written(shown: Browser, tmp_path: Path) -> None:
-    """Without its law, with whole numbers, in tables and dotted keys, with comments and other line ends."""
+    """Without the law, with integers, in tables and dotted keys, with comments and other line ends."""
     choose(shown, "HarmonicDriveSpring", 3)
     text = format_parameter_file(load_default("harmonic_drive"))
     check_shown(shown, re.sub(r"(?m)^law = .*\n", "", text), tmp_path)
@@ -277,7 +277,7 @@ def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) 
 def test_a_bolted_joint_of_a_drawing_is_refused(
     shown: Browser, drawings: dict[str, str], name: str, key: str
 ) -> None:
-    """Of the complete joint, and of its interface: the points that carry it are not those of the page."""
+    """A complete joint, and its interface: their contact points are not those of the page."""
     for model, index in (("BoltedJoint", 0), ("BoltedJoint", 1), ("GearContact", 0)):
         choose(shown, model, index)
         said = refusal(shown, drawings[name])
@@ -411,7 +411,7 @@ def test_an_address_of_another_page_is_said_and_not_mixed_in(shown: Browser) -> 
 
 @needed
 def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, str], tmp_path: Path) -> None:
-    """Reset to the file is back to this file; what is saved is this file with what was moved."""
+    """The reset returns to this file; a saved file is this file with the changed values."""
     drop(shown, drawings["contact"])
     first = load_parameter_file(write(tmp_path / "first.toml", drawings["contact"]))
     text, back = shown.run("""laboratory.then((lab) => {
@@ -429,7 +429,7 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
 
 @pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.parameter_files[0].law}")
 def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: PageModule) -> None:
-    """So the page may write it there."""
+    """So the page may write the number there."""
     file = module.parameter_files[0]
     if "friction_1" in file.values_by_name:  # its upper limit is friction_coulomb
         file = file.with_values({"friction_coulomb": 0.1}, "user", "x")

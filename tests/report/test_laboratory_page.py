@@ -282,7 +282,8 @@ def test_a_parameter_file_is_shown(shown: Browser) -> None:
 
 @needed
 def test_a_measured_curve_stands_beside_the_curves_that_measure_the_same(shown: Browser) -> None:
-    """Wherever motion and force of a joint are those of the file, in the file's units."""
+    """Motion and force of a joint are compared with the file if the quantities are the same, in the file's
+    units."""
     files = {
         "rad": ("angle [arcmin], torque [Nm]", 3437.7467707849396),
         "m": ("displacement [um]; force [kN]", 1e6),
@@ -310,7 +311,8 @@ def test_a_measured_curve_stands_beside_the_curves_that_measure_the_same(shown: 
 
 @needed
 def test_every_stop_of_every_slider_is_allowed(shown: Browser) -> None:
-    """Also where other parameters leave little room, as for the deformation of a harmonic drive."""
+    """Also where other parameters leave a narrow interval, as for the radial deformation of a
+    harmonic drive."""
     script = """laboratory.then((lab) => {
       for (const { show } of lab.fits()) show();
       const stops = (v) => [0, 200, 400, 600, 800, 1000].map((t) => onScale(v, t));

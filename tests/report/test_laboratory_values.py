@@ -160,7 +160,7 @@ _RUN = """(async () => {{
 
 @needed
 def test_chromium_gives_the_numbers_and_refusals(module: PageModule, cases: list[Case], shown: Any) -> None:
-    """A refusal is that of the package, in the units of the sliders."""
+    """A refusal has the text of the package, in the units of the sliders."""
     asked = json.dumps([{"values": c.values, "path": c.path, "refusal": c.refusal} for c in cases])
     name, law = json.dumps(module.model.name), json.dumps(module.parameter_files[0].law)
     for case, found in zip(cases, shown.run(_RUN.format(cases=asked, name=name, law=law)), strict=True):

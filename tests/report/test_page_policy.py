@@ -74,7 +74,8 @@ def test_documentation_and_reports_forbid_the_network(tmp_path: Path) -> None:
 
 
 def test_the_template_of_all_reports_forbids_the_network() -> None:
-    """The report of all joints takes minutes; it extends this template, as that of one joint does."""
+    """The report of all joints, which takes minutes, extends this template, as the report of one
+    joint does."""
     folder = Path(figure.__file__).parent
     assert '{% extends "base.html" %}' in (folder / "page.html").read_text(encoding="utf-8")
     script = figure.page_script("tabs.js")
@@ -92,7 +93,7 @@ def test_the_laboratory_forbids_the_network(tmp_path: Path) -> None:
 @pytest.mark.slow
 @needs("Chromium")
 def test_pages_work_under_their_policy_and_send_nothing(tmp_path: Path) -> None:
-    """Charts are drawn; a request, a script and a frame that are put into the page are stopped."""
+    """Charts are drawn; an added request, script or frame in the page is blocked."""
     found = pages(tmp_path)
     icons = tmp_path / "terminalsAndIcons"
     icons.mkdir()

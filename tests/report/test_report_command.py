@@ -53,7 +53,7 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
 
 
 def test_titles_are_words_and_nothing_unknown_or_zero_is_drawn(tmp_path: Path) -> None:
-    """A catalogue drive has no K_TS, without hysteresis no loops; stiffnesses have the prefix kilo."""
+    """A catalogue drive has no K_TS, and no loops without hysteresis; stiffnesses have the prefix kilo."""
     page = written(tmp_path, load_default("harmonic_drive", "catalogue"))
     titles = [panel["title"] for panels in figures(page) for panel in panels]
     assert titles[:2] == ["Output torque over wind-up at the output", "Tangent stiffness over output torque"]
@@ -87,7 +87,7 @@ def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
 
 
 def test_kinds_of_sources_are_what_they_are(tmp_path, monkeypatch):
-    """A file from a catalogue name has nothing of the user; moduli of a standard are not from a paper."""
+    """A file from a catalogue name has no number of the user; moduli from a standard are not from a paper."""
     monkeypatch.chdir(tmp_path)
     drive = ["new", "harmonic-drive", "--catalogue", "CSG-25-100", "--out", "drive.toml"]
     plates = [
@@ -157,7 +157,7 @@ FAR = [
 def test_the_ramp_reaches_where_the_joint_is_loaded(
     name: str, file: ParameterFile, stiffness: str, least: float
 ) -> None:
-    """Report, page and proof show a mesh beyond its backlash, and the last of a catalogue's lines."""
+    """Report, page and proof show a mesh beyond its backlash, and the last line of a catalogue."""
     model = MODELS[name].with_parameters(file.joint, file.values)
     course = LoadHistory(model, file)
     columns = course.compute_ramp()
@@ -226,7 +226,7 @@ def test_topics_are_headings_of_the_pages_on_validity() -> None:
 
 
 def test_the_lesser_of_the_limits_of_law_and_bolts_is_said(tmp_path, monkeypatch):
-    """The law ends far above what an M12 bears."""
+    """The range of the law ends far above the load that an M12 bears."""
     monkeypatch.chdir(tmp_path)
     faces = ["--material", "steel", "--finish", "milled"]
     assert cli.main(["new", "bolted-joint", *PLATES, *faces, "--out", "joint.toml"]) == 0

@@ -29,7 +29,7 @@ def test_the_table_lists_all_clients():
 
 
 def test_the_table_counts_the_tests_that_need_a_client(request: pytest.FixtureRequest):
-    """Of all tests if all files were collected; else at most as many."""
+    """All tests are counted if all files were collected; otherwise the table has at least as many."""
     counts = {name: count for name, (*_, count) in table().items()}
     collected = {item.path for item in request.session.items}
     if collected >= set(TESTS.rglob("test_*.py")):
@@ -39,7 +39,7 @@ def test_the_table_counts_the_tests_that_need_a_client(request: pytest.FixtureRe
 
 
 def test_only_clients_make_a_test_skip():
-    """No other file of the tests names what skips a test."""
+    """No other test file uses the names that skip a test."""
     found = {
         f"{path.relative_to(TESTS)}:{node.lineno} {node.attr}"
         for path in TESTS.rglob("*.py")
@@ -55,7 +55,7 @@ def test_only_clients_make_a_test_skip():
 def test_a_client_that_fails_skips_with_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ):
-    """The probe runs once, also if another process asks: what the first one found lies in a file."""
+    """The probe runs once, even if another process asks: the first result is in a file."""
     calls = []
 
     def probe() -> None:
@@ -87,6 +87,6 @@ def test_an_unknown_client_is_an_error():
 
 
 def test_a_script_that_fails_says_why_in_one_line():
-    """As a package whose library does not load: the last line of the traceback."""
+    """As with a package whose library cannot be loaded: the last line of the traceback."""
     with pytest.raises(OSError, match=r"^OSError: libmissing\.so: cannot open shared object file$"):
         clients.script("raise OSError('libmissing.so: cannot open shared object file')")()

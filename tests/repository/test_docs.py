@@ -96,7 +96,7 @@ def test_links_between_files_lead_somewhere(path: Path) -> None:
 
 @pytest.mark.parametrize("path", TEXTS, ids=shown)
 def test_no_code_shows_the_backslash_of_a_table(path: Path) -> None:
-    """GitHub takes it away from a bar in code, the site shows it."""
+    """In a table, GitHub removes the backslash before a bar in code; the site shows it."""
     assert not re.search(r"`[^`\n]*\\\|[^`\n]*`", path.read_text(encoding="utf-8"))
 
 
@@ -117,7 +117,7 @@ def test_pictures_are_small_and_used() -> None:
 
 
 def test_the_house_is_drawn_as_it_is_built() -> None:
-    """Words and colours of the committed picture (matplotlib leaves each word in a comment)."""
+    """Words and colours of the committed picture (matplotlib writes each word into a comment)."""
     spec = spec_from_file_location("figures", DOCS / "figures.py")
     assert spec is not None
     assert spec.loader is not None
@@ -159,7 +159,7 @@ def named_files(path: Path) -> list[str]:
     "path", [ROOT / "benchmarks" / "README.md", ROOT / "studies" / "README.md", *TEXTS], ids=shown
 )
 def test_files_that_are_named_exist(path: Path) -> None:
-    """A name is a path in the repository or its end; KIND, NAME and * stand for a part of it."""
+    """A name is a path in the repository or its end; KIND, NAME and * stand for any part of it."""
     for name in named_files(path):
         pattern = re.sub(r"KIND|NAME|\\\*", "[^/\n]+", re.escape(name))
         assert re.search(rf"/{pattern}$", tracked(), flags=re.MULTILINE), name
@@ -184,7 +184,7 @@ def python_of(folder: str) -> str:
 
 
 def test_every_part_of_a_joint_is_explained() -> None:
-    """Those that a tool asks for, and those that the builders read."""
+    """Modules that tools use, and parts that the builders use."""
     asked = set(
         re.findall(
             r'(?<!def )\bload_tool_module\((?:[^()"]|\([^()]*\)|\[[^]]*\])*"(\w+)"', python_of("tools")
@@ -282,7 +282,7 @@ def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
 
 
 def test_the_reference_has_every_public_name(site: Path) -> None:
-    """With the arguments, and what the help says of them, as items of a list; and the search finds it."""
+    """With arguments and their help as list items; the site's search finds each name."""
     page = site / "reference.html"
     ids, text = Links(page).ids, page.read_text(encoding="utf-8")
     for name in (*(f"jointfmu{n}" for n in jointfmu.__all__), "jointbuild", "drivejointwind_up"):
@@ -336,7 +336,7 @@ setTimeout(() => {
 
 @needs("Chromium")
 def test_search_works_from_a_file(site: Path, tmp_path: Path) -> None:
-    """Opened as a file, where browsers start no worker: docs/javascripts/iframe-worker.js stands in."""
+    """Browsers start no worker from a file; docs/javascripts/iframe-worker.js replaces it."""
     start = (site / "index.html").read_text(encoding="utf-8")
     page = site / "asked.html"
     page.write_text(start.replace("</body>", f"{SEARCHED}</body>"), encoding="utf-8")

@@ -42,7 +42,7 @@ def test_the_readme_is_short():
 @pytest.mark.slow
 @needs("git and a checkout", "gmsh")
 def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monkeypatch):
-    """In a clone; what installs and builds all is run by `.ci/run` in an environment of its own."""
+    """In a clone; `.ci/run` runs the installation and the complete build in an environment of its own."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = os.environ | {"URL": str(ROOT), "PATH": path}
     found = re.findall(r"```(sh|python)\n(.*?)```", README, flags=re.DOTALL)

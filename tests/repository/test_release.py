@@ -48,7 +48,8 @@ def test_the_description_leads_to_the_address_that_is_given(tmp_path: Path) -> N
 
 
 def test_an_editable_install_finds_the_kernel_before_a_clone_of_its_name(tmp_path: Path) -> None:
-    """The kernel's folder is on the search path, where a package comes before a folder without `__init__`."""
+    """The folder of the kernel is on the search path; a package there precedes a folder without
+    `__init__`."""
     program = "import build_backend as b, sys; b.build_editable(sys.argv[1])"
     given = os.environ | {"PYTHONPATH": str(ROOT / "fmu_src")}
     subprocess.run(

@@ -30,7 +30,7 @@ def table_lines(text: str) -> list[str]:
 
 
 def test_interface_laws_are_compared_with_brentq():
-    """The benchmark itself requires that both ways find the same spots."""
+    """The benchmark itself checks that both methods find the same spots."""
     lines = run("benchmarks/interface_laws.py", "--quick").splitlines()
     assert [line.split()[0] for line in lines[2:]] == ["zhao2018", "hu2023", "yu2022", "roughness"]
     assert all(float(line.split()[-1]) > 0.0 for line in lines[2:])
@@ -39,7 +39,7 @@ def test_interface_laws_are_compared_with_brentq():
 @pytest.mark.slow
 @needs("Linux on x86_64")
 def test_native_fmus_are_timed_in_every_flavour():
-    """The C host fails if a call of an FMU does."""
+    """The C host fails if a call of an FMU fails."""
     table, _, targets = run("benchmarks/native_fmus.py", "--quick").partition("\n\n")
     rows = [line.split() for line in table.splitlines()[2:]]
     flavours = ("fmi2", "fmi3", "python")
@@ -66,7 +66,7 @@ def test_the_plugin_is_timed_beside_python():
     ],
 )
 def test_pages_have_the_tables_of_their_study(page, sections):
-    """Rows of drives: the other rows of the page are shortened."""
+    """Rows of drives only; the other rows of the page are shortened."""
     text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
     rows = [row for row in table_lines(run(f"studies/{page}.py", *sections)) if row.startswith("| RT1-H")]
     assert rows
@@ -75,7 +75,7 @@ def test_pages_have_the_tables_of_their_study(page, sections):
 
 @pytest.mark.parametrize("folder", ["benchmarks", "studies"])
 def test_the_readme_names_every_file(folder):
-    """No row or sentence names a file that is gone."""
+    """No row or sentence names a missing file."""
     text = (ROOT / folder / "README.md").read_text(encoding="utf-8")
     named = set(re.findall(r"`([a-z_]+\.(?:py|c))`", text))
     assert named == {path.name for path in (ROOT / folder).iterdir() if path.suffix in (".py", ".c")}

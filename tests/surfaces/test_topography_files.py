@@ -111,7 +111,7 @@ def test_missing_points_and_spikes_are_repaired_and_counted(folder, area, capsys
 
 
 def test_the_effect_of_spikes_on_sq_is_said(area):
-    """Heights of rms s with a share q of spikes of height H: Sq^2 = s^2 + q (1 - q) H^2 nearly."""
+    """Heights of rms s with a share q of spikes of height H: Sq^2 is about s^2 + q (1 - q) H^2."""
     z = area.z.copy()
     z.ravel()[:: z.size // 100] += 1e-4
     (repair,) = remove_spikes(replace(area, z=z))[1]
@@ -240,7 +240,7 @@ def test_options_are_refused_by_name(folder, capsys, options, says):
 
 @pytest.mark.parametrize("mark", [",", ";", "\t", " "])
 def test_cells_of_numbers(folder, mark):
-    """An empty cell is a gap, what follows # is a comment; without a separator blanks divide."""
+    """An empty cell is a missing point, text after # a comment; without separator blanks separate."""
     gap = "nan" if mark == " " else ""
     lines = ["# x", f"1{mark} 2.5{mark}3  # here", "", f"{gap}{mark}-1e-3{mark} {gap}"]
     (folder / "n.csv").write_text("\n".join(lines))
@@ -307,7 +307,7 @@ def test_plot(folder, capsys, suffix):
 
 @pytest.mark.slow
 def test_written_parameters_build(folder, line, capsys):
-    """A flank smooth enough for the law, which leaves too rough ones no elastic spot."""
+    """The flank is smooth enough for the law; on too rough flanks no spot is elastic."""
     (folder / "line.csv").write_text(csvfile.csv_text(replace(line, z=0.01 * line.z)))
     run(capsys, "surface", "line.csv", "--side=1", "--joint=gear_contact", "--law=yu2022", "--out=gear.toml")
     file = load_parameter_file("gear.toml", "gear_contact")
@@ -395,7 +395,8 @@ def columns(folder, x, z, decimals, unit="um"):
 @pytest.mark.parametrize("decimals", [1, 4])
 @pytest.mark.parametrize("step", [0.1563, 0.041, 0.5])
 def test_rounded_positions_are_read(folder, step, decimals):
-    """One decimal for steps of 0.16 and 0.04 um, as stylus instruments print: uneven gaps, repeats."""
+    """One decimal for steps of 0.16 and 0.04 um, as stylus instruments print: unequal steps and repeated
+    values."""
     x, z = step * np.arange(1300), np.random.default_rng(0).standard_normal(1300)
     for order in (slice(None), slice(None, None, -1)):
         found = columns(folder, x[order], z[order], decimals)
@@ -463,7 +464,7 @@ def test_a_field_of_no_scan_asks_back(folder, capsys, unit, step, says):
 
 
 def test_a_field_of_an_atomic_force_microscope_is_none_to_ask_about(folder, capsys):
-    """A map; a profile as short asks back."""
+    """A map is accepted; a profile of this length needs a confirmation."""
     walk = np.cumsum(np.random.default_rng(0).standard_normal((72, 72)), axis=1)
     rows = "".join(f"{7e-3 * i:.6g} {7e-3 * j:.6g} {1e-3 * walk[i, j]:.6g}\n" for i, j in np.ndindex(72, 72))
     (folder / "f.txt").write_text(rows)
@@ -485,7 +486,8 @@ def test_a_field_of_an_atomic_force_microscope_is_none_to_ask_about(folder, caps
     ],
 )
 def test_units_of_each_column(folder, line, capsys, heads, factors, options):
-    """Each column its own, with decimal commas; all give what our own format gives."""
+    """Each column has its own unit, with decimal commas; all files give the same heights as our own
+    format."""
     x = np.arange(line.z.size) * line.dx
     numbers = [f"{factors[0] * a:.9g};{factors[1] * z:.9g}" for a, z in zip(x, line.z, strict=True)]
     text = "\n".join([*([heads] if heads else []), *numbers]).replace(".", ",")
@@ -524,7 +526,7 @@ def test_columns_whose_units_cannot_be(folder, line, capsys, heads, options, say
 
 
 def test_units_as_instruments_write_them(folder, monkeypatch):
-    """A .sur of UTF-8 is read as Latin-1: µm becomes Âµm."""
+    """A .sur file in UTF-8 is read as Latin-1: µm becomes Âµm."""
     import SurfaceTopography
 
     z = np.random.default_rng(0).standard_normal((70, 70))
@@ -544,7 +546,7 @@ def test_micrometres_in_all_spellings(folder, unit, line):
 
 
 def test_refused_without_slow_imports(folder):
-    """scipy's fits, matplotlib and SurfaceTopography take a second or two to import."""
+    """The imports of scipy's fits, matplotlib and SurfaceTopography take a second or two."""
     (folder / "a.png").write_bytes(b"\x89PNG" + bytes(100))
     (folder / "a.sur").write_bytes(bytes(1000))
     (folder / "a.txt").write_text("1 2\n" * 200)
@@ -585,7 +587,7 @@ def test_roughness_and_level_are_printed(folder, capsys, area):
 
 
 def test_sides_are_written_where_they_belong(folder, capsys):
-    """The other side of a default joint's own surface is not that of the scan; a given file keeps its own."""
+    """The other side of a default joint does not get the scan; a given file keeps its own surface there."""
     start = ["surface", "line.csv", "--joint=bolted_joint", "--law=zhao2018", "--out=s.toml", "--side"]
     h = json.loads(run(capsys, "surface", "line.csv", "--json").out)["roughness"]["h"]
     for side, names in (("1", ["Rq1"]), ("2", ["Rq2"]), ("both", ["Rq1", "Rq2"])):
@@ -619,7 +621,7 @@ def test_a_joint_by_its_roughness_gets_h_and_its_kin(folder, capsys):
 
 
 def test_the_other_side_of_a_drawing_stays(folder, capsys):
-    """h of a scan of side 1 and of Ra 0.4 um of side 2; then of two scans, one after the other."""
+    """h from a scan of side 1 and Ra 0.4 um of side 2; then from two scans, one after the other."""
     flanks = ["--width", "20", "--radii", "12", "30", "--load", "2000", "--material", "steel", "--Ra", "0.4"]
     run(capsys, "new", "gear-contact", *flanks, "--out", "g.toml")
     drawn = load_parameter_file("g.toml")
@@ -646,7 +648,7 @@ def test_the_other_side_of_a_drawing_stays(folder, capsys):
 
 @pytest.mark.parametrize("joint", [name for name, kind in KINDS.items() if kind.surfaces])
 def test_the_scan_acts(folder, line, capsys, joint):
-    """Without --law the joint has the law `roughness`, whose h is the scan's: half of it, twice the K."""
+    """Without --law the joint has the law `roughness` with h of the scan; half the height gives twice K."""
     stiffness, heights = [], []
     for scale in (0.01, 0.005):
         (folder / "line.csv").write_text(csvfile.csv_text(replace(line, z=scale * line.z)))

@@ -143,7 +143,8 @@ def test_noise_and_tilt_do_not_pull_the_structure_function():
 
 
 def test_range_ends_where_the_surface_rolls_off():
-    """White below 1/(40 um): the search stays on the straight part, a forced range is flagged."""
+    """White below 1/(40 um): the search stays on the straight part; a range set by the user gets a
+    warning."""
     n, dx, H = 8192, 1e-6, 0.7
     f = np.maximum(np.fft.rfftfreq(n, dx), 1.0 / 40e-6)
     noise = np.fft.rfft(np.random.default_rng(1).standard_normal(n))
@@ -230,7 +231,7 @@ def test_roughness_leaves_the_floating_point_numbers():
 
 
 def test_pair_adds_the_powers():
-    """Two surfaces of equal finish: twice the power, so G^(2(D-1)) doubles; and sampling may differ."""
+    """Two surfaces with equal finish: the power doubles, so G^(2(D-1)) doubles; sampling may differ."""
     one, other = (gaussian_profile(4096, 0.5, 1e-9, seed) for seed in (1, 2))
     pair = identify([one, other]).select_best_result(method="psd")
     assert pair.profile.G.low < 2e-9 < pair.profile.G.high  # D = 1.5: G doubles
@@ -295,7 +296,7 @@ def test_spacing_may_differ_along_x_and_y():
 
 
 def test_a_value_at_its_bound_is_never_chosen_over_a_free_one():
-    """The bound cuts the error off: a clipped D comes after a free one, be it as sure as it likes."""
+    """At a bound the error is cut off, so a free value of D is preferred, however small the error."""
     found = identify([gaussian_profile(512, 0.5, 1e-9, 1)])
     sure = np.diag([1e-12, 1e-12])
     for H in (0.02, 0.98):
@@ -370,7 +371,7 @@ def test_both_sides_alike_are_a_pair_of_one_power():
 
 @pytest.mark.parametrize("shape", ["along x", "binary", "sine", "steps"])
 def test_maps_without_any_chance_do_not_crash(shape):
-    """What instruments' own example files have: ridges, steps, quantised heights."""
+    """Contents of example files of instruments: ridges, steps, quantised heights."""
     x, y = np.meshgrid(np.arange(64), np.arange(80))
     z = {
         "along x": np.sin(y / 3.0) + 0.0 * x,
@@ -387,7 +388,7 @@ def test_maps_without_any_chance_do_not_crash(shape):
 
 
 def test_a_million_points_without_a_straight_range_are_identified_with_doubt():
-    """Roll-off at long waves, a low-pass at short ones, texture, noise, gaps: hundreds of windows."""
+    """Roll-off at long waves, low-pass at short ones, texture, noise, gaps: hundreds of windows."""
     n, rng = 1024, np.random.default_rng(1)
     frequency = np.hypot(np.fft.fftfreq(n)[:, None], np.fft.rfftfreq(n))
     amplitude = (frequency**2 + 0.01**2) ** -0.9 * np.exp(-((frequency / 0.15) ** 2))

@@ -18,7 +18,7 @@ def sine(wave, amplitude, points=1000, length=1e-3):
 
 @pytest.mark.parametrize("D", [2.2, 2.5, 2.8])
 def test_height_and_slope_of_D_and_G_are_those_of_a_made_surface(D):
-    """All waves of a band, so the spectrum's integral: a percent is the sum over a grid of modes."""
+    """Surfaces with all waves of a band; 1 % is the difference between sum over a grid and integral."""
     longest, shortest = SIZE / 8.0, SIZE / 32.0
     z = rough_surfaces.periodic(SIZE, POINTS, D, G, (longest, shortest), 1).z
     h = np.sqrt(
@@ -35,7 +35,7 @@ def test_height_and_slope_of_D_and_G_are_those_of_a_made_surface(D):
 @pytest.mark.parametrize("D", [1.2, 1.42, 1.8])
 @pytest.mark.parametrize("gamma", [2.0, 3.0])
 def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
-    """Whole ratios, so that every wave fits the length and variances add up to the last digit.
+    """Integer frequency ratios: every wave fits the length, and variances add up to the last digit.
 
     A line has profile_share of the power of the surface that it is cut from.
     """
@@ -49,7 +49,7 @@ def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
 
 
 def test_one_surface_has_one_height():
-    """D and G of its profiles, or D_s and G_s of itself; and gamma near 1 is the spectrum."""
+    """From D and G of the profiles, or D_s and G_s of the surface; for gamma near 1 from the spectrum."""
     H = 0.58
     profile = fractal.rms_height(2.0 - H, G, SIZE)
     assert fractal.rms_height(3.0 - H, fractal.areal_roughness(G, H), SIZE, is_areal=True) == pytest.approx(
@@ -61,7 +61,7 @@ def test_one_surface_has_one_height():
 
 
 def test_specimen_of_zhao():
-    """Waves up to 1 mm of its D and G: 7.2 um, the figure of docs/validity_stiffness.md."""
+    """Waves up to 1 mm for its D and G: 7.2 um, the figure of docs/validity_stiffness.md."""
     assert fractal.rms_height(1.42, 1.21e-8, 1e-3) == pytest.approx(7.2e-6, rel=0.01)
 
 
@@ -85,7 +85,8 @@ def test_a_sine_counts_up_to_its_wavelength():
 
 @pytest.mark.parametrize("D", [2.3, 2.7])
 def test_height_of_a_scan_over_a_longest_wave(D):
-    """A scan of a surface with longer waves: what is left below the longest is the spectrum's, within 6 %."""
+    """Scan of a surface with longer waves: the height below the longest wave is that of the spectrum within 6
+    %."""
     made = rough_surfaces.periodic(SIZE, POINTS, D, G, (SIZE / 2.0, 2.0 * SIZE / POINTS), 2)
     cut = ArealMap(z=made.z[:160, :200].copy(), dx=made.dx, dy=made.dy, name="cut")
     flat = remove_form(cut)

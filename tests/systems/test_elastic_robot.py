@@ -83,7 +83,7 @@ def held(spec, payload):
 
 
 def test_the_arm_sags_as_it_says(six):
-    """Damped to rest; the tip's error is of first order in wind-ups of 1 mrad."""
+    """Damped until rest; the error of the tip is of first order in wind-ups of 1 mrad."""
     said, _ = six
     model, data = held(mujoco.MjSpec.from_file(said["written"][0]), 3.0)
     mujoco.mj_forward(model, data)
@@ -102,7 +102,7 @@ def test_the_arm_sags_as_it_says(six):
 
 @pytest.mark.filterwarnings("ignore:.*outside the tabulated law")  # the size of two drives is too small
 def test_wind_up_is_the_drives_own_at_any_load(six, tmp_path, capsys, few_poses):
-    """Light, beyond the rated torque and far beyond the largest."""
+    """For small loads, beyond the rated torque, and far beyond the largest torque."""
     (tmp_path / "arm.xml").write_text(TWO_LINKS)
     sizes, beyond = ("CSF-8-30", "CSG-14-100"), ("the max_torque, 3 N.m", "the rated torque, 10 N.m")
     arm = [*zip(ARM, sizes, strict=True)]
@@ -119,7 +119,7 @@ def test_wind_up_is_the_drives_own_at_any_load(six, tmp_path, capsys, few_poses)
 
 @pytest.mark.slow
 def test_plugin_and_system_wind_up_as_is_said(tmp_path, capsys, few_poses):
-    """All have the drive's own law. Motors held, damped to rest."""
+    """Both have the drive's own law; motors locked, damped until rest."""
     words = [
         "--drive",
         "joint2=CSG-40-100",
@@ -150,9 +150,7 @@ def test_plugin_and_system_wind_up_as_is_said(tmp_path, capsys, few_poses):
 
 
 def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
-    """With its springs about its sagged pose, linearised by MuJoCo's own finite differences; what weight adds
-    is < 1 %.
-    """
+    """Springs about the sagged pose, linearised by MuJoCo's finite differences; weight adds less than 1 %."""
     spec = elastic.read_robot(ROBOT)
     axes = elastic.make_axes(
         spec, {f"joint{i}": make_transmission(drive(n).file) for i, n in enumerate(SIZES, 1)}
@@ -181,8 +179,8 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
 
 
 def test_a_servo_holds_the_axis_as_before(six):
-    """The actuators act at the motors, with their gains seen at the link; friction has no control, and the
-    robot's own coordinates and controls are the first.
+    """The actuators act on the motors, with gains referred to the link; friction has no control input, and
+    the robot's own coordinates and controls come first.
     """
     _, model = six
     assert model.actuator_trnid[:2, 0].tolist() == [model.joint(f"joint{i}_motor").id for i in (1, 2)]
@@ -196,7 +194,7 @@ def test_a_servo_holds_the_axis_as_before(six):
 
 @pytest.mark.parametrize(("own", "expected"), [("", [-0.4, 0.6]), ('forcerange="-0.5 0.5"', [-0.4, 0.5])])
 def test_a_joints_limit_of_its_actuators_is_theirs(own, expected, tmp_path, capsys, few_poses):
-    """60 N m at the link by a gear of 100; the ratio of the drive turns the gear over, not the force."""
+    """60 N.m at the link with a gear of 100; the sign of the ratio reverses the gear, not the force."""
     text = ROBOT.read_text().replace('name="joint1"', 'name="joint1" actuatorfrcrange="-40 60"')
     robot = tmp_path / "robot.xml"
     robot.write_text(text.replace('name="motor1"', f'name="motor1" {own}'))
@@ -209,7 +207,7 @@ def test_a_joints_limit_of_its_actuators_is_theirs(own, expected, tmp_path, caps
 
 
 def test_the_longest_step_is_where_the_file_diverges(six):
-    """At the frequency of small vibrations there, with motors free, drives without load."""
+    """At the frequency of small vibrations with free motors and drives without load."""
     said, _ = six
     assert [line.split(":")[:2] for line in said["notes"]] == [
         [drive.partition("=")[2], f" the MJCF does not include {what}"]
@@ -239,7 +237,7 @@ def fallen(model, step, friction="bristles"):
 
 
 def test_bristles_bear_steps_that_the_drives_bear(six):
-    """As documented; a constraint's friction is softer than that."""
+    """As documented; the friction of a constraint is softer."""
     said, _ = six
     model = mujoco.MjModel.from_xml_path(said["written"][0])
     model.actuator_gainprm[:2], model.actuator_biasprm[:2] = 0.0, 0.0
@@ -251,7 +249,8 @@ def test_bristles_bear_steps_that_the_drives_bear(six):
 
 @pytest.mark.slow
 def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_path, capsys, few_poses):
-    """With a short step they are the drive's; with MuJoCo's own softer for a light rotor, which is said."""
+    """With a short step, bristles have the friction of the drive; for a light rotor, MuJoCo's own friction is
+    softer, and the text says so."""
     text = ROBOT.read_text()
     for option, loss, noted in (
         ('integrator="RK4"', 0.0204, []),
@@ -283,7 +282,8 @@ def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys, fe
 
 @pytest.mark.slow
 def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
-    """URDF has no armature: said for each axis. One axis hangs upright, so its weight winds nothing."""
+    """URDF has no armature, which is stated for each axis. One axis is vertical, so weight causes
+    no wind-up."""
     links = "".join(LINK.format(i, i - 1, "0 1 0" if i % 2 == 0 else "0 0 1", 8 - i) for i in range(1, 8))
     robot = tmp_path / "seven.urdf"
     robot.write_text(SEVEN.format(links))
@@ -300,7 +300,7 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
 
 
 def test_a_tool_frame_of_a_urdf_is_the_tip(tmp_path):
-    """A link that a fixed joint holds."""
+    """The tool frame is a link on a fixed joint."""
     robot = tmp_path / "one.urdf"
     tool = '<joint name="t" type="fixed"><parent link="l1"/><child link="tool"/></joint><link name="tool"/>'
     robot.write_text(SEVEN.format(LINK.format(1, 0, "0 1 0", 2) + tool))
@@ -332,7 +332,7 @@ def robot_files(wheel):
     ],
 )
 def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
-    """With 1 kg; it falls with a step that it is said to bear."""
+    """With 1 kg payload; the robot falls stably with the time step that is stated."""
     (robot,) = (file.locate() for file in robot_files(wheel) if file.as_posix().endswith(end))
     rigid = mujoco.MjModel.from_xml_path(str(robot))
     joints = [rigid.joint(i).name for i in range(rigid.njnt)]
@@ -378,7 +378,7 @@ def test_refusals(words, line, tmp_path, capsys):
 
 @pytest.mark.parametrize("wanted", ["--plugin", "--fmu"])
 def test_drives_of_one_name_that_differ_are_refused(tmp_path, capsys, wanted):
-    """Each name is one plugin, and one file: the second would be the first."""
+    """One name is one plugin and one file, so the second drive would be the first."""
     for folder, size in (("one", "CSG-14-100"), ("other", "CSG-17-100")):
         (tmp_path / folder).mkdir()
         text = format_parameter_file(drive(size).file).replace(f'name = "{size}"', 'name = "mine"')
@@ -403,7 +403,7 @@ def test_a_file_that_is_no_robot_is_refused(tmp_path, capsys):
 
 
 def test_a_drive_that_no_weight_loads_is_said_and_drawn_so(tmp_path, capsys, few_poses, monkeypatch):
-    """A constant frequency is drawn as one value, not as its rounding; the payload as what it does."""
+    """A constant frequency is drawn as one value, without its rounding; the payload with its effect."""
     drawn = []
     monkeypatch.setattr(pictures.plots, "save_figure", lambda figure, path: drawn.append(figure))
     words = ["--drive", "joint4=CSG-25-100", "--payload", "300"]

@@ -124,7 +124,8 @@ def drive(host: Callable[..., Fmu]) -> Iterator[Callable[..., Fmu]]:
 
 
 def test_resonance_of_the_link_is_that_of_the_fmus_stiffness(robot: Robot, drive: Callable[..., Fmu]) -> None:
-    """Free vibration, so small that the curve is straight; RK4 errs by (omega h)^4/120 = 1e-6 here."""
+    """Free vibration with so small an amplitude that the curve is straight; RK4 has the error (omega h)^4/120
+    = 1e-6."""
     stiffness = drive().get()["K_WTS"]
     model, data = robot({}, integrator="RK4")
     data.qpos[1] = 1e-7
@@ -141,7 +142,7 @@ def test_resonance_of_the_link_is_that_of_the_fmus_stiffness(robot: Robot, drive
 
 
 def test_loops_are_those_of_the_fmu(robot: Robot, drive: Callable[..., Fmu]) -> None:
-    """Half a second to the first turn, then one loop; the same scheme, so equal but for round-off."""
+    """Half a second to the first reversal, then one loop; the same scheme, so equal to round-off."""
     steps, loop = 2500, slice(500, 2500)
     rows = run(*robot(LOOP), steps)
     fmu = drive(**LOOP)
@@ -176,7 +177,7 @@ def test_trials_leave_the_path_alone(robot: Robot, integrator: str) -> None:
 
 
 def test_sensors_follow_speeds_alone(robot: Robot) -> None:
-    """As finite differences of MuJoCo's ask: positions are not evaluated again."""
+    """As MuJoCo's finite differences require: positions are not evaluated again."""
     model, data = robot({})
     run(model, data, 100)
     data.qvel[1] += 0.1
@@ -190,7 +191,7 @@ def test_sensors_follow_speeds_alone(robot: Robot) -> None:
 
 @pytest.mark.parametrize("drive", [LOOP, {"friction_coulomb": 0.02}])
 def test_the_path_is_part_of_mujocos_state(robot: Robot, drive: dict[str, Any]) -> None:
-    """Of a hysteresis that is off nothing is there: 44 sliders before and after."""
+    """Hysteresis that is off has no variables: 44 sliders before and after."""
     model, data = robot(drive)
     assert model.plugin_statenum.tolist() == [122 if drive is LOOP else 122 - 2 * 44]
     first = run(model, data, 400)

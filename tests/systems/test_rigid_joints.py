@@ -66,7 +66,7 @@ def motor_friction(drive, speed):
 
 
 def test_friction_at_the_joint_is_that_of_the_law(arm, capsys):
-    """At creep the static friction; at two high speeds dynamic and viscous friction, times the ratio."""
+    """At creep the static friction; at two high speeds dynamic plus viscous friction, times the ratio."""
     figures = made(capsys)["rigid_joints"]["j1"]
     assert figures["static_friction"] == pytest.approx(abs(RATIO) * motor_friction(arm, 1e-6), rel=1e-3)
     for speed in (200.0, 400.0):
@@ -94,7 +94,7 @@ def test_actuators_are_what_isaac_lab_takes(arm, capsys):
 
 
 def test_the_rigid_robot_turns_against_its_friction(arm, capsys):
-    """At a constant torque of the joint, its speed in MuJoCo is the one that the friction allows."""
+    """At constant joint torque, the speed in MuJoCo is the one that the friction allows."""
     said = made(capsys)
     figures = said["rigid_joints"]["j2"]
     model = mujoco.MjModel.from_xml_path("out/arm_rigid.xml")
@@ -135,7 +135,7 @@ def test_export_of_a_drive_states_the_friction_of_a_rigid_joint(arm, capsys):
 
 
 def test_folders_of_meshes_stay_relative(arm, capsys, tmp_path):
-    """The folder of robot and output can move as a whole."""
+    """The folder with robot and output can be moved."""
     written = [path for path in made(capsys)["written"] if path.endswith(".xml")]
     shutil.copytree(tmp_path, tmp_path.with_name("moved"))
     for path in written:

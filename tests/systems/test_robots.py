@@ -55,7 +55,7 @@ def pulled(model, torques):
     ],
 )
 def test_wind_up_at_rated_torque_is_the_fmus(name, capsys):
-    """A ramp of 2 s; the promise is 3 %."""
+    """A ramp of 2 s; the stated tolerance is 3 %."""
     said, model = exported(capsys, name)
     drive = jointfmu.load(name)
     rated = drive.values["rated_torque"]
@@ -69,7 +69,7 @@ def test_wind_up_at_rated_torque_is_the_fmus(name, capsys):
 
 @pytest.mark.slow
 def test_the_area_of_the_loop_is_the_fmus(folder, capsys):
-    """The promise is 5 %; the work of link's and drive's damping is known and left out."""
+    """The stated tolerance is 5 %; the known work of the dampers of link and drive is subtracted."""
     drive = jointfmu.drive("CSG-25-100", hysteresis=1.0)
     drive.save("drive.toml")
     said, model = exported(capsys, "drive.toml")
@@ -93,7 +93,7 @@ def test_the_area_of_the_loop_is_the_fmus(folder, capsys):
 
 
 def test_the_motor_turns_the_link_with_the_ratio(capsys):
-    """Led slowly, the link follows within the wind-up of its own weight's torque: none."""
+    """In slow motion the link follows within the wind-up by its own weight, which is zero here."""
     _, model = exported(capsys, "CSG-14-100")
     data = mujoco.MjData(model)
     motor, link = (model.joint(name).dofadr[0] for name in ("motor", "link"))
@@ -122,7 +122,7 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100"])
 def test_loops_inside_have_the_area_of_the_fmus(name):
-    """Fitted at rated torque alone."""
+    """Fitted at rated torque only."""
     own = make_transmission(jointfmu.drive(name, hysteresis=1.0).file)
     springs = fit_spring(own, own.rated_torque)
     for share in (0.1, 0.2, 0.3, 0.5, 0.7):
@@ -134,8 +134,8 @@ def test_loops_inside_have_the_area_of_the_fmus(name):
 
 @pytest.mark.parametrize(("speed", "since"), [(0.01, 0.0), (5.0, 0.045), (60.0, 0.045)])
 def test_friction_of_the_motor_is_the_fmus(speed, since, folder, capsys):
-    """The motor led from rest without load: presliding where it is slow, as the bristles are damped, then
-    Stribeck's fall and viscous friction.
+    """Motor moved from rest without load: presliding at low speed, where the bristles are damped, then
+    Stribeck friction and viscous friction.
     """
     drive = jointfmu.drive("CSG-20-100", starting_torque=0.1, back_driving_torque=20.0, efficiency=0.75)
     coulomb = drive.values["friction_coulomb"]
@@ -157,7 +157,7 @@ def test_friction_of_the_motor_is_the_fmus(speed, since, folder, capsys):
 
 
 def test_urdf_says_what_it_misses_and_mujoco_reads_the_rest(folder, capsys):
-    """MuJoCo takes friction and the mimic pair of the file; damping acts on the joint as on the motor."""
+    """MuJoCo reads friction and mimic pair of the file; damping acts on the joint as on the motor."""
     drive = jointfmu.drive("CSG-20-100", starting_torque=0.1, back_driving_torque=20.0, efficiency=0.75)
     drive.save("d.toml")
     assert cli.main(["export", "urdf", "d.toml", "--out", "drive.urdf", "--json"]) == 0
@@ -179,7 +179,7 @@ def test_urdf_says_what_it_misses_and_mujoco_reads_the_rest(folder, capsys):
 
 
 def test_urdf_states_the_loop(folder, capsys):
-    """The area is that of the drive's spring, four branches of a quarter each."""
+    """The area is that of the drive's spring, in four quarter branches."""
     drive = jointfmu.drive("CSG-25-100", hysteresis=1.0)
     drive.save("drive.toml")
     assert cli.main(["export", "urdf", "drive.toml", "--out", "drive.urdf", "--json"]) == 0

@@ -81,7 +81,7 @@ def set_vector(fmu: Fmu, states: dict[str, float]) -> None:
 def test_derivatives_and_outputs_follow_states_that_a_host_sets(
     folder: Path, version: str, name: str, set_states: SetStates, continuous: bool
 ) -> None:
-    """As after the vector of states in continuous-time mode."""
+    """As after setting the state vector in continuous-time mode."""
     path, states, start = file_of(folder, name, version), STATES[name], START.get(name, {})
     expected, fmu = (Fmu(path, exchange=True).start(start) for _ in range(2))
     expected.fmu.enterContinuousTimeMode()
@@ -169,7 +169,7 @@ def test_casadi_integrates_a_pendulum(folder: Path, tmp_path: Path, version: str
 def test_casadi_integrates_a_system_without_accepting_steps(
     folder: Path, tmp_path: Path, version: str
 ) -> None:
-    """CasADi never completes an integrator step: joints start from the history after initialization."""
+    """CasADi never completes an integrator step, so joints start from the history after initialization."""
     times, states = np.array([0.01, 0.02]), STATES["robot_joint"]
     path = file_of(folder, "robot_joint", version)
     found = integrate(path, tmp_path, {}, states, {"drive.temperature": 293.15}, times)

@@ -250,7 +250,7 @@ def test_a_parameter_file_of_its_own_makes_an_fmu_of_its_own(tmp_path: Path) -> 
 
 
 def test_joints_with_the_same_baked_values_share_an_fmu(tmp_path: Path) -> None:
-    """The same drive at two axes, with another damping: that is set in the archive."""
+    """The same drive on two axes with different damping, which the archive sets."""
     path = changed(tmp_path, ('"CSG-40-100"', '"csg 32 100"'), text=ARM)
     found = find_fmu_names(read_system(path))
     assert found["base_drive"] == found["shoulder_drive"] == "mine_base_drive"
@@ -294,7 +294,7 @@ def test_power_of_the_torques_is_the_rate_of_the_energy() -> None:
 
 
 def test_a_double_pendulum_has_the_textbooks_torques() -> None:
-    """Upright, of point-like masses at the ends: Lagrange's equations."""
+    """Vertical, with point masses at the ends: Lagrange's equations."""
     l1, l2, m1, m2 = 0.7, 0.4, 3.0, 2.0
     tiny: dict[str, Any] = {"J_along": 1e-12, "J_across": 1e-12, "travel": 0.0}
     links = [Link(length=l1, mass=m1, centre=l1, **tiny), Link(length=l2, mass=m2, centre=l2, **tiny)]
@@ -326,7 +326,7 @@ def test_the_tip_is_where_the_links_lead() -> None:
 
 
 def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
-    """At T2 of the rows of sizes 32, 40, 25, 20, 17, 14; round corners leave 0.5 %."""
+    """At T2 of the rows of sizes 32, 40, 25, 20, 17, 14; round corners change 0.5 %."""
     rows = {
         "base": (29, 108, 67e3, 110e3),
         "shoulder": (54, 196, 130e3, 200e3),
@@ -345,7 +345,7 @@ def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
 
 
 def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
-    """Seventeen points leave 4e-4 of the largest torque of an axis."""
+    """Seventeen points leave an error of 4e-4 of the largest torque of an axis."""
     found = load_system("six_axis_robot")
     x = np.linspace(0.0, 1.0, 301)
     q, speed, acceleration = ROBOT.compute_motion(ROBOT.start + ROBOT.duration * x)
@@ -362,7 +362,7 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
 
 
 def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
-    """What the joint's file states of its inputs, or the system."""
+    """The values of inputs in the joint's file, or in the system file."""
     files = {"harmonic_drive": {"temperature": 318.15}, "bolted_joint": {"preload": 12e3}}
     for joint, inputs in files.items():
         stated = dataclasses.replace(load_default(joint), inputs=inputs)
@@ -383,7 +383,7 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
 
 
 def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
-    """Of the motor and the link on the drive at rest, and at the largest torque of a run."""
+    """For motor and link on the drive at rest, and at the largest torque of a run."""
     monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, overwrite: [])
     path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
     drive = HarmonicDriveSpring.tabulate(read_system(path).joints["drive"].parameter_file.values)
@@ -447,7 +447,7 @@ def fmu_with_parameters(path: Path, file) -> Path:
 
 @pytest.mark.parametrize("is_own", [True, False], ids=["other", "same"])
 def test_the_systems_replace_no_joint_of_the_user(tmp_path, monkeypatch, is_own):
-    """`build --systems` put the shipped joint in place of the one built with --params."""
+    """`build --systems` does not replace a joint that was built with --params."""
     monkeypatch.setattr(ssp, "check_outputs", lambda paths, kind, overwrite: None)  # tested by itself
     monkeypatch.setattr(ssp, "map_jobs", lambda *_: pytest.fail("built") if is_own else [])
     monkeypatch.setattr(ssp, "write_archives", lambda system, out: [])

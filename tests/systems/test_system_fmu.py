@@ -84,7 +84,7 @@ def test_description_is_valid(joint, version):
 )
 @pytest.mark.parametrize("name", ["robot_joint", "bolted_column"])
 def test_any_step_passes_the_proof_in_each_importer(files_of, name, importer, version):
-    """All outputs at 1 and 10 ms, within the 0.5 % that docs/systems_explanation.md promises."""
+    """All outputs at 1 and 10 ms steps, within the 0.5 % that docs/systems_explanation.md states."""
     found = prove(files_of(name)[version], importer)
     assert found.failures == []
     assert found.executed_experiment_count == (3 if importer == "fmpy" else 2)
@@ -92,7 +92,7 @@ def test_any_step_passes_the_proof_in_each_importer(files_of, name, importer, ve
 
 @pytest.mark.parametrize("name", ["robot_joint", "bolted_column", "six_axis_robot"])
 def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
-    """The references that the FMU carries, in fmpy; those of fmpy's own master in FMI 2.0 agree."""
+    """In fmpy, the references of the FMU; in FMI 2.0, those of fmpy's own master agree."""
     files, output = files_of(name), LAST[name]
     if name == "six_axis_robot":
         found = prove(files["3"])
@@ -135,7 +135,7 @@ def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
 
 @pytest.mark.parametrize(("sensitive", "end"), [(3.0, 2.0), (0.505, 0.5), (0.5, 0.49)])
 def test_the_proof_ends_before_the_motion_is_too_sensitive(monkeypatch, sensitive, end):
-    """Where a host's tolerance gives other results than that of the references."""
+    """Where a tool's tolerance gives other results than that of the references."""
     model = assemble_system(load_system("robot_joint")).make_model()
 
     def exchanged(model, fmu, times, tolerance):
@@ -182,7 +182,7 @@ class Opened:
 
 
 def test_derivatives_are_exact(joint):
-    """Against central differences; 1e-6 is the square root of their cancellation."""
+    """Against central differences; 1e-6 is the square root of their round-off."""
     with Opened(joint["2"]) as one:
         fmu, known = one.host.fmu, one.host.variables
         names = ["motor.phi", "link.phi", "motor.w", "link.w", "load.tau_in", "link.tau_a"]
@@ -206,7 +206,7 @@ def test_derivatives_are_exact(joint):
 
 
 def test_a_saved_state_goes_on_alike(joint):
-    """Through bytes as well, with friction in motion: to the last bit."""
+    """Through bytes too, with slipping friction: equal to the last bit."""
     with Opened(joint["2"]) as one:
         fmu, host = one.host.fmu, one.host
         fmu.exitInitializationMode()
@@ -228,7 +228,8 @@ def test_a_saved_state_goes_on_alike(joint):
 
 
 def test_a_free_swing_without_losses_keeps_its_energy(joint):
-    """Motor against link; a host's tolerance tightens the steps, 1e-6 a second is what is asked for."""
+    """Motor and link move against each other; the tolerance of the host limits the steps. Allowed drift: 1e-6
+    per second."""
     off = {f"load.{name}_height": 0.0 for name in ("ramp", "pulse")} | {"link.m": 0.0}
     off |= {"drive.d": 0.0, "drive.hysteresis_loss": 0.0, "link.phi": 1e-3}
     outputs = ("motor.w", "link.w", "drive.phi_rel", "drive.tau")
@@ -256,8 +257,8 @@ def test_a_free_swing_without_losses_keeps_its_energy(joint):
 
 
 def test_a_torque_on_the_link_is_held_by_the_drive(joint):
-    """At rest the drive carries what its weight does not: 0.5 N.m at the link, the motor held by its friction
-    only, so the link swings to where its weight alone holds it."""
+    """At rest the drive carries the difference to the weight: 0.5 N.m at the link. The motor is held by its
+    friction only, so the link moves to where its weight alone holds it."""
     with Opened(joint["3"]) as one:
         host = one.host
         host.set_values({"link.tau_a": 0.5, "drive.d": 20.0})
@@ -288,7 +289,7 @@ def test_refused_parameters_are_named(joint, name, value, said):
 
 
 def test_a_refused_step_leaves_the_state(joint):
-    """A torque at which nothing is finite; then the instance goes on."""
+    """A torque at which nothing is finite; afterwards the instance continues."""
     with Opened(joint["2"]) as one:
         host = one.host
         host.fmu.exitInitializationMode()

@@ -124,7 +124,8 @@ def test_a_partner_is_a_valid_fmu_for_every_platform(built: Path, name: str, ver
 
 @ALL
 def test_flanges_of_a_partner_fit_those_of_the_joints(built: Path, name: str) -> None:
-    """Same members, so that a tool connects whole flanges; what a partner takes is what a joint applies."""
+    """The flanges have the same members, so that a tool connects complete flanges; a partner's input is a
+    joint's output."""
     with zipfile.ZipFile(built / "fmi3" / f"{name}.fmu") as archive:
         root = fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
     schema = etree.XMLSchema(file=str(Path(fmpy.__file__).parent / "schema/fmi3/fmi3TerminalsAndIcons.xsd"))
@@ -264,7 +265,7 @@ def test_a_saved_state_goes_on_bit_by_bit(make: Make) -> None:
 @BOTH
 @pytest.mark.parametrize(("kind", "error"), [("ModelExchange", 1e-6), ("CoSimulation", 3e-5)])
 def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -> None:
-    """Under CVode, and by its own steps."""
+    """By CVode, and by its own steps."""
     start = {"J": 0.05, "m": 1.0, "l": 0.2, "phi": 1.0, "w": 0.0}
     found = simulate_fmu(
         str(built / f"fmi{version}" / "RotationalInertia.fmu"),
@@ -347,7 +348,8 @@ def test_an_archive_is_complete_and_its_connections_fit(
 
 @ARCHIVES
 def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Path, version: str) -> None:
-    """Without the annotation its import ends with an internal error. It reads prefixes, not namespaces."""
+    """Without this annotation OMSimulator's import fails with an internal error. It reads prefixes, not
+    namespaces."""
     kind = re.compile(
         rb'<ssd:Annotations>\s*<ssc:Annotation type="org.openmodelica">\s*<oms:Annotations [^>]*>\s*'
         rb'<oms:SimulationInformation>\s*<oms:FixedStepMaster description="oms-ma" stepSize="0.0005" />'
@@ -368,7 +370,7 @@ def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Pa
 def test_a_reader_of_both_versions_opens_the_archives(
     built: Path, name: str, version: str, master: MasterKind
 ) -> None:
-    """pyssp_standard, which brings schemas of its own: connections, numbers and the FMUs' descriptions."""
+    """pyssp_standard, with its own schemas, reads connections, numbers and descriptions of the FMUs."""
     from pyssp_standard.ssp import SSP
     from pyssp_standard.ssv import SSV
 
@@ -529,7 +531,7 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
     name: str,
     wanted: list[str],
 ) -> None:
-    """The same equations step by step: they differ by round-off, which the motion does not amplify."""
+    """The same equations in each step: results differ by round-off, which the motion does not amplify."""
     out, path = tmp_path / "rows.npy", built / "ssp" / f"{name}.ssp"
     arguments = [path, name, load_system(name).interval, STEPS, out, *wanted]
     subprocess.run([sys.executable, "-c", script, *map(str, arguments)], check=True, timeout=100)
@@ -542,7 +544,7 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
 
 @pytest.mark.parametrize("name", list_system_names())
 def test_the_own_master_runs_an_archive_as_fmpy_does(built: Path, name: str) -> None:
-    """Side by side: the same equations step by step."""
+    """Parallel master: the same equations in each step."""
     found = load_system(name)
     own = simulate_system(found, built / "fmi2", stop=STEPS * found.interval)
     rows = in_fmpy(built, name)
@@ -559,8 +561,8 @@ def test_the_own_master_runs_an_archive_as_fmpy_does(built: Path, name: str) -> 
 def test_a_master_of_the_other_kind_needs_the_other_lag(
     built: Path, name: str, shown: str, step: float, least: float
 ) -> None:
-    """Against a step of a quarter: each archive in its own master converges, a present force that is carried
-    on does not come near."""
+    """Compared with a step of a quarter: each archive converges in its own master; extrapolating an undelayed
+    force does not."""
     found, (_, in_turn) = load_system(name), MASTERS
     stop = 0.6 * found.stop_time
 
@@ -596,7 +598,7 @@ def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
 
 
 def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
-    """Torques of the rigid arm, and the ringing of six inertias about it; at rest the weight alone, and the
+    """Torques of the rigid arm plus vibrations of six inertias about it; at rest the weight only, with the
     midline's wind-up within the hysteresis."""
     found, run = load_system("six_axis_robot"), moved(built / "fmi2")
     q, speed, acceleration = found.arm.compute_motion(run["time"])
@@ -709,7 +711,8 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
 def test_the_modelica_example_moves_as_the_archive(
     built: Path, name: str, model: str, stop: float, steps: tuple[float, float], left: float
 ) -> None:
-    """rumoca's solver on the Modelica text, fmpy's steps on the FMUs: they meet as h^2, the order of a step.
+    """rumoca's solver on the Modelica text, fmpy's steps on the FMUs: the difference is of second order in
+    the step.
 
     What the extrapolation to h = 0 leaves, is of the layer in which the component's sliders cease to stick
     (drive, 1.7e-4), and of the number of sliders (bolted joint, 0.5 %).
@@ -816,7 +819,7 @@ def test_the_largest_stable_step_is_the_formulas(built: Path) -> None:
 
 
 def test_the_largest_stable_step_with_late_forces(built: Path) -> None:
-    """h < (2 zeta)^(1/3) sqrt(J/K) where the lag is carried on, d/K where it is not."""
+    """h < (2 zeta)^(1/3) sqrt(J/K) with extrapolated delayed forces, d/K without extrapolation."""
     _, stiffness = working_point(0.0)
     frequency, zeta = math.sqrt(stiffness / LINK), 0.02
     d = 2.0 * zeta * math.sqrt(stiffness * LINK)
@@ -889,7 +892,7 @@ def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop
 
 @BOTH
 def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
-    """Drive and link as model-exchange FMUs, one system for CVode."""
+    """Drive and link as model-exchange FMUs, one system in CVode."""
     stop, angle, count = 0.03, 1.3e-3, 24_000
     fmus = {
         "drive": make("HarmonicDriveSpring", version, True).start(),
@@ -905,9 +908,8 @@ def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make,
 
 @BOTH
 def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, version: str) -> None:
-    """All four FMUs with the connections of the archive under CVode, and the archive's co-simulation
-    extrapolated to a step of zero, which leaves an error of fourth order; without friction, whose slip ends
-    the order of both solvers."""
+    """All four FMUs connected as in the archive, in CVode, against the archive's co-simulation extrapolated
+    to zero step (fourth-order error). Without friction, whose slip reduces the order of both solvers."""
     path, stop = str(built / "ssp" / "robot_joint.ssp"), 0.12
     early = {"load.pulse_start": 0.01, "drive.hysteresis_loss": 0.0}
     parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters} | early
@@ -934,8 +936,7 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
 def test_the_command_builds_a_system_of_ones_own(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With a drive of its own: an FMU for it, which rings, archives that run, a Modelica model, table and
-    picture."""
+    """With its own drive: an FMU that vibrates, archives that run, a Modelica model, table and picture."""
     text = (files("jointfmu_models") / "systems" / "robot_joint.toml").read_text(encoding="utf-8")
     model = 'model = "HarmonicDriveSpring"'
     own = text.replace(model, f'{model}\nparameters = "drives/my_drive.toml"').replace(
@@ -977,7 +978,7 @@ def test_the_command_builds_a_system_of_ones_own(
 
 
 def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
-    """Until the middle of the motion; the layer in which sliders cease to stick leaves 1e-3 of friction."""
+    """Up to the middle of the motion; the layer of the sliders leaves an error of 1e-3 of the friction."""
     import rumoca
 
     stop = 0.6
@@ -995,8 +996,8 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
 
 
 def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
-    """The archive as fmpy runs it: the pulse uses half of the friction limit; afterwards frequency and
-    damping follow the amplitude as for the pulled column, whose forces are passed on at once."""
+    """Archive in fmpy: the pulse uses half of the friction limit. Afterwards frequency and damping depend on
+    the amplitude as for the deflected column, whose forces have no delay."""
     rows = simulated(built, "bolted_column", 2e-6, 0.02)
     limit = bolted().joint.mu * 15e3 * bolted().joint.n_bolts
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
@@ -1126,7 +1127,8 @@ HYSTERESIS = ["--set", "hysteresis_loss=3.5e-4", "hysteresis_stiffness=3000"]
 def test_ring_down_of_a_drive_with_hysteresis(
     built: Path, tmp_path: Path, load: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Decrement over the amplitude against the energy of loops: 2 %; the step moves the frequency."""
+    """Decrement over the amplitude against the energy of loops, within 2 %; the step changes the
+    frequency."""
     picture = tmp_path / "decay.png"
     arguments = [
         "--fmus",
@@ -1155,7 +1157,7 @@ def test_ring_down_of_a_drive_with_hysteresis(
 
 
 def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """K_xx at tiny motion."""
+    """K_xx at very small motion."""
     fmus = str(built / "fmi2")
     arguments = ["--amplitude", "1e-8", "--load", "9e3", "--inertia", "50"]
     assert cli.main(["ring", "bolted_column", "--fmus", fmus, *arguments, "--json"]) == 0

@@ -61,7 +61,8 @@ def test_outputs_are_those_of_the_python_law(joint, study):
 
 @pytest.mark.parametrize("law", ["zhao2018", "roughness"])
 def test_approach_and_loss_factor_of_the_bolted_joint(law):
-    """Against quadrature of the compliance of the patches and nodes, and the loop of the whole interface."""
+    """Against quadrature of the compliance of patches and nodes, and against the loop of the whole
+    interface."""
     task = state_problem(load_default("bolted_joint", law), {"mu": "0.1..0.2", "H": "+-5%"}, None, 5)
     columns, joint = sample_of(task, propagate.sample_designs(task, 4, 5)[0], 0)
     joint = replace(with_rigid_members(joint), embedding=0.0)
@@ -95,7 +96,7 @@ def test_interpolated_outputs_of_a_long_ramp_are_those_of_the_fmu():
 
 
 def test_pattern_of_the_bolts_may_be_uncertain():
-    """The FMU does not expose it: the joint is opened again for each sample."""
+    """The FMU does not expose the pattern: the joint is opened again for each sample."""
     task = state_problem(load_default("bolted_joint"), {"pattern.decay_length": "+-20%"}, None, 4)
     points = propagate.sample_designs(task, 2, 0)[0]
     found = propagate.compute_bands(task, points)
@@ -129,7 +130,7 @@ def test_nominal_is_the_parameter_file():
 
 
 def test_refused_samples_are_counted_with_the_reason():
-    """Eccentricity of normal(5e-6, 5e-6): 15.87 % lie below zero."""
+    """Eccentricity normal(5e-6, 5e-6): 15.87 % are negative."""
     task = state_problem(load_default("harmonic_drive"), {"eccentricity": "normal(5e-6, 5e-6)"}, None, 3)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 256, 0)[0])
     assert found.refused_samples.count == pytest.approx(0.158655 * 256, abs=1.5)  # a balanced sequence
@@ -139,7 +140,7 @@ def test_refused_samples_are_counted_with_the_reason():
 
 
 def test_samples_that_only_the_law_refuses():
-    """A dimension so close to 1 that the critical spot overflows."""
+    """A dimension so close to 1 that the critical spot area overflows."""
     task = state_problem(load_default("bolted_joint"), {"surface.D": "1.0001..1.3"}, None, 3)
     points = propagate.sample_designs(task, 256, 0)[0]
     found = propagate.compute_bands(task, points)
@@ -153,7 +154,7 @@ def test_samples_that_only_the_law_refuses():
 
 
 def test_loads_beyond_the_table_are_refused():
-    """normal(29, 1) about the end of the table at 30 N.m: 15.87 % lie above."""
+    """normal(29, 1) near the end of the table at 30 N.m: 15.87 % are above."""
     given = {"surface.D": "+-1%", "tau": "normal(29, 1)"}
     task = state_problem(load_default("harmonic_drive"), given, None, 3)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 256, 0)[0])
@@ -294,7 +295,7 @@ def test_refused_study_files(text, words, tmp_path, capsys):
 
 
 def test_every_parameter_can_be_uncertain():
-    """+-1 % of any number that is not counted or zero, in one study per joint."""
+    """+-1 % of every number that is neither a count nor zero, in one study per joint."""
     for joint in KINDS:
         values = flatten_parameters(load_default(joint).values)
         declared = dict(flatten_fields(KINDS[joint].default_parameter_class))

@@ -145,7 +145,7 @@ def test_an_uncertain_load_scales_the_ramp():
 
 
 def test_results_do_not_depend_on_order_and_processes(monkeypatch):
-    """The numbers of a sample are the same to the bit after any other sample."""
+    """The numbers of a sample are equal to the bit after any other sample."""
     task = state_problem(load_default("bolted_joint"), {"H": "+-5%", "mu": "0.1..0.2"}, None, 4)
     runs = task.list_runs(propagate.sample_designs(task, 8, 0)[0])
     one = evaluate_runs(task.evaluator, runs, task.units, 4).outputs
@@ -183,7 +183,7 @@ def test_ishigami():
 
 
 def test_confidence_intervals_of_independent_samples():
-    """95 % intervals cover the truth in about 95 of 100 repetitions (at least 88: 3 sigma of 100)."""
+    """95 % intervals contain the true value in about 95 of 100 repetitions (at least 88: 3 sigma)."""
     rng, hits = np.random.default_rng(0), np.zeros((2, 3))
     for _ in range(100):
         A, B = rng.uniform(-np.pi, np.pi, (2, 3, 1024))

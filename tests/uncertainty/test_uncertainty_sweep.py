@@ -132,7 +132,7 @@ def test_a_local_sweep_opens_no_socket_and_ends_with_its_processes_when_killed(f
 
 
 def test_killed_and_resumed(fmu, tmp_path, capsys):
-    """kill -9 in the middle: no run is lost or done twice, and the unfinished last line is cut off."""
+    """kill -9 in the middle: no run is lost or repeated, and the unfinished last line is removed."""
     out = tmp_path / "out"
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "64", "--workers", "1", "--out", str(out)]
     process = subprocess.Popen([sys.executable, "-m", "jointfmu", *arguments], stderr=subprocess.DEVNULL)
@@ -166,7 +166,7 @@ def test_killed_and_resumed(fmu, tmp_path, capsys):
 @needs("Linux")
 @pytest.mark.parametrize("moment", ["workers start", "runs"])
 def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
-    """Sent to all processes, as a terminal does: 130, one line, no worker left."""
+    """The signal goes to all processes, as from a terminal: status 130, one line, no worker remains."""
     out, own = tmp_path / "out", tmp_path / "own"
     own.mkdir()
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "32", "--workers", "2", "--out", str(out)]
@@ -210,7 +210,7 @@ def test_a_process_that_dies_as_it_starts_prints_nothing():
 
 
 def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
-    """On a scheduler's workers, through its address alone; the same numbers as `jointfmu ramp`."""
+    """On the workers of a scheduler, given by its address only; the same numbers as `jointfmu ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
     task = state_fmu_problem(fmu, DRIVE, given)
     runs = runs_of(task, 8)
@@ -248,7 +248,7 @@ def test_an_fmu_and_its_joint_have_the_same_numbers(flavour, name, load, to, giv
 
 
 def test_bands_of_an_fmu(fmu, tmp_path, capsys):
-    """The same samples as of the deprecated command; without a folder nothing is kept."""
+    """The same samples as of the deprecated command; without a folder nothing is stored."""
     arguments = [str(fmu), *SETTINGS, *RAMP, "--samples", "16", "--workers", "1", "--json"]
     assert cli.main(["uncertainty", *arguments, "--csv", str(tmp_path / "bands.csv")]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -271,7 +271,7 @@ JOINT = ("uncertainty", "gear_contact", "--set", *SAMPLED, "--points", "30")
 
 
 def test_a_study_of_a_joint_is_killed_and_resumed(tmp_path, capsys):
-    """kill -9 in the middle: the same numbers to the bit as without a folder."""
+    """kill -9 in the middle: the numbers are equal to the bit to those of a study without a folder."""
     arguments = [*JOINT, "--samples", "256", "--json"]
     assert cli.main(arguments) == 0
     expected = json.loads(capsys.readouterr().out)
@@ -328,14 +328,15 @@ DIED = {5: "the process of the run died"}
 
 
 def test_a_local_run_that_kills_its_process(fmu, tmp_path):
-    """It is recorded with its parameters. In a process of its own, so that no worker of the tests can die."""
+    """The run is recorded with its parameters. The study runs in a process of its own, so that no test worker
+    can die."""
     done = run_host(LOCAL, fmu, tmp_path, Path(dying_run.__file__).parent)
     assert done.stdout == f"24 24 {DIED}\n", done.stderr
     assert sorted(indices(tmp_path)) == list(range(24))
 
 
 def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path):
-    """It is recorded with its parameters; those whose results went down with it are done again."""
+    """The run is recorded with its parameters; runs whose results were lost with it are repeated."""
     assert dying_run.run_until_five_dies(fmu, tmp_path, scheduler=cluster) == (24, 24, DIED)
     assert sorted(indices(tmp_path)) == list(range(24))
 

@@ -107,7 +107,7 @@ def test_a_bolt_pulls_or_has_no_force_and_its_gap_makes_up_for_the_rest():
 
 @pytest.mark.parametrize("positions", [[[0.01, 0.02]], [[-0.08, -0.03], [0.06, 0.05]], None])
 def test_a_field_without_a_list_of_bolts_has_places_with_its_means(positions):
-    """Those of one bolt, of two, and of four on a rectangle are the places themselves."""
+    """For one bolt, two bolts, and four bolts on a rectangle, the equivalent positions are the exact ones."""
     rectangle = [[x, y] for x in (-0.07, 0.09) for y in (-0.03, 0.04)]
     places = np.array(positions or rectangle)
     found = bolt_law._equivalent_positions(*position_means(places))
@@ -126,7 +126,7 @@ def test_a_field_may_list_its_bolts():
 
 
 def test_one_row_of_bolts_takes_no_share_of_a_moment():
-    """Also where their mean is not their place to the last bit."""
+    """No share, even if the mean of the positions differs from a position by round-off."""
     row = np.column_stack([[-0.05, 0.0, 0.05], [0.1, 0.1, 0.1]])
     np.testing.assert_array_equal(bolt_law.bolt_force_per_moment(row), 0.0)
 
@@ -147,7 +147,7 @@ MIXED = np.array([0.0, 0.0, -1.0, 4.0, -8.0, 0.0])
 
 @pytest.mark.parametrize("sweep", SWEEPS)
 def test_no_bolt_pushes(spring, sweep):
-    """What the bolts add to the forces is what they pull at their places."""
+    """The contribution of the bolts to the forces is their tension at their positions."""
     memory, lifted, free = spring.initial_history(), False, without_bolts(spring)
     bare, x, y = free.initial_history(), *spring.bolts.position.T
     for part in np.linspace(0.0, 1.0, 9):
@@ -167,7 +167,7 @@ def test_no_bolt_pushes(spring, sweep):
 
 
 def test_a_lifted_bolt_has_no_stiffness():
-    """All of it is gone beyond lift-off, half of it at lift-off itself; between rigid sides."""
+    """Zero beyond lift-off, half of the full stiffness at lift-off; between rigid sides."""
     spring = BoltedJointSpring.for_joint(rigid_file().values)
     free, six = without_bolts(spring), np.zeros(6)
     x, y = spring.bolts.position.T
@@ -180,7 +180,7 @@ def test_a_lifted_bolt_has_no_stiffness():
 
 
 def test_stiffness_is_that_of_the_forces_on_both_sides_of_lift_off(file):
-    """All bolts pull, some of them, or none."""
+    """All, some or no bolts are in tension."""
     spring, seen = BoltedJointSpring.for_joint(file.values), set()
 
     for part in (0.5, 0.8, 1.6, 2.5):
@@ -195,7 +195,7 @@ def test_stiffness_is_that_of_the_forces_on_both_sides_of_lift_off(file):
 
 
 def test_a_closed_elastic_cycle_through_lift_off_has_no_work(file):
-    """Normal motion alone, along and about, out and back by another way: the force has a potential.
+    """A cycle of normal displacement and rotations, back on another path: the forces have a potential.
 
     By Simpson's rule, whose error is that of the corners. A bolt that lost its force at once would miss
     14.2 kN over some of 47 um.
@@ -225,7 +225,8 @@ def test_a_closed_elastic_cycle_through_lift_off_has_no_work(file):
 
 
 def test_without_preload_bolts_are_at_lift_off(spring):
-    """No forces, and half of their stiffness: the mean of both sides. Bolts of a joint that opens pull."""
+    """At rest there is no force and half the bolt stiffness, the mean of both sides; bolts of an opening
+    joint pull."""
     out, _ = at(spring, *STILL, preload=0.0)
     full, _ = at(spring, *STILL, preload=EMBEDDING + 1e-3)  # hardly a contact
     assert [abs(out[name]) for name in FORCES] == [0.0] * 6
@@ -280,7 +281,7 @@ def test_the_fmu_lifts_its_bolts_as_the_package(file, spring, tmp_path, flavour)
 
 
 def test_derivatives_are_those_of_the_forces_on_both_sides(file, tmp_path):
-    """By normal motions, by the preload and by the moment."""
+    """Derivatives with respect to normal motions, preload and moment."""
     with here_alone():
         build_fmus(["BoltedJoint"], ["fmi2"], file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")

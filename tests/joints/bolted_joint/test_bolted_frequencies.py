@@ -92,7 +92,8 @@ def started(native: Path, version: str, exchange: bool, **values: Any) -> Fmu:
 
 @pytest.mark.parametrize("exchange", [False, True], ids=["co-simulation", "model exchange"])
 def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
-    """Within 0.2 % of the matrix of all nodes, under a moment; the scheme's own error is taken out."""
+    """Within 0.2 % of the stiffness matrix of all nodes, under a moment; the error of the scheme is
+    removed."""
     squares, shapes = eigh(all_nodes(PRELOAD, MOMENT), MASS)
     for square, shape in zip(squares, shapes.T, strict=True):
         fmu = started(native, "3", exchange, moment=MOMENT)
@@ -106,7 +107,7 @@ def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
 
 @pytest.mark.parametrize("degrees", [10.0, 90.0])
 def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
-    """A block pushed in a turned frame gets the turned force, also in partial slip."""
+    """A block that is pushed in a rotated frame has the rotated force, also in partial slip."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turned = np.array([[c, -s], [s, c]])
     spring = BoltedJointSpring.for_joint(JOINT)
@@ -175,7 +176,7 @@ def cvode(fmu: Fmu, stop: float) -> float:
 
 
 def test_co_simulation_and_cvode_agree(native: Path) -> None:
-    """Step size halved: the error falls with its square, and without it the two are equal."""
+    """With half the step size the error is a quarter; extrapolated to zero step, both results are equal."""
     ends = []
     for per_period in (2000, 4000):
         fmu = started(native, "3", False)
@@ -213,7 +214,7 @@ with open({file!r}, "rb") as given:
 
 
 def test_a_state_goes_on_in_another_process(native: Path, tmp_path: Path) -> None:
-    """Bit by bit: all that friction remembers is in the state."""
+    """The results are equal to the bit: the state contains the complete history."""
     file = native / "fmi3" / "BoltedJoint.fmu"
     places = (1e-6 * np.sin(0.4 * np.arange(60)) * np.linspace(1.5, 0.3, 60)).tolist()
     fmu = started(native, "3", False)
@@ -230,7 +231,7 @@ def test_a_state_goes_on_in_another_process(native: Path, tmp_path: Path) -> Non
 
 
 def test_flavours_agree(native: Path, fmus: Path) -> None:
-    """FMI 2 and 3, both interfaces, the python flavour: the same ring-down with the same scheme."""
+    """FMI 2 and 3, both interfaces and the python flavour give the same ring-down with the same scheme."""
     places = {}
     for version in ("2", "3"):
         for exchange in (False, True):
@@ -274,7 +275,7 @@ def swings(first: float, least: float) -> Array:
 
 
 def test_a_ring_down_loses_what_the_loop_does(native: Path) -> None:
-    """From 0.63 to 0.1 of the friction: by how much less far it swings a period later, within 2 %."""
+    """From 0.63 to 0.1 of the friction limit, the decrease of the amplitude per period agrees within 2 %."""
     fmu = started(native, "3", False)
     place = ring_down(force_of(fmu), 400, 16.0)
     fmu.free_instance()
@@ -338,7 +339,7 @@ def test_what_is_no_box_is_refused():
 
 @needs("gmsh")
 def test_identification_finds_the_lengths_of_a_known_box(monkeypatch):
-    """Frequencies of a box that differs in what they determine best, length and overhang, are met again.
+    """The frequencies of a box with other lengths and overhang, which they determine best, are reproduced.
 
     One step of the least squares must do it: the slopes of all five lengths decide its direction. An even
     pressure of the contact is enough.

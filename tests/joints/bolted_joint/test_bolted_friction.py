@@ -78,8 +78,8 @@ def stiffness(spring, place, step, **inputs):
 
 
 def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
-    """To the decimals that are kept; each patch has its own force within 2 % of the mean one, as points and
-    patches that do not touch have their parts, too."""
+    """The transferred force agrees to the stored decimals. Each patch has its own force within 2 % of the
+    mean one; points and patches without contact take part."""
     points, patches = spring.points, spring.patches
     part = force_transfer(points, patches)
     np.testing.assert_allclose(part.sum(axis=0), 1.0, rtol=1e-3)
@@ -102,7 +102,7 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
 
 
 def test_shear_does_not_lift(spring):
-    """The normal side knows nothing of the friction, to the last bit."""
+    """The normal force does not depend on the friction, to the last bit."""
     place = np.array([0.0, 0.0, 5e-7, 2e-6, -3e-6, 0.0])
     still = rest(spring, place)
     for shear in (1e-8, 1e-6, 2e-5):
@@ -115,7 +115,8 @@ def test_shear_does_not_lift(spring):
 @each_load
 @pytest.mark.parametrize("s_z", [0.0, -1e-6, 2e-6])
 def test_gross_slip_is_mu_times_the_normal_force(spring, preload, moment, s_z):
-    """In every direction; the patches keep share, equal and tilt exactly, not the pulled sums: 0.2 %."""
+    """In every direction. The patches keep share, preload and moment ratio exactly; sums under tension only
+    to 0.2 %."""
     for angle in (0.0, 0.7, 2.5):
         place = np.array([2e-5 * np.cos(angle), 2e-5 * np.sin(angle), s_z, 0.0, 0.0, 0.0])
         out = rest(spring, place, preload=preload, moment=moment)
@@ -128,7 +129,7 @@ def test_gross_slip_is_mu_times_the_normal_force(spring, preload, moment, s_z):
 @each_load
 @pytest.mark.parametrize("s_z", [0.0, -1e-6, 2e-6])
 def test_first_shear_follows_the_normal_curve(spring, preload, moment, s_z):
-    """f_x = -mu (F_N(s_z) - F_N(s_z + kappa u/mu)): Jaeger 1995, Ciavarella 1998; within 0.2 % of mu F_N."""
+    """f_x = -mu (F_N(s_z) - F_N(s_z + kappa u/mu)) (Jaeger 1995, Ciavarella 1998), within 0.2 % of mu F_N."""
     loads = {"preload": preload, "moment": moment}
     tight = rest(spring, np.zeros(6), **loads)
     kappa = tight["K_xx"] / tight["K_zz"]
@@ -147,7 +148,7 @@ def test_first_shear_follows_the_normal_curve(spring, preload, moment, s_z):
 
 
 def test_masing(spring):
-    """Back from an amplitude the branch is the first shear doubled; the loop closes, its area is the heat."""
+    """After a reversal the branch is the doubled first loading; the loop closes, and its area is the heat."""
     amplitude, steps = 7e-7, 50
     u = np.concatenate(
         [np.linspace(0, 1, steps), np.linspace(1, -1, 2 * steps), np.linspace(-1, 1, 2 * steps)]
@@ -167,7 +168,7 @@ def test_masing(spring):
 
 
 def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
-    """eta_loop = 2/(3 pi) kappa u sum(k')/(mu sum(k)), of the patches: no spike through zero.
+    """eta_loop = 2/(3 pi) kappa u sum(k')/(mu sum(k)) of the patches, without a peak at zero amplitude.
 
     Of second order is some half of the amplitude over that of gross slip, 1e-6 m.
     """
@@ -184,7 +185,7 @@ def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
 
 @pytest.mark.parametrize("part", [0.05, 0.1, 0.2, 0.3, 0.5])
 def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
-    """Losses of a loop within 5 % of the theorem, its amplitude over that of gross slip."""
+    """Losses of a loop agree within 5 % with the theorem, for amplitudes over gross slip."""
     rng, memory = np.random.default_rng(45), spring.initial_history()
     for preload in np.linspace(0.0, 3e4, 31):
         place = 1e-12 * (preload > 1e3) * rng.normal(size=6) * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
@@ -216,7 +217,7 @@ def test_separated_joint_forgets(spring):
 
 @pytest.mark.slow
 def test_no_closed_path_creates_energy(spring):
-    """Work put into the joint = heat + what the sliders hold >= heat; preload and moment rest."""
+    """Work on the joint = heat + energy of the sliders >= heat, at constant preload and moment."""
     rng = np.random.default_rng(40)
     for preload, moment in LOADS:
         for _ in range(2):
@@ -275,7 +276,7 @@ def missing(spring, steps, taken):
 
 @pytest.mark.slow
 def test_work_is_stored_or_lost_step_by_step(spring):
-    """With opening, bending and tightening, over 12 steps, none of whose errors hides another.
+    """With opening, bending and tightening, over 12 steps, without errors that cancel.
 
     Measured: 1.6e-4 at 64 steps an oscillation (0.2 um each), 7e-8 at 640, 2.4e-9 at 2560 (5 nm).
     """
@@ -287,7 +288,7 @@ def test_work_is_stored_or_lost_step_by_step(spring):
 
 
 def test_heat_never_falls(spring):
-    """Whatever the path and the bolts do."""
+    """For any motion and any preload."""
     rng, memory, before = np.random.default_rng(41), spring.initial_history(), 0.0
     for _ in range(60):
         loads = {"preload": 9e3 * rng.random(), "moment": 900.0 * rng.normal()}
@@ -297,7 +298,7 @@ def test_heat_never_falls(spring):
 
 
 def test_elastic_joint_returns_its_energy(elastic):
-    """A closed path in all six directions does no work: forces and moments have a potential."""
+    """Work of a closed path in all six directions is zero: forces and moments have a potential."""
     x, w = np.polynomial.legendre.leggauss(6)
     path = polygon(np.random.default_rng(42), corners=2, steps=4)
     works = []
@@ -310,7 +311,7 @@ def test_elastic_joint_returns_its_energy(elastic):
 
 
 def test_elastic_joint_warns_beyond_its_friction():
-    """Where the linear shear force would be the limit the traction t u/R has 1/sqrt 2 of it."""
+    """Where the linear shear force would reach the limit, the traction t u/R is 1/sqrt 2 of it."""
     spring = BoltedJointSpring.for_joint(replace(JOINT, memory=False))
     slips = {}
     for u in (5e-7, 2e-6):
@@ -333,7 +334,7 @@ def test_elastic_joint_warns_beyond_its_friction():
 
 @each_load
 def test_without_turns_the_forces_are_those_of_all_nodes(spring, preload, moment):
-    """The points that carry the normal force: within 1e-5 of that of the bolts."""
+    """On the points that carry the normal force, within 1e-5 of the bolt force."""
     nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     for z in (-3e-6, -1e-6, 1e-6, 3e-6):
         few, all_ = (
@@ -359,7 +360,7 @@ def test_the_stiffness_matrix_is_symmetric_and_holds_the_outputs(preload, moment
 
 
 def test_opening_and_moment_couple_the_directions(spring):
-    """Where one side carries more the centre of stiffness lies there."""
+    """If one side carries more, the centre of stiffness moves there."""
     even = stiffness(spring, np.zeros(6), 1e-4 * SIZE)
     size = np.sqrt(np.outer(np.diag(even), np.diag(even)))
     coupled = (even - np.diag(np.diag(even))) / size
@@ -389,8 +390,8 @@ def test_tilt_turns_back_and_moment_alone_does_not_turn(spring):
 @pytest.mark.parametrize("degrees", [10.0, 90.0])
 @pytest.mark.parametrize("memory", [True, False])
 def test_a_turned_frame_gives_turned_forces(degrees, memory):
-    """Without memory to round-off; sliders stand on circles that do not turn: 2 % of a bolt's
-    force, 6 % of the heat of the first slip."""
+    """Without history to round-off. The sliders are on circles that do not rotate: 2 % of a bolt's force, 6 %
+    of the heat of first slip."""
     spring = BoltedJointSpring.for_joint(replace(JOINT, memory=memory))
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -410,8 +411,8 @@ def test_a_turned_frame_gives_turned_forces(degrees, memory):
 
 @pytest.mark.parametrize("part", [0.5, 0.9])
 def test_a_normal_force_that_swings_takes_shear_once(spring, part):
-    """Down by 30 % and back at a shift that stays: what springs that lift had is gone the first time, by the
-    theorem (Popov and Hess 2015) within 0.1 %, and no more the next forty times."""
+    """Decrease by 30 % and return, at constant displacement. Springs that lifted off lose their force the
+    first time, within 0.1 % of the theorem (Popov and Hess 2015), and none in the next forty cycles."""
     force = 9e3 * JOINT.n_bolts
 
     def normal(z):

@@ -83,7 +83,7 @@ def test_outputs_are_named_as_promised(spring):
 
 
 def test_uniform_pressure_is_the_law(even):
-    """Sum over nodes = the law of the whole area at the mean pressure (MAX_ERROR of the table)."""
+    """The sum over nodes is the law of the whole area at the mean pressure (MAX_ERROR of the table)."""
     out = even.evaluate(9e3, 0.0, STILL, STILL)
     law = {name: float(value) for name, value in evaluate_at_pressure(JOINT, total(9e3) / JOINT.A_0).items()}
     assert out["K_zz"] == pytest.approx(law["K_N"], rel=MAX_ERROR)
@@ -97,7 +97,7 @@ def test_uniform_pressure_is_the_law(even):
 
 @each_load
 def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
-    """The law at every node's pressure for the whole area A_0, scaled by the node's share."""
+    """The law at the pressure of each node for the whole area A_0, weighted by the share of the node."""
     p = preload_pressure(JOINT, spring.points, preload, moment)
     assert (
         np.min(p) > spring.curve.load[np.searchsorted(spring.curve.displacement, 0.0)]
@@ -109,7 +109,7 @@ def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
 
 
 def test_uneven_pressure_is_softer_than_even(spring, even):
-    """K_N grows slower than the pressure: a mean of a concave law (Jensen)."""
+    """K_N grows less than proportionally with the pressure; the mean of a concave law is smaller (Jensen)."""
     uneven, flat = (s.evaluate(9e3, 0.0, STILL, STILL)["K_zz"] for s in (spring, even))
     assert uneven < flat
 
@@ -166,7 +166,7 @@ def test_force_is_minus_the_gradient_of_the_potential(spring, load, s):
 @settings(max_examples=20)
 @given(load=loads, s=states)
 def test_stiffness_is_the_exact_derivative(spring, load, s):
-    """All nine derivatives of the force: the outputs on the diagonal, symmetric beside it."""
+    """All nine derivatives of the force: the outputs on the diagonal, a symmetric matrix."""
     s = np.array(s)
     out = spring.evaluate(*load, tuple(s), STILL)
     matrix = np.empty((3, 3))
@@ -184,7 +184,7 @@ def test_stiffness_is_the_exact_derivative(spring, load, s):
 
 
 def test_mixed_derivative_is_not_lost(spring):
-    """Opening lowers the tangential force and shear pushes on the normal one, by the same amount."""
+    """Opening reduces the tangential force and shear increases the normal one, with equal derivatives."""
     s, h = np.array([1e-6, 0.0, 1e-6]), STEP
     z = STENCIL @ [forces(spring, LOADS[0], s + d) for d in np.outer(FIVE * h, [0, 0, 1])] / h
     x = STENCIL @ [forces(spring, LOADS[0], s + d) for d in np.outer(FIVE * h, [1, 0, 0])] / h
@@ -197,7 +197,7 @@ def test_mixed_derivative_is_not_lost(spring):
 @settings(max_examples=4)
 @given(load=loads, corners=st.lists(states, min_size=2, max_size=3))
 def test_closed_cycles_return_their_energy(spring, load, corners):
-    """Work around a polygon through the tightened state, normal and tangential at once."""
+    """Work around a closed polygon through the tightened state, with normal and tangential motion."""
     x, w = np.polynomial.legendre.leggauss(8)
     path = [np.zeros(3), *map(np.array, corners), np.zeros(3)]
     works = []
@@ -221,7 +221,7 @@ def test_pressed_together_it_gets_stiffer(spring):
 
 
 def test_pulled_apart(spring):
-    """Once separated: the preload is gone, no stiffness and no damping are left."""
+    """After separation the force is that of the lost preload, without stiffness and damping."""
     for preload, moment in LOADS:
         apart = float(np.max(spring.preloaded_approach(preload, moment)) - spring.curve.displacement[0])
         out = spring.evaluate(preload, moment, (1e-6, -2e-6, apart * (1.0 + 1e-12)), (1e-3, 1e-3, 1e-3))
@@ -245,7 +245,7 @@ def test_force_of_the_pull_is_monotone(spring):
 
 
 def test_signs_along_each_axis(plastic):
-    """Restoring: positive motion, negative force; and so is a positive rate."""
+    """A positive displacement gives a negative force, and so does a positive rate."""
     spring = plastic
     for axis, name in enumerate(("f_x", "f_y", "f_z")):
         unit = np.eye(3)[axis]
@@ -264,7 +264,7 @@ def test_signs_along_each_axis(plastic):
 
 @each_load
 def test_loss_factors_and_damping(plastic, preload, moment):
-    """eta_n: plastic over elastic work of all nodes; eta_t: of the traction ratio; C = eta sqrt(M K)."""
+    """eta_n: plastic over elastic work of all nodes; eta_t from the traction ratio; C = eta sqrt(M K)."""
     spring = plastic
     out = spring.evaluate(preload, moment, STILL, STILL)
     law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
@@ -280,7 +280,8 @@ def test_loss_factors_and_damping(plastic, preload, moment):
 
 @each_load
 def test_plastic_work_of_first_loading_damps_on_demand_only(spring, plastic, preload, moment):
-    """Off, the joint returns all energy of its normal motion; nothing else changes, nor what eta_n says."""
+    """Without this option the normal motion dissipates nothing; all other outputs, eta_n included, are the
+    same."""
     moving = (1e-3, 1e-3, 1e-3)
     off, on = (joint.evaluate(preload, moment, STILL, moving) for joint in (spring, plastic))
     assert not JOINT.plastic_damping
@@ -301,7 +302,7 @@ def test_damping_grows_with_the_mass_as_its_root(plastic):
 
 
 def test_loss_factor_while_closing(even):
-    """Below the end of the closing eta_n keeps its value there."""
+    """While the contact closes, eta_n keeps its value at the end of the closing."""
     curve = even.curve
     edge = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     at_edge, below = (even.evaluate(part * edge * JOINT.A_0 / 8, 0.0, STILL, STILL) for part in (1.0, 0.1))
@@ -315,7 +316,7 @@ def test_loss_factor_while_closing(even):
 
 @each_load
 def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
-    """sum A k y^2, sum A k x^2, and rho sum A k (x^2 + y^2), written out."""
+    """Sums written out: A k y^2, A k x^2, and rho A k (x^2 + y^2)."""
     out = spring.evaluate(preload, moment, STILL, STILL)
     law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
     x, y = spring.points.position.T
@@ -340,7 +341,7 @@ def test_rotation_of_three_nodes(even):
 
 
 def test_without_preload(spring):
-    """The sides touch without force: everything is finite; pressed together it carries."""
+    """The faces touch without force and all outputs are finite; under compression the joint carries load."""
     out = spring.evaluate(0.0, 0.0, STILL, STILL)
     assert all(np.isfinite(value) for value in out.values())
     for name in ("f_x", "f_y", "f_z", "K_xx", "K_zz", "C_xx", "C_zz", "K_rz", "p_mean", "p_max"):
@@ -353,7 +354,7 @@ def test_without_preload(spring):
 
 
 def test_a_small_preload_is_continuous_to_none(plastic):
-    """Through the closing of the contact: no jump of any output but the loss factors."""
+    """While the contact closes, no output but the loss factors jumps."""
     spring = plastic
     previous = spring.evaluate(1.0, 0.0, STILL, STILL)
     for preload in (1e-2, 1e-4, 1e-8):
@@ -366,7 +367,8 @@ def test_a_small_preload_is_continuous_to_none(plastic):
 
 @pytest.mark.parametrize("moment", [2e4, -2e4, 1e7])
 def test_an_open_row(spring, moment):
-    """A moment that asks for more than the preload: no pull in any node, and no force when tightened."""
+    """A moment larger than the preload allows: no tension in any node, and no force in the
+    tightened state."""
     preload = 9e3
     assert abs(moment) / (JOINT.row_distance * JOINT.row_bolts) > preload
     p = preload_pressure(JOINT, spring.points, preload, moment)
@@ -391,7 +393,7 @@ def test_the_sign_of_a_moment_does_not_matter_to_a_symmetric_frame(spring):
 
 
 def test_beyond_the_table_the_tangent_continues(even):
-    """Pressed to more than the hardness: linear from there."""
+    """Beyond the approach at which the pressure reaches the hardness, the force is linear."""
     end = even.curve.end_point[0] - float(even.preloaded_approach(9e3, 0.0)[0])
     one, two, three = (even.evaluate(9e3, 0.0, (0.0, 0.0, -end - d), STILL) for d in (1e-6, 2e-6, 3e-6))
     rise = two["f_z"] - one["f_z"]

@@ -75,8 +75,8 @@ def test_stiffness_is_the_derivative_of_the_force(fmu: Host) -> None:
 
 @pytest.mark.slow
 def test_springs_that_just_touch_have_a_friction(host: Host, tmp_path: Path) -> None:
-    """Of a range that has just been entered whole, one slider has none but for round-off, which was less than
-    none: after some hundred steps of this way forces were no numbers, whatever came then."""
+    """In a range that has just come into full contact, one slider has only round-off as limit. A negative
+    limit made all forces NaN after some hundred steps of this path."""
     file = Path(str(files("jointfmu_models"))) / "bolted_joint/box_specimen_roughness.toml"
     with here_alone("3"):
         build_fmus(["BoltedJoint"], ["fmi3"], load_parameter_file(file), tmp_path)
@@ -133,7 +133,8 @@ def test_the_preload_ramp_agrees_with_scipy(fmus: Path) -> None:
 
 
 def test_loops_are_the_packages_down_to_no_amplitude(fmu: Host, host: Host, version: str) -> None:
-    """In all flavours, though differences of energies would cancel; so are their derivatives."""
+    """In all flavours, down to amplitudes at which differences of energies would cancel, derivatives
+    included."""
     python, native = fmu("BoltedJoint").start(), host("BoltedJoint", version).start()
     for size in (1e-17, 1e-14, 1e-12, 1e-10, 1e-8, 2e-8, 5e-8, 1e-7):
         state = {"preload": 9e3, "moment": 300.0, "s_rel_x": 0.6 * size, "s_rel_y": -0.8 * size}
@@ -146,7 +147,8 @@ def test_loops_are_the_packages_down_to_no_amplitude(fmu: Host, host: Host, vers
 
 
 def test_a_joint_that_hardly_moves_is_the_packages(host: Host, version: str) -> None:
-    """Noise while it is tightened and opened, then shear beyond rest: the same numbers, and slopes."""
+    """Noise during tightening and opening, then shear beyond stick: same numbers and derivatives as the
+    package."""
     rng, places = np.random.default_rng(46), ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_z")
     instance, expected = host("BoltedJoint", version).start(), package("BoltedJoint").after()
     zero, n_bolts = dict.fromkeys(RANGES["BoltedJoint"], 0.0), parameters("BoltedJoint").n_bolts
@@ -219,7 +221,8 @@ def test_derivatives_keep_the_closed_relations_of_the_bolted_joint(
 
 @pytest.mark.parametrize("memory", [True, False])
 def test_all_36_slopes_are_those_of_the_forces_after_a_path(host: Host, version: str, memory: bool) -> None:
-    """Against central differences of the same instance, which are trials; slips and openings on the way."""
+    """Against central differences of trial evaluations of the same instance, with slip and opening along the
+    path."""
     states = random_inputs("BoltedJoint", 6, seed=35)
     instance = host("BoltedJoint", version).start({"memory": memory} | states[0])
     for state in states[1:]:
@@ -237,8 +240,8 @@ def test_all_36_slopes_are_those_of_the_forces_after_a_path(host: Host, version:
 
 
 def test_slopes_of_accepted_states_are_the_mean_of_both_directions(host: Host, version: str) -> None:
-    """On a way whose load changes: forces at their limit are not beyond it by round-off, as the limit's parts
-    cancel. Against central differences as above."""
+    """Forces at their limit exceed it by no round-off, although the terms of the limit cancel. Against
+    central differences as above."""
     size = dict(zip(MOTIONS, (3e-7, 2e-7, 1e-7, 3e-6, 3e-6, 6e-6), strict=True))
     instance, h = host("BoltedJoint", version).start({"preload": 9e3}), 1e-10
     for n in range(24):
@@ -254,7 +257,7 @@ def test_slopes_of_accepted_states_are_the_mean_of_both_directions(host: Host, v
 
 
 def test_an_accepted_state_tells_the_tangent_of_a_further_motion(fmu: Host, host: Host, version: str) -> None:
-    """Whatever the steps that led there: K_yy, K_rz and derivatives against differences of the same instance.
+    """For any previous steps, K_yy, K_rz and derivatives agree with differences of the same instance.
 
     Along x sliders at their limits slip on or stick: K_xx is the slope of going on, the derivative the mean.
     """
@@ -332,7 +335,8 @@ YELLOW = "#fde725"
 @pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.15, 0.0015])
 def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
-    """The smallest keeps part of its stiffness, the largest stays below the friction and loses."""
+    """The smallest loop keeps part of its stiffness, the largest one stays below the friction limit and
+    dissipates."""
     file = load_default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
     model = MODELS["BoltedJoint"]
     course = LoadHistory(model, file)
@@ -350,7 +354,7 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
 
 
 def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
-    """Cells make up the frame, the brightest lies at a bolt, numbers run as the bolts do."""
+    """Cells fill the frame, the brightest cell is at a bolt, and the bolts are numbered in their order."""
     joint = load_default("bolted_joint").values
     shape = joint.pattern.pressure_distribution()
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
@@ -381,7 +385,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
 
 @pytest.mark.slow
 def test_the_picture_of_points_without_an_outline() -> None:
-    """One dot a point, where it is; no bolts, and the page says so."""
+    """One dot per point at its position; there are no bolts, and the page says so."""
     file = load_default("bolted_joint")
     shape = file.values.pattern.pressure_distribution()
     half = np.flatnonzero(shape.position[:, 1] > 0.0)

@@ -99,7 +99,8 @@ def test_members_of_a_textbook():
 @pytest.mark.parametrize("outer", [0.016, 0.022, 0.03, 0.05, 0.2])
 @pytest.mark.parametrize("tapped", [False, True])
 def test_members_are_the_integral_over_the_cone(outer, tapped):
-    """Quadrature of dz/(E A) over the cone, cut off at D_A; and Eq. 36 of VDI 2230 for a free one."""
+    """By quadrature of dz/(E A) over the cone, cut off at D_A; and by Eq. 36 of VDI 2230 for a
+    complete cone."""
     grip, bearing, hole, E = 0.04, 0.0166, 0.0135, 210e9
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
     layers = [vdi2230.ClampedPart(0.015, E), vdi2230.ClampedPart(0.025, 2.0 * E)]
@@ -118,7 +119,8 @@ def test_members_are_the_integral_over_the_cone(outer, tapped):
 
 
 def test_a_bolt_by_hand():
-    """M12 over 40 mm, 19.35 mm of it shank: 6 + 19.35 over the nominal area, 20.65 + 6 over d_3, 4.8 nut."""
+    """M12 with 40 mm grip, 19.35 mm shank: lengths 6 + 19.35 mm with nominal area, 20.65 + 6 mm with d_3, 4.8
+    mm nut."""
     M12 = read_threads()["M12"]
     shank = vdi2230.shank_length(M12, 0.04, "hexagon", is_tapped=False)
     assert shank == pytest.approx(40e-3 + 9.6e-3 + 3.5e-3 - 30e-3)
@@ -143,12 +145,12 @@ def test_a_bolt_by_hand():
     ],
 )
 def test_embedding_of_table_5(Rz, tapped, printed):
-    """VDI 2230, part 1, Table 5, load along the bolt: thread, head and nut and one interface, in um."""
+    """VDI 2230, part 1, Table 5, axial load: thread, head and nut, and one interface, in um."""
     assert vdi2230.embedding_depth(Rz * 1e-6, 1, tapped) * 1e6 == pytest.approx(printed)
 
 
 def test_embedding_takes_of_the_preload(capsys):
-    """9.5 um over the compliances of bolt and members; all that is told is at what it leaves."""
+    """9.5 um over the compliance of bolt and members; all printed results are for the remaining preload."""
     found = facts_of(capsys, *PLATE, *FACES, *LOAD)
     loss = 9.5e-6 / (1.0 / found["bolt_stiffness"] + 1.0 / found["member_stiffness"])
     assert found["embedding"] == pytest.approx(loss)
@@ -190,7 +192,7 @@ def test_torques_of_tables_a1_and_a3(name, pitch, mu, preload, torque):
 
 
 def test_scatter_of_table_a8():
-    """VDI 2230, Table A8 prints alpha_A and the scatter side by side."""
+    """Table A8 of VDI 2230 prints alpha_A and the scatter."""
     for factor, scatter in ((1.2, 0.09), (1.4, 0.17), (1.6, 0.23), (2.0, 0.33), (2.5, 0.43), (4.0, 0.60)):
         assert vdi2230.preload_scatter(factor) == pytest.approx(scatter, abs=0.005)
     assert {*read_tightening_methods()} == {*TIGHTENING_METHODS}
@@ -201,7 +203,7 @@ KNOWN = ["--thread-friction", "0.12", "--head-friction", "0.12"]
 
 
 def test_a_torque_gives_a_preload_with_its_range(capsys, tmp_path):
-    """84 N.m on M12 at 0.12: Table A1 has 43.0 kN; a torque wrench scatters by a third of it."""
+    """84 N.m on M12 with mu = 0.12: Table A1 has 43.0 kN; a torque wrench scatters by a third."""
     path = tmp_path / "plate.toml"
     facts = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, "--sides", "rigid")
     assert facts["preload"] == pytest.approx(43.0e3, rel=0.01)
@@ -246,7 +248,8 @@ def test_python_takes_a_torque_too(capsys, tmp_path):
 
 
 def test_friction_of_a_torque_widens_the_range(capsys):
-    """By its interval if the method depends on friction, as a torque wrench does."""
+    """The interval of the friction adds to the range if the method depends on friction, as a torque wrench
+    does."""
     known = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN)
     usual = facts_of(capsys, *PLATE, *FACES, *TORQUE)
     assert usual["preload"] == known["preload"]
@@ -352,8 +355,8 @@ def test_washers_of_the_standard_are_those_of_stated_size(capsys, stated):
 
 
 def test_washers_are_clamped_parts_with_the_cone_of_the_head(capsys):
-    """The cone of VDI 2230 from the head, through a washer, both plates and a washer; the hole of the washers
-    is made that of the plates here."""
+    """The cone of VDI 2230 from the head through washer, both plates and washer, with equal hole
+    diameters."""
     words = [*PLATE, *FACES, *LOAD, "--hole", "13"]
     found, base = facts_of(capsys, *words, "--washers"), facts_of(capsys, *words)
     layers = [vdi2230.ClampedPart(t, E) for t, E in ((2.5e-3, 205e9), (0.04, 210e9), (2.5e-3, 205e9))]
@@ -372,7 +375,8 @@ def test_washers_are_clamped_parts_with_the_cone_of_the_head(capsys):
 
 
 def test_a_washer_limits_the_cone(capsys):
-    """A washer 6 mm thick: the cone from the head reaches its outer diameter of 18 mm before the plate."""
+    """With a washer 6 mm thick, the cone from the head reaches the outer diameter of 18 mm inside
+    the washer."""
     narrow = vdi2230.washer_compliance(16.63e-3, replace(read_washers()["M12"], outer_diameter=18e-3,
                                                          thickness=6e-3), 0.5)  # fmt: skip
     z = (np.arange(100_000) + 0.5) * 6e-3 / 100_000
@@ -592,7 +596,7 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
 
 
 def test_rz_gives_ra_with_its_scatter(capsys, tmp_path):
-    """Rz 10 of a drawing is Ra 1.6: the same height, with the range of Rz/Ra from 4 to 10."""
+    """Rz 10 on a drawing is Ra 1.6: the same height, with the range of Rz/Ra from 4 to 10."""
     path = tmp_path / "plate.toml"
     known = facts_of(capsys, *PLATE, *STEEL, "--Ra", "1.6", *LOAD)
     found = made(capsys, *PLATE, *STEEL, "--Rz", "10", *LOAD, path=path)["facts"]
@@ -750,7 +754,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 @needs("gmsh")
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
-    """By elements of thrice the size, whose error is far below what is asked."""
+    """With elements of three times the size, whose error is far below the tolerance."""
     monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.35))
     files = {}
     for field in ("cones", "computed"):
@@ -771,8 +775,8 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
 @needs("gmsh")
 @pytest.mark.slow
 def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, monkeypatch):
-    """As wide as VDI 2230's cone for a thread, in a joint without symmetry whose rims of the holes come to
-    the hardness of aluminium under moments and more preload. Of coarser elements, too."""
+    """As wide as the cone of VDI 2230 for a tapped thread, in a joint without symmetry; under moments and
+    higher preload, the hole edges reach the hardness of aluminium. With coarser elements."""
     monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.7))
     files = {}
     for field in ("cones", "computed"):
@@ -795,7 +799,8 @@ def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, m
 
 
 def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
-    """In the file, read back, in what the command tells of slip and loss, and in a study."""
+    """The range is in the file, in the file read back, in the printed slip force and loss factor, and in a
+    study."""
     path = tmp_path / "plate.toml"
     facts = {
         name: fact["value"] for name, fact in made(capsys, *PLATE, *FACES, *LOAD, path=path)["facts"].items()

@@ -127,7 +127,7 @@ def test_as_many_places_along_as_across():
 
 
 def test_the_moment_of_two_rows_is_that_of_a_frame():
-    """Bolt forces of a plate: those of Zhao 2018, section 3, for two rows."""
+    """The bolt forces of a plate with two rows are those of Zhao 2018, section 3."""
     pattern = plate(*LAYOUTS["two by two"])
     shape = pattern.pressure_distribution()
     upper = shape.position[:, 1] > 0.0
@@ -314,8 +314,8 @@ LOAD = ["--preload", "60e3", "--embedding", "0"]
 
 
 def test_the_bolt_that_gets_most_decides_when_the_interface_opens():
-    """Of three bolts one has as much of a pull as the others together, and so has the interface around it.
-    Bolts in a line through the centroid have no stiffness about it, but for round-off."""
+    """One of three bolts carries as much of a tensile load as the others together, and so does the interface
+    around it. Bolts in one line through the centroid have no stiffness about this line, except round-off."""
     each = np.ones(6)
     share = np.outer([0.02, 0.02, 0.04], each)
     found = Compliances(np.stack([each, each, each]), each, np.array([0, 0, 1, 1e-28, 1, 0]), share)
@@ -335,8 +335,8 @@ def made(capsys, *words):
 @needs("gmsh")
 @pytest.mark.slow
 def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine_elements):
-    """The cone of VDI 2230 is within 15 to 20 % of finite elements, which hold what lies under a head as one
-    face; its opening load is the preload over 1 - Phi."""
+    """The cone of VDI 2230 is within 15 to 20 % of finite elements, in which the area under a head moves as
+    one face; the opening load by VDI 2230 is the preload over 1 - Phi."""
     facts, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
     members = facts["joint_K_zz"] - facts["bolt_stiffness"]
     assert members == pytest.approx(facts["member_stiffness"], rel=0.2)
@@ -348,7 +348,7 @@ def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine_elements):
 @needs("gmsh")
 @pytest.mark.slow
 def test_washers_widen_the_bearing_face_of_the_finite_elements(capsys):
-    """Members between wider faces are stiffer, and a longer bolt in series with washers is less stiff."""
+    """Members with larger bearing faces are stiffer; a longer bolt in series with washers is less stiff."""
     bare, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
     washers, found = made(capsys, *M16, *LOAD, "--attached", "heads", "--washers")
     slope = vdi2230.cone_slope(0.046, 22.49e-3, 0.08, is_tapped=False)
@@ -365,7 +365,8 @@ def test_washers_widen_the_bearing_face_of_the_finite_elements(capsys):
 @needs("gmsh")
 @pytest.mark.slow
 def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
-    """VDI's factor n: the nearer to the interface a load enters, the less of it the bolts take."""
+    """Load factor n of VDI 2230: the nearer to the interface a load acts, the smaller the share of
+    the bolts."""
     heads, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
     faces, found = made(capsys, *M16, *LOAD)
     assert faces["joint_load_factor"] < 0.5 * heads["joint_load_factor"]
@@ -380,7 +381,7 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
 @needs("gmsh")
 @pytest.mark.slow
 def test_four_bolts_share_a_load_evenly(capsys):
-    """Of coarse elements, too."""
+    """With coarse elements."""
     words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", *M16[6:]]
     facts, _ = made(capsys, *words, "--preload", "15e3", "--embedding", "0")
     assert facts["joint_load_factor"] == pytest.approx(4.0 * facts["bolt_load_share"], rel=1e-2)
@@ -390,8 +391,8 @@ def test_four_bolts_share_a_load_evenly(capsys):
 @needs("gmsh")
 @pytest.mark.slow
 def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys, tmp_path, monkeypatch):
-    """The file has few of them, with the same sums: the whole that the finite elements find is its own, and
-    the one that is told. Its picture has the plate's outline and holes."""
+    """The file has few points with the same sums. The finite elements compute the complete joint with them;
+    printed values are the same. The picture shows outline and holes of the plate."""
     monkeypatch.setattr(
         BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.5)
     )  # as the bodies' here
@@ -415,7 +416,8 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
 
 @pytest.mark.parametrize("package", ["gmsh", "threadpoolctl"])
 def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypatch, tmp_path, package):
-    """The file would be of another joint than asked: nothing is written, unless that is asked for."""
+    """The file would describe another joint than requested, so it is written only if `--sides
+    rigid` is set."""
     monkeypatch.setitem(sys.modules, package, None)
     path = tmp_path / "joint.toml"
     other_plate = ["--plate", "80x81"]  # not solved before by this process
@@ -436,7 +438,7 @@ def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypat
 
 
 def test_rigid_sides_need_no_modes(capsys, monkeypatch):
-    """The finite elements took half a minute, and were dropped."""
+    """The finite elements would take half a minute, and their result would not be used."""
     monkeypatch.setattr(plate_finite_elements, "compute_joint_of_assembly", None)
     made(capsys, *M16, *LOAD, "--sides", "rigid")
 
@@ -459,7 +461,8 @@ THIN += ["--material", "aluminium", "--Ra", "0.8"]
 
 @pytest.mark.parametrize("sides", ["rigid", pytest.param("elastic", marks=[pytest.mark.slow, needs("gmsh")])])
 def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path, few_points, sides):
-    """1745 N of 1800 or of 4000 N: loops are drawn under a preload of which embedding leaves some."""
+    """Embedding loss of 1745 N at a preload of 1800 or 4000 N: loops are drawn at a preload that leaves a
+    clamping force."""
     path, preload = tmp_path / "thin.toml", {"rigid": "1800", "elastic": "4000"}[sides]
     words = ["--preload", preload, "--attached", "edge", "--out", str(path)]
     assert cli.main(["new", "bolted-joint", *THIN, "--sides", sides, *words]) == 0

@@ -99,7 +99,7 @@ def stiffness(spring):
     ("words", "preload"), [(FOUR, 15e3), ([*M16, "--attached", "heads"], PRELOAD)], ids=["faces", "heads"]
 )
 def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words, preload):
-    """Within 3 %: modes are rounded to four digits, and few points stand for the contact."""
+    """Within 3 %, because modes have four digits and few points represent the contact."""
     joint = made(*words, preload=preload)
     out, _ = at(joint.spring, *STILL, preload=preload)
     found = [out[name] for name in AXES]
@@ -107,9 +107,9 @@ def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words, prel
 
 
 def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(made):
-    """Patches turn with the bodies: of 40 poles inside the contact 95 % are within 2 % of the friction, all
-    within 3 %. As tightened: bodies that bend move some of the pressure. Seen: 1.7 %; 200 poles of the
-    README's plate have 1.3 and 2.4 %.
+    """Friction patches move with the bodies: for 40 poles inside the contact, 95 % are within 2 % of the
+    friction limit, all within 3 %. Checked in the tightened state, because bending bodies redistribute the
+    pressure. Measured: 1.7 %; 200 poles of the README's plate give 1.3 and 2.4 %.
     """
     most, largest = pole_deviations(made(*FOUR, preload=15e3).spring, 15e3, 40)
     assert most < 0.02
@@ -117,8 +117,8 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(made):
 
 
 def test_the_report_states_the_whole_beside_its_parts(made):
-    """Parts of the compliance as finite elements have them, within 0.02 of the whole: modes and rounding as
-    above; what the page says of rigid sides is nothing."""
+    """The shares of the compliance are within 0.02 of those of the finite elements; the page does not mention
+    rigid sides."""
     joint = made(*FOUR, preload=15e3)
     found = joint.spring.compliances(15e3)
     out, _ = at(joint.spring, *STILL, preload=15e3)
@@ -165,8 +165,9 @@ def test_stiffnesses_are_those_of_the_forces(made):
 
 
 def test_a_load_at_the_heads_is_shared_as_in_vdi_2230(made):
-    """30 kN at the heads of an M16 with 60 kN: Phi = 0.187 by hand, +5.6 kN in the bolt; the interface opens
-    at 1.23 times the preload. Finite elements hold the faces under the heads, which the cone does not."""
+    """30 kN at the heads of an M16 with 60 kN preload: Phi = 0.187 by hand, +5.6 kN bolt force; opening at
+    1.23 times the preload. In the finite elements the areas under the heads move as faces; in the cone model
+    they do not."""
     spring = made(*M16, "--attached", "heads").spring
     pulls = np.linspace(0.0, 60e-6, 61)
     states = (at(spring, 0, 0, pull, 0, 0, 0)[0] for pull in pulls)
@@ -180,8 +181,8 @@ def test_a_load_at_the_heads_is_shared_as_in_vdi_2230(made):
 
 
 def test_a_tapped_joint_is_near_vdi_2230(made, capsys):
-    """M16 through 40 mm into a thread: stiffness and load factor of VDI 2230, whose sleeve and cone are up to
-    15 % off at the heads. What holds side 2 is the wall of the thread: deeper than the plate is refused."""
+    """M16 through 40 mm into a thread: stiffness and load factor of VDI 2230, whose sleeve and cone differ by
+    up to 15 % at the heads. Side 2 is held at the thread wall; a thread deeper than the plate is refused."""
     words = [*M16, "--tapped", "--thickness", "40", "60", "--attached", "heads"]
     joint = made(*words)
     k, found = joint.file.values.bolt_stiffness, joint.spring.compliances(PRELOAD)
@@ -217,7 +218,8 @@ def test_a_load_at_the_faces_hardly_reaches_the_bolts(made):
 
 
 def test_embedding_takes_of_the_preload(made):
-    """All is as under the preload that is left; of a preload that is no larger nothing is."""
+    """All results are those of the remaining preload; an embedding loss as large as the preload
+    leaves none."""
     joint = made(*FOUR, preload=15e3)
     lost = BoltedJointSpring.for_joint(replace(joint.file.values, embedding=800.0))
     motion = (2e-7, 0.0, 1e-7, 1e-6, 0.0, 0.0)
@@ -251,7 +253,8 @@ def test_what_is_made_of_the_interface_alone_says_so(made, tmp_path, capsys):
 
 
 def test_bands_are_those_of_the_whole(made):
-    """Of roughness and bolts; between the knots of the ramp and without preload too, to 1e-4 of values."""
+    """Uncertainty of roughness and bolts; between the knots of the ramp and without preload, to 1e-4 of the
+    values."""
     joint = made(*FOUR, preload=15e3)
     task = state_problem(joint.file, {"h": "+-20%", "bolt_stiffness": "+-5%", "A_0": "+-5%"}, 15e3, 31)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 16, 0)[0])
@@ -275,7 +278,7 @@ def test_a_moment_changes_the_bolts_by_their_rows(made):
 
 
 def test_sides_that_do_not_give_way_are_rigid(made):
-    """Modes 1e12 times as stiff: the interface alone on the same patches, with the bolts at their places.
+    """With modes 1e12 times as stiff: the interface on the same patches, with the bolts at their positions.
 
     Patches have the normal force of the points, not that at their own places: 1.3e-3 of a force and 0.7 N.m
     were seen, where the friction is 6 kN some 30 mm from the centre.
@@ -294,7 +297,7 @@ def test_sides_that_do_not_give_way_are_rigid(made):
 
 
 def test_closed_paths_never_give_work(made):
-    """Random loops in all six directions, into slip and opening, in steps of the trapezoidal rule."""
+    """Random loops in all six directions with slip and opening; work by the trapezoidal rule."""
     spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(4)
     unit = np.array([3e-6, 3e-6, 1e-6, 2e-5, 2e-5, 5e-5])
     for _ in range(4):
@@ -324,7 +327,7 @@ def test_a_step_depends_on_inputs_and_memory_alone(made):
 
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
 def test_the_fmu_is_the_package(made, tmp_path, flavour):
-    """Ways through slip, opening and tilt: both find the equilibrium to 1e-13 of all forces."""
+    """Paths with slip, opening and tilt: both solvers find the equilibrium to 1e-13 of all forces."""
     joint = embedded(made(*FOUR, preload=15e3), tmp_path / "joint.toml")
     with here_alone():
         build_fmus(["BoltedJoint"], [flavour], joint.file, tmp_path)
@@ -400,8 +403,8 @@ def test_a_bolt_of_no_stiffness_leaves_an_open_joint_without_force(made):
 
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
 def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavour):
-    """Co-simulation and model exchange, over random histories of each version. Absolute: forces and
-    stiffnesses vanish."""
+    """Co-simulation and model exchange, over random histories in each version. Absolute tolerance, because
+    forces and stiffnesses vanish."""
     joint = embedded(made(*FOUR, preload=15e3), tmp_path / "joint.toml")
     with here_alone():
         build_fmus(["BoltedJoint"], [flavour], joint.file, tmp_path)
@@ -464,7 +467,7 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
 
 
 def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypatch):
-    """By the derivative of the residual, which is that of its differences: one step of 15 goes in parts."""
+    """With the exact derivative of the residual (checked by differences), only one of 15 steps is divided."""
     spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(2)
     unit = np.array([1.2e-5, 1.2e-5, 4e-6, 8e-5, 8e-5, 2e-4])
     newton, found, errors = equilibrium.solve_newton, [], []
@@ -492,7 +495,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
 
 
 def test_long_steps_back_from_gross_slip_are_found(made):
-    """Where all slipped before, the derivative at the beginning of a way back is far from that on it."""
+    """After gross slip, the derivative at the start of the return path is far from that along the path."""
     spring, rng = made(*M16, "--attached", "heads").spring, np.random.default_rng(1)
     unit = np.array([5e-6, 5e-6, 5e-6, 1e-4, 1e-4, 3e-4])
     a, b = rng.uniform(-1.0, 1.0, (3, 2, 6))[2] * unit
@@ -572,8 +575,9 @@ def test_a_whole_joint_without_a_bolt_or_a_file_is_refused(plates, tmp_path, cap
 
 
 def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monkeypatch):
-    """Its computed pressure reaches further than the cones of the drawing's joint: the joint is stiffer, by
-    less than the interface has of the compliance; a field alone leaves no body behind. Coarse elements do."""
+    """The computed pressure extends further than the cones of the drawing's joint, so the joint is stiffer,
+    by less than the share of the interface in the compliance. A field alone removes the bodies. With coarse
+    elements."""
     drawn, out = embedded(made(*FOUR, preload=15e3), tmp_path / "drawn.toml"), tmp_path / "whole.toml"
     monkeypatch.setattr(
         JointFiniteElements, "from_assembly", partial(JointFiniteElements.from_assembly, refinement=0.35)
@@ -626,7 +630,8 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
 
 
 def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path):
-    """Of the file's own law, by default; an interface alone cannot follow, which is said."""
+    """The fit uses the law of the file; a joint with rigid sides cannot follow the data, and the command says
+    so."""
     joint, path = made(*FOUR, preload=15e3), tmp_path / "curve.csv"
     preload = np.linspace(1e3, 15e3, 12)
     noise = 1.0 + 5e-3 * np.random.default_rng(1).standard_normal(12)
@@ -644,8 +649,8 @@ def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path)
 
 
 def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypatch):
-    """Loops of the joint itself are its law's within 0.2 % of the friction, in 24 steps, where Masing's rule
-    alone misses more; with noise they give what was put in, here in 12 steps."""
+    """The loops of the joint are within 0.2 % of the friction limit from its law in 24 steps; Masing's rule
+    alone is less accurate. With noise the fit recovers the true parameters, here in 12 steps."""
     joint, path, noise = made(*FOUR, preload=15e3), tmp_path / "loops.csv", np.random.default_rng(1)
     rows, past = [], joint.spring.initial_history()
     for x in (2.4e-6 * np.sin(np.linspace(0.0, 3.0 * np.pi, 73))).tolist():

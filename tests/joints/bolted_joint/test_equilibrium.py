@@ -45,7 +45,7 @@ def test_newton_converges_in_the_last_iteration(monkeypatch):
 
 @pytest.mark.parametrize("change", [0.0, -0.2, 0.2])
 def test_a_correction_that_raises_the_energy_is_shortened(change):
-    """The energy slope is positive at the start and hardly changes: regula falsi finds no zero."""
+    """The energy slope is positive at the start and hardly changes, so regula falsi finds no zero."""
     lengths = []
 
     def residual(_, a):

@@ -298,7 +298,7 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
 
 @pytest.mark.parametrize("dashpots", [False, True], ids=["calculix", "abaqus"])
 def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
-    """What docs/export_reference.md says: if meshio learns them, the sentence there goes."""
+    """If meshio supports these elements, the sentence in docs/export_reference.md must be removed."""
     import meshio
 
     deck = tmp_path / "springs.inp"

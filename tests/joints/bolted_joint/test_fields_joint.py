@@ -78,7 +78,8 @@ def direct(joint, shape, load):
 
 
 def test_points_keep_the_sums(reduced):
-    """At loads that the reduction never saw, within what it promises; the peak pressure exactly."""
+    """At loads outside the reduction's load cases, within the stated deviation; the peak pressure
+    is exact."""
     joint, shape, found = reduced
     assert found.point_count < 0.35 * found.node_count
     assert found.largest_deviation <= RELATIVE_TOLERANCE
@@ -116,7 +117,7 @@ def test_points_balance(reduced):
 
 
 def test_a_field_that_is_a_bit_off_is_the_same():
-    """Reduced are the same bits: 10 times with every number of the file off by 1e-15 of itself."""
+    """The reduced field has the same bits for 10 fields with every number changed by a relative 1e-15."""
     rng, shape = np.random.default_rng(8), normalise_pressure_field(JOINT, FIELD, PRELOAD)
     before = round_distribution(shape, ROUNDING_BITS)
     numbers = ("area_share", "position", "preload_pressure_ratio", "moment_pressure_ratio")
@@ -139,8 +140,8 @@ def test_a_field_that_is_a_bit_off_is_the_same():
 
 
 def test_patches_come_from_the_nodes(tmp_path):
-    """A ring under pure torsion has its moment, within 2e-3, and no lateral force, within 4e-3 of its
-    friction; the file keeps the patches, and those that do not balance are refused."""
+    """A ring under pure torsion has its moment within 2e-3, and no lateral force within 4e-3 of its friction
+    limit. The file keeps the patches; patches that do not balance are refused."""
     ring = contact_patches.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     contact = ContactField(ring.area_share * JOINT.A_0, ring.position, mean * ring.preload_pressure_ratio)
@@ -192,7 +193,7 @@ def _preload(one, count):
 
 
 def test_second_field_gives_the_tilt():
-    """The pattern's own two fields give back the pattern's own tilt, up to the sum it leaves (round-off)."""
+    """Two fields of the pattern give the moment ratio of the pattern, to round-off of its sum."""
     moment = 900.0
     found = normalise_pressure_field(JOINT, FIELD, PRELOAD, field(moment=moment), moment)
     pattern = get_bolted_frame(JOINT).pressure_distribution()
@@ -289,7 +290,8 @@ def test_what_asks_for_bolts_refuses_a_field(imported):
 
 
 def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
-    """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes."""
+    """After import, through parameter file, native FMU and ramp, the stiffnesses are the direct sums over all
+    nodes."""
     monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 10)
     shape = get_bolted_frame(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
@@ -324,7 +326,7 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
 
 
 def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
-    """Parameters of a pattern are unknown."""
+    """The study does not know the parameters of a pattern."""
     path = tmp_path / "joint.toml"
     path.write_text(format_parameter_file(imported[0]))
     line = ["uncertainty", "bolted_joint", "--params", str(path), "--samples", "16", "--set"]
@@ -335,7 +337,7 @@ def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
 
 
 def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(imported, tmp_path, capsys):
-    """Nodal pressures of some solvers do not sum up to the contact force."""
+    """Nodal pressures of some solvers do not add up to the contact force."""
     path = tmp_path / "field.csv"
     path.write_text(nodal_result.csv_text(replace(FIELD, pressure=0.8 * FIELD.pressure)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]

@@ -62,9 +62,9 @@ def compliance(load_diameter, washer=None):
 
 
 def test_the_cone_below_a_washer_is_nearer_than_the_face_of_the_surface_pressure():
-    """Half of a joint of 2 x 20 mm: the plate loaded over the diameter of the cone below the washer, and the
-    washer in series, against a plate with its washer. The other diameter is d_Wa = d_w + 1.6 h_S, by which
-    VDI 2230 counts the surface pressure."""
+    """Half of a joint of 2 x 20 mm: the plate loaded over the cone diameter below the washer, in series with
+    the washer, against a plate with its washer. The other diameter is d_Wa = d_w + 1.6 h_S, which VDI 2230
+    uses for the surface pressure."""
     thread = read_threads()["M16"]
     washer, d_w = find_washer(thread), thread.hexagon
     slope = vdi2230.cone_slope(2.0 * (THICKNESS + washer.thickness), d_w, 2.0 * RADIUS, is_tapped=False)

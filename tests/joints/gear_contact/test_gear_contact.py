@@ -42,14 +42,14 @@ each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
 
 
 def closing_end(spring):
-    """Force [N] and approach from first contact [m] at the end of the onset of contact."""
+    """Force [N] and approach from first contact [m] at the end of the closing."""
     i = int(np.searchsorted(spring.curve.displacement, 0.0))
     return spring.joint.A_0 * float(spring.curve.load[i]), -float(spring.curve.displacement[0])
 
 
 @each
 def test_approach_is_the_integral_of_df_over_K(spring):
-    """Against adaptive quadrature of the law's own stiffness from the end of the closing on."""
+    """Against adaptive quadrature of the law's stiffness from the end of the closing on."""
     A_0 = spring.joint.A_0
     first, s = closing_end(spring)
     assert float(spring.evaluate(first)["s_rel"]) == pytest.approx(s, rel=1e-12)  # round-off of the inverse
@@ -76,7 +76,7 @@ def test_approach_is_the_integral_of_df_over_K(spring):
 
 @each
 def test_stiffness_is_the_slope_of_the_force(spring):
-    """1/K_N = ds/df by differences of the output itself, from first touch to beyond the table."""
+    """1/K_N = ds/df by differences of the output, from first contact to beyond the table."""
     f = np.geomspace(1e-6, 3.0, 60) * spring.max_force
     h = 1e-3 * f
     slope = STENCIL @ spring.evaluate(f + h * FIVE[:, None])["s_rel"] / h
@@ -101,7 +101,7 @@ def test_everything_grows_with_the_force(spring):
 
 @each
 def test_no_load_and_pull(spring):
-    """First touch at zero: nothing; a pulling force finds the flanks apart."""
+    """At zero load the flanks just touch; a tensile force separates them."""
     out = spring.evaluate([0.0, -0.0, -1.0, -1e9])
     for name, value in out.items():
         np.testing.assert_array_equal(value, 0.0, err_msg=name)
@@ -109,7 +109,7 @@ def test_no_load_and_pull(spring):
 
 @pytest.mark.parametrize("f", [1e-100, 1e-200, 1e-300, 5e-324])
 def test_vanishing_forces(f):
-    """Down to the smallest float every output is a number close to that without load."""
+    """Down to the smallest float, every output is close to its value without load."""
     out = SPRINGS["default"].evaluate(f)
     assert all(np.isfinite(float(value)) for value in out.values())
     # round-off of the approach over the closing of 1 um, and 1e-12 of the stiffness at 1 N
@@ -120,7 +120,7 @@ def test_vanishing_forces(f):
 
 @each
 def test_real_area_and_its_elastic_part(spring):
-    """The law's own sums, and in closed form: A_r = lambda m/(1 - m) a_L, elastic above a_nec."""
+    """Sums of the law, and closed form: A_r = lambda m/(1 - m) a_L, elastic above a_nec."""
     f = np.geomspace(1e-3, 0.9, 12) * spring.max_force
     out = spring.evaluate(f)
     law = evaluate_at_pressure(spring.joint, f / spring.joint.A_0)
@@ -135,7 +135,7 @@ def test_real_area_and_its_elastic_part(spring):
 
 
 def test_zeta_is_the_exponent():
-    """m = sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022, and the table's end."""
+    """m = sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022, up to the end of the table."""
     exponent = np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4
     assert CONTACT.spot_distribution().size_exponent == pytest.approx(exponent, rel=1e-15)
     assert SPRINGS["default"].max_force == pytest.approx(2.8 * 235e6 * 1e-4, rel=1e-12)  # H A_0
@@ -143,7 +143,8 @@ def test_zeta_is_the_exponent():
 
 @each
 def test_the_closing_is_short(spring):
-    """It ends where the largest spot is CLOSING_AREA_RATIO times the largest plastic one."""
+    """The closing ends where the area of the largest spot is CLOSING_AREA_RATIO times that of the largest
+    plastic one."""
     force, _ = closing_end(spring)
     spots = spring.joint.spot_distribution()
     largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])

@@ -66,7 +66,7 @@ def outputs(of: GearMeshSpring, v: Inputs) -> dict[str, float]:
 
 @pytest.mark.parametrize("name", SETS)
 def test_native_tables_are_those_of_the_package(host: Host, version: str, name: str) -> None:
-    """1e-10: measured 2e-12 where damping and spring cancel, 1e-12 elsewhere."""
+    """Tolerance 1e-10. Measured: 2e-12 where damping and spring force cancel, 1e-12 elsewhere."""
     of, instance = spring(name), host("GearMesh", version).start(SETS[name])
     for state in states(of, 150):
         assert instance.at(state) == close(outputs(of, state), 1e-10)
@@ -80,7 +80,7 @@ def test_the_python_flavour_is_the_package(fmu: Host) -> None:
 
 @pytest.mark.parametrize("name", ["default", "stiff teeth"])
 def test_torques_are_the_gradient_of_the_energy(host: Host, version: str, name: str) -> None:
-    """Derivatives of the FMU: dE = -tau dphi, and mixed ones alike, to the round-off of their terms."""
+    """Derivatives of the FMU: dE = -tau dphi, mixed derivatives are equal, to round-off of their terms."""
     of, instance = spring(name), host("GearMesh", version).start(SETS[name])
     for state in states(of, 60):
         values = instance.at(state | {"w1": 0.0, "w2": 0.0})
@@ -92,9 +92,9 @@ def test_torques_are_the_gradient_of_the_energy(host: Host, version: str, name: 
 
 
 def test_derivatives_are_those_of_the_package(host: Host) -> None:
-    """Along the deflection and along the phase, against central differences of fourth order: truncation and
-    round-off, and the third derivative that jumps at nodes; where a regime ends the second one does.
-    Measured: 5e-8 of a thousandth of the output, the step's size."""
+    """Along deflection and phase, against central differences of fourth order. Errors: truncation, round-off,
+    jumps of the third derivative at nodes and of the second one at regime ends. Measured: 5e-8 of a
+    thousandth of the output, the step size."""
     of, two, three = spring("default"), *(host("GearMesh", v).start() for v in VERSIONS)
     rng, curve = np.random.default_rng(3), of.curve
     kinks = curve.displacement[1:-1][curve.stiffness_slope_end[:-1] != curve.stiffness_slope_start[1:]]
@@ -136,7 +136,8 @@ def test_nothing_acts_inside_the_backlash(host: Host, version: str) -> None:
 
 @pytest.mark.parametrize("phase", [0.5, -0.5, 1.5, 0.0, 1.0])
 def test_derivatives_are_continuous_where_the_phase_wraps(host: Host, phase: float) -> None:
-    """At half cycles the distance from the middle of the next part jumps, at whole ones it turns."""
+    """At half cycles the distance from the middle of the next pair jumps, at whole cycles it changes
+    direction."""
     of, instance = spring("stiff teeth"), host("GearMesh").start(SETS["stiff teeth"])
     found = []
     for side in (-1e-9, 0.0, 1e-9):
@@ -160,9 +161,9 @@ def test_turned_round_it_is_odd(host: Host, version: str) -> None:
 
 
 def test_a_closed_path_returns_its_energy(host: Host, version: str) -> None:
-    """Three mesh cycles with both flanks and separations. Measured: 5e-8 of what went back and forth, which
-    the sum over so many steps leaves; four times as many leave 7e-10. Without the energy's change by the
-    phase it would miss by more than 1e-4."""
+    """Three mesh cycles with both flanks and separations. Measured: 5e-8 of the exchanged energy by the
+    trapezoidal rule, with four times as many steps 7e-10. Without the derivative of the energy with respect
+    to the phase the error would exceed 1e-4."""
     instance = host("GearMesh", version).start({"d": 0.0})
     work, forces, through, steps = 0.0, 0.0, 0.0, 8000
     for t in np.arange(steps) * (2.0 * np.pi / steps):

@@ -29,7 +29,8 @@ CYCLE = (np.arange(4000) + 0.5) / 4000
 
 @given(ratio=ratios, engagement=engagements)
 def test_mean_over_a_cycle_is_the_contact_ratio(ratio, engagement):
-    """Exact: between its ends the number is a polynomial, five Gauss points integrate it."""
+    """Exact, because between its corners the number is a polynomial, which five Gauss points integrate
+    exactly."""
     part = ratio - np.floor(ratio)
     width = engagement * min(part, 1.0 - part)
     ends = np.sort([0.0, *(0.5 * part + width * np.array([-0.5, 0.5])), 0.5])
@@ -53,7 +54,7 @@ def test_one_pair_more_around_whole_phases(ratio, phase, count):
 
 
 def test_time_with_one_pair_more():
-    """The rest of the contact ratio is the part of the cycle with more than half a pair more."""
+    """The fractional part of the contact ratio is the part of the cycle with more than half a pair extra."""
     count, _ = pairs_in_contact(1.69, 0.3, 0.0, CYCLE)
     assert np.mean(count > 1.5) == pytest.approx(0.69, abs=1.0 / CYCLE.size)
     full = np.mean(count == 2.0)
@@ -78,7 +79,7 @@ def test_even_and_between_its_neighbours(ratio, engagement, phase):
 
 @given(ratio=ratios, engagement=st.floats(0.05, 1.0))
 def test_slope(ratio, engagement):
-    """By central differences: their error is h^2/6 times the third derivative, 60/width^3 at most."""
+    """By central differences, with the error h^2/6 times the third derivative, at most 60/width^3."""
     part = ratio - np.floor(ratio)
     width = engagement * min(part, 1.0 - part)
     if width < 1e-3:
@@ -93,7 +94,8 @@ def test_slope(ratio, engagement):
 
 
 def test_arrays_of_ratios():
-    """As in studies of many samples: every row as alone, whole ratios among them."""
+    """As in studies with many samples: every row equals the result for its ratio alone, integer ratios
+    included."""
     ratio, engagement = np.array([[1.0], [1.5], [2.0], [2.9]]), np.array([[0.5], [1.0], [0.1], [0.3]])
     together = pairs_in_contact(ratio, engagement, 0.0, CYCLE)
     for i in range(4):
@@ -104,7 +106,7 @@ def test_arrays_of_ratios():
 
 @given(ratio=ratios, engagement=engagements, overlap=st.floats(0.05, 4.0), phase=st.floats(-3.0, 3.0))
 def test_a_helical_mesh_is_the_mean_of_its_sections(ratio, engagement, overlap, phase):
-    """By quadrature; the midpoint rule's error is h^2/24 overlap times the curvature, at most 6/width^2."""
+    """By the midpoint rule, with the error h^2/24 overlap times the curvature, at most 6/width^2."""
     part = ratio - np.floor(ratio)
     width = engagement * min(part, 1.0 - part)
     if 0.0 < width < 0.02:
@@ -144,7 +146,7 @@ def contact_of(mesh):
 
 @each
 def test_the_pair_is_flanks_and_teeth_in_series(spring):
-    """s = delta(F) + F/K_tooth solved for F by brentq, delta by adaptive quadrature of the law itself."""
+    """s = delta(F) + F/K_tooth solved for F by brentq, with delta by adaptive quadrature of the law."""
     mesh = spring.joint
     flanks = tabulate_approach(mesh)
     first, force, delta = mesh.A_0 * flanks.closing_end_load, 0.0, -float(flanks.displacement[0])
@@ -181,7 +183,8 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
 
 @each
 def test_the_closing_is_in_series_too(spring):
-    """Where the contact closes the flanks' curve is one polynomial: brentq on it, to the table's error."""
+    """While the contact closes, the flank curve is one polynomial; brentq on it agrees to the error of the
+    table."""
     mesh, flanks = spring.joint, tabulate_approach(spring.joint)
     start = float(flanks.displacement[0])
     for part in (1e-3, 0.02, 0.2, 0.7, 0.999):
@@ -215,7 +218,7 @@ def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
 @settings(max_examples=25)
 @given(law=RANDOM["yu"], teeth=decades(1e-3, 1e6))
 def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
-    """Teeth by their stiffness over that of the flanks where their closing ends."""
+    """Tooth stiffness over the stiffness of the flanks at the end of the closing, in a wide range."""
     try:
         flanks = tabulate_approach(law)
     except ValueError as error:

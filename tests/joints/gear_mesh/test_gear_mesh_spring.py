@@ -44,7 +44,7 @@ def motion(spring, s, roll, rate=0.0):
 
 @each
 def test_stiffness_is_the_slope_of_the_force(spring):
-    """Along the line of action at a fixed phase, from first touch to beyond the table."""
+    """Along the line of action at constant phase, from first contact to beyond the table."""
     s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end_point[0]
     h = 1e-3 * s
     kinks = spring.curve.displacement[1:-1][
@@ -62,7 +62,7 @@ def test_stiffness_is_the_slope_of_the_force(spring):
 
 @each
 def test_torques_are_the_gradient_of_the_energy(spring):
-    """dE/dphi of both wheels by differences, all over the mesh cycle and on both flanks."""
+    """dE/dphi of both wheels by differences, over the whole mesh cycle and on both flanks."""
     pitch = base_pitch(spring.joint)
     generator = np.random.default_rng(3)
     s = (
@@ -124,7 +124,7 @@ def undamped(spring):
 @each
 @pytest.mark.parametrize("seed", range(4))
 def test_a_closed_path_returns_its_energy(spring, seed):
-    """Over three mesh cycles, both flanks and separation."""
+    """Over three mesh cycles, with both flanks and separation."""
     t, weights = period()
     path = closed_path(spring, seed, t)
     out = undamped(spring).evaluate(*path)
@@ -138,7 +138,8 @@ def test_a_closed_path_returns_its_energy(spring, seed):
 
 
 def test_without_the_change_of_the_pairs_a_mesh_would_create_energy():
-    """Torques f times the base radius alone do not close, by far more than the quadrature."""
+    """Torques of force times base radius alone give work on a closed path, far above the error of the
+    quadrature."""
     t, weights = period()
     path = closed_path(SPRINGS["default"], 0, t)
     force = undamped(SPRINGS["default"]).evaluate(*path)["f"]
@@ -163,7 +164,7 @@ def test_what_a_path_loses_is_the_work_of_the_damping(spring, seed):
 
 @each
 def test_damping_comes_in_over_the_closing(spring):
-    """Nothing at first touch, d beyond the closing of the contact, and smooth between."""
+    """Zero at first contact, d when the contact has closed, smooth between."""
     still, v = undamped(spring), 0.01
     s = np.concatenate([[0.0], np.linspace(1e-3, 3.0, 2000)]) * spring.closing_end
     damped = motion(spring, s, 0.0, v)["f"] - motion(still, s, 0.0, v)["f"]
@@ -202,7 +203,8 @@ def test_nothing_inside_the_backlash(spring):
 
 
 def test_rolling_wheels_carry_the_torque_ratio():
-    """Between the transitions of the pairs tau2/tau1 = r_b2/r_b1, both against the pressing motion."""
+    """Except where the number of pairs changes, tau2/tau1 = r_b2/r_b1, both against the compressing
+    motion."""
     out = motion(SPRINGS["default"], 1e-5, 0.0)
     assert out["tau1"] == pytest.approx(-MESH.r_b1 * out["f"], rel=1e-14)
     assert out["tau2"] == pytest.approx(-MESH.r_b2 * out["f"], rel=1e-14)
@@ -263,7 +265,7 @@ def test_the_model_gives_its_outputs_and_depends_as_it_says():
 
 @pytest.mark.parametrize("name", ["default", "soft teeth"])
 def test_symbols(name):
-    """The same equations with symbols, as the C is made from them."""
+    """Same equations with symbols, from which the C code is made."""
     import casadi
 
     from jointfmu.joints.gear_mesh.spring import deflection, mesh_outputs
@@ -345,7 +347,7 @@ def test_parameter_file_round_trip(tmp_path):
 
 
 def test_default_geometry():
-    """Base circles of a module of 4 mm at 20 degrees; the contact ratio of full-depth spur teeth."""
+    """Base circles for module 4 mm at 20 degrees; contact ratio of full-depth spur teeth."""
     m, alpha, z = 4e-3, np.radians(20.0), np.array([29, 45])
     base = 0.5 * m * z * np.cos(alpha)
     assert (MESH.r_b1, MESH.r_b2) == pytest.approx(base, rel=1e-7)  # the file's digits

@@ -35,7 +35,7 @@ def wheels(helix=0.0, width=0.01):
 
 
 def test_the_pair_of_the_shipped_file_comes_out(capsys, tmp_path):
-    """models/gear_mesh/beveloid_pair.toml: r_b and contact ratio by hand, c' = 14 N/(mm um)."""
+    """models/gear_mesh/beveloid_pair.toml: base radii and contact ratio by hand, c' = 14 N/(mm um)."""
     path = tmp_path / "mesh.toml"
     made(capsys, *DRAWING, *FACES, path=path)
     found, shipped = load_parameter_file(path).values, load_default("gear_mesh").values
@@ -83,7 +83,7 @@ def test_the_stiffness_of_helical_wheels_is_that_of_their_lines_of_contact(capsy
 
 
 def test_the_lines_of_contact_have_their_mean_length_and_fluctuation():
-    """Against lines laid over the field of contact: inclined by beta_b, a base pitch apart."""
+    """Against lines on the field of contact, inclined by beta_b, one base pitch apart."""
     mesh = wheels(20.0, 0.04)
     eps, overlap = mesh.contact_ratio, mesh.overlap_ratio
     axial = (np.arange(4000) + 0.5) / 4000  # place over the width
@@ -126,7 +126,7 @@ PRINTED += ["--helix-angle", "10", "--dedendum", "1.45"]
 
 
 def test_a_pair_with_profile_shift_is_that_of_a_printed_report(capsys):
-    """Report: contact ratio 1.463, c' 13.83, c_gamma_alpha 18.63 N/(mm um). C_B = 0.875 is assumed."""
+    """Published: contact ratio 1.463, c' 13.83, c_gamma_alpha 18.63 N/(mm um). Assumed: C_B = 0.875."""
     words = [*PRINTED, "--profile-shift", "0.48", "0.6691", "--centre-distance", "861", *FACES]
     found = made(capsys, *words)
     facts = {name: fact["value"] for name, fact in found["facts"].items()}
@@ -149,7 +149,7 @@ def test_the_mesh_prints_its_stiffness_in_python():
 
 
 def test_the_tooth_stiffness_is_within_the_spread_of_published_formulas(capsys):
-    """Spur pair of an open rotor-dynamics code: mean mesh stiffness 4.10e8 N/m."""
+    """Spur gears of an open rotor-dynamics code: mean mesh stiffness 4.10e8 N/m."""
     words = ["--module", "2", "--teeth", "62", "62", "--width", "20", "--torque", "200", *FACES]
     assert made(capsys, *words)["facts"]["c_gamma"]["value"] == pytest.approx(4.10e8, rel=0.2)
 
@@ -183,7 +183,7 @@ def test_the_path_of_contact_lies_between_the_tip_circles():
 
 
 def test_a_tooth_is_as_thick_at_its_tip_as_its_flanks_are_apart():
-    """The polar angle of the involute between reference and tip circle is that of points on the curve."""
+    """The polar angle of the involute between reference and tip circle agrees with points on the curve."""
     mesh = replace(wheels(), profile_shifts=(0.8, 0.0))
     r, r_b, r_a = mesh.reference_radii[0], mesh.base_radii[0], mesh.tip_radii[0]
     roll = np.linspace(0.0, 1.0, 400_001)
@@ -223,7 +223,7 @@ def test_doubtful_teeth_are_warned_of(capsys, words, warning):
 
 @pytest.mark.parametrize("helix", ["0", "20"])
 def test_a_mesh_from_a_drawing_returns_the_energy_of_a_cycle(capsys, tmp_path, helix):
-    """Work of a closed path of both wheels by the trapezoidal rule, whose error is below 1e-6 here."""
+    """Work on a closed path of both wheels by the trapezoidal rule, with an error below 1e-6."""
     path = tmp_path / "mesh.toml"
     made(capsys, *DRAWING, *FACES, "--helix-angle", helix, path=path)
     mesh = load_parameter_file(path).values
@@ -306,7 +306,7 @@ def test_force_over_deflection_is_the_mean_over_the_mesh_cycle():
 
 
 def test_the_contact_is_that_of_the_flanks():
-    """The same surfaces as the gear contact's default."""
+    """The surfaces are those of the default gear contact."""
     mesh, _ = require_export("gear_mesh", "contact")(MESH)
     flanks, _ = require_export("gear_contact", "contact")(load_default("gear_contact").values)
     np.testing.assert_array_equal(mesh.load, flanks.load)
@@ -391,7 +391,7 @@ STUDIES = {
 @pytest.mark.parametrize("name", STUDIES)
 @pytest.mark.parametrize("s_rel", [5e-7, 2e-5, 3e-4], ids=["closing", "default ramp", "end of the table"])
 def test_samples_are_those_of_the_python_law(name, s_rel):
-    """Deflections [m] of the driving flanks; the default table ends at 474 um, with stiff teeth sooner."""
+    """Deflections [m] of the driving flanks; the default table ends at 474 um, earlier with stiff teeth."""
     joint = load_default("gear_mesh")
     shorter = 0.1 if "K_tooth" in STUDIES[name] and s_rel > 1e-6 else 1.0
     task = state_problem(joint, STUDIES[name], shorter * s_rel / joint.values.r_b1, 9)
@@ -415,7 +415,7 @@ def test_samples_are_those_of_the_python_law(name, s_rel):
 
 @pytest.mark.slow
 def test_bands():
-    """The teeth are the softer part: they decide the band."""
+    """The teeth are softer than the contact, so they determine the band."""
     task = state_problem(load_default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 0)[0])
     assert found.refused_samples.count == 0

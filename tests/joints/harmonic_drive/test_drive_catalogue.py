@@ -77,7 +77,7 @@ def test_names(name, found):
     ],
 )
 def test_the_nearest_names_are_told(name, near):
-    """Of the same series, then of the nearest size, then of the nearest ratio."""
+    """Of the same series, then with the nearest size, then with the nearest ratio."""
     with pytest.raises(ValueError, match=f"nearest are {near}"):
         catalogue.find_drive(name)
 
@@ -108,7 +108,7 @@ def test_a_ratio_that_is_not_in_the_catalogue_is_refused(capsys):
 
 
 def test_a_torque_that_is_not_printed_is_a_marked_estimate():
-    """The catalogue gives the CSG 30 % more torque than the CSF; an SHG is as strong as a CSG."""
+    """By the catalogue, CSG torques are 30 % above CSF ones, and SHG torques equal CSG ones."""
     strong = catalogue.find_drive("CSG-20-100").numbers["rated_torque"]
     weak = catalogue.find_drive("CSF-20-100").numbers["rated_torque"]
     assert (weak.kind, strong.kind) == ("estimate", "catalogue")
@@ -143,7 +143,7 @@ def test_json(capsys):
 
 
 def test_every_actuator_with_limits_has_the_stiffness_of_its_row():
-    """Two sources print the lines: 21 rows of them agree, and the limits are those of the actuators."""
+    """21 rows of stiffness agree between two sources; the limits are those of the actuators."""
     arcmin = math.pi / 10800.0
     for row in rows("accuracy"):
         ratio = "100" if row["ratio"] == "50+" else row["ratio"]
@@ -170,7 +170,7 @@ def test_a_size_without_limits_has_the_widest_of_all():
 
 
 def test_single_drives_have_what_is_printed_of_them():
-    """What is not is an estimate, scaled from those of which it is."""
+    """Numbers that are not published are estimates, scaled from drives with published numbers."""
     units = {"starting_torque": ("starting_mNm", 1e-3), "running_torque": ("running_mNm", 1e-3)}
     units |= {"back_driving_torque": ("back_driving_Nm", 1.0), "rated_torque": ("rated_Nm", 1.0)}
     units |= {"peak_torque": ("repeated_peak_Nm", 1.0), "efficiency": ("efficiency", 1.0)}
@@ -236,7 +236,7 @@ def test_a_last_line_without_such_a_drive_is_the_second():
 
 
 def test_the_limits_of_an_actuator_are_its_own():
-    """Its torques are those of the motor, and are not taken from a gear."""
+    """Torques of an actuator are those of its motor; gear torques are not used for it."""
     path = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_accuracy.csv"
     for row in csv.DictReader(path.read_text(encoding="utf-8").splitlines()):
         ratio = row["ratio"].replace("50+", "80")
@@ -250,7 +250,7 @@ def test_the_limits_of_an_actuator_are_its_own():
 
 
 def test_the_wind_up_that_the_maker_computes():
-    """CHA engineering data p. 68: T = 60 N.m at T1 = 29, K1 = 6.7e4, K2 = 1.1e5 gives 7.15e-4 rad."""
+    """CHA engineering data, p. 68: T = 60 N.m with T1 = 29, K1 = 6.7e4, K2 = 1.1e5 gives 7.15e-4 rad."""
     sharp = jointfmu.drive("CHA-32A-100", corner=0)
     assert sharp.wind_up(60.0) == pytest.approx(7.15e-4, abs=0.005e-4)
 

@@ -163,7 +163,8 @@ def fixed_by(full, half, share, rated, ratio, rpm):
 
 
 def test_efficiency_over_load_is_the_published_curve():
-    """Two of ten points fix both parameters; the others, down to a tenth of rated torque, are predicted.
+    """Two of ten points determine both parameters; the other points, down to a tenth of the rated torque, are
+    predicted.
 
     A constant efficiency, or one straight in the load, misses by up to 0.7 and 0.2.
     """
@@ -190,7 +191,7 @@ def test_another_reading_of_such_a_curve_is_one_too():
 
 @pytest.mark.parametrize(("drive", "rated"), [("ATRIAS", 172.0), ("M2", 96.0)])
 def test_efficiency_over_speed_is_within_the_scatter(drive, rated):
-    """Viscous friction from the slowest and the fastest speed predicts the two between."""
+    """Viscous friction from the slowest and the fastest speed; the two speeds between are predicted."""
     known = {rpm * math.pi / 30.0: e for rpm, _, e in of(drive, "efficiency")}
     (slow, *between, fast), carried = sorted(known), rated / 50.0
     slope = (1.0 / known[fast] - 1.0 / known[slow]) * carried / (fast - slow)
@@ -203,7 +204,7 @@ def test_efficiency_over_speed_is_within_the_scatter(drive, rated):
 
 @pytest.mark.parametrize("drive", ["FR-40-160", "HFUC-20-80", "SHG-20-80"])
 def test_part_load_of_worked_examples_from_the_efficiency_at_rated_torque(drive):
-    """With load_loss 0.05, as starting and back-driving torque of four drives give it, within 8 points.
+    """With load_loss 0.05, the usual value of four drives, the efficiency is within 8 points.
 
     Published curves differ as much between series; an efficiency that load does not change is 7 to 13 off.
     """
@@ -229,7 +230,7 @@ def rows_of(name, **options):
 
 
 def test_the_page_has_what_is_published_of_the_drive(tmp_path):
-    """Which number set a parameter is told by the parameter's source; estimates of friction are left out."""
+    """The source of a parameter tells which number set it; estimates of friction are left out."""
     rows = rows_of("RT1-H-17-100")
     roles = {name: row.role for name, row in rows.items()}
     turned = ("starting_torque", "running_torque", "efficiency", "back_driving_torque")
@@ -257,7 +258,7 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
 
 
 def test_printed_numbers_from_those_of_the_other_drives():
-    """Starting torques within 25 %, where the mean of the others is up to 3.5 times off.
+    """Starting torques within 25 %; the mean of the other drives is up to a factor 3.5 off.
 
     The intervals hold 95 % of single drives: of the twenty numbers two at most lie outside, as by chance in
     92 % of such twenty.
@@ -274,7 +275,7 @@ def test_printed_numbers_from_those_of_the_other_drives():
 
 
 def test_the_law_is_the_stated_one():
-    """Drives that follow it exactly give it back, with no interval."""
+    """Drives that follow the law exactly give the law back, with an interval of zero width."""
     drives = [
         PublishedFriction(D, R, 2e-6 * D**2.5 * 100.0 / R, None, 0.1, 0.05)
         for D, R in ((14, 50), (20, 100), (25, 80))
@@ -292,7 +293,7 @@ def test_the_law_is_the_stated_one():
 
 @pytest.mark.slow
 def test_every_drive_has_friction_and_says_from_where():
-    """The back-driving torque of CSF-17-100 leaves less than nothing for its loss."""
+    """The back-driving torque of CSF-17-100 would give a negative loss."""
     for item in catalogue.list_drives():
         drive = made(item.name)
         for name in ("friction_coulomb", "load_loss", "load_loss_back"):
@@ -346,7 +347,8 @@ def load_again(file, tmp_path):
 
 
 def test_the_base_joint_of_a_robot():
-    """Its drag is what was decided; with it friction is within 20 % at all speeds, without up to 26 % low."""
+    """With its motor drag, the friction is within 20 % at all speeds; without drag it is up to 26 % too
+    small."""
     given, _ = JOINTS["CSG-25-100"]
     assert fit_drag() == pytest.approx(float(given), abs=0.0005)  # decided in mN.m
     base = measured_friction()

@@ -95,7 +95,7 @@ def test_fmu_passes_through_the_catalogue(tmp_path):
 
 @pytest.mark.slow
 def test_a_row_beyond_the_law_is_said(capsys):
-    """K3 = 1.6 K2 with the rated torque far above T2: the law's stiffness does not rise that fast."""
+    """K3 = 1.6 K2 with the rated torque far above T2: the stiffness of the law does not rise that fast."""
     values = {"K1": 24000, "K2": 30000, "K3": 49000, "T1": 29, "T2": 108}
     given = options(**values, law="hu2023")
     assert cli.main(["fit", "catalogue", *given, "--rated-torque", "151.2"]) == 1
@@ -116,7 +116,7 @@ def test_the_lines_stay_where_no_smooth_law_keeps_them():
 
 @pytest.mark.slow
 def test_the_default_keeps_the_lines_and_tells_what_the_pair_makes_of_them(tmp_path, capsys):
-    """CSG-17-100; the smooth law is 14 % below K1 without torque and some per cent above K3."""
+    """CSG-17-100: the smooth law is 14 % below K1 without torque, and some percent above K3."""
     out, picture = tmp_path / "out.toml", tmp_path / "fit.svg"
     given = options(K1="1.0", K2="1.4", K3="1.6", T1="3.9Nm", T2=12, out=out, plot=picture)
     given += ["--stiffness-unit", "1e4 Nm/rad", "--rated-torque", "31", "--json"]
@@ -202,7 +202,7 @@ def test_energies_are_the_integrals_of_the_torques():
 
 
 def test_branches_are_as_far_apart_as_stated():
-    """After rated torque, without torque: hysteresis_loss."""
+    """At zero torque after rated torque, the branches are apart by hysteresis_loss."""
     drive = measurements.file("harmonic_drive", measurements.DRIVE).values
     law = hysteresis.make_law(drive)
     u = np.linspace(0.0, 3e-3, 30001)
@@ -214,7 +214,8 @@ def test_branches_are_as_far_apart_as_stated():
 
 @pytest.mark.slow
 def test_free_vibration_agrees_with_integration_in_time():
-    """Velocity Verlet, 1e-5 with 500 steps a period; the windows miss what their own spreads say."""
+    """Velocity Verlet with 500 steps per period is accurate to 1e-5; the windows deviate by less than their
+    own estimate."""
     found = decay.analyse_decay(*measurements.drive_decay())
     frequency, damping = Oscillator(measurements.drive_law(), measurements.INERTIA).free_vibration(
         found.amplitude
@@ -226,7 +227,8 @@ def test_free_vibration_agrees_with_integration_in_time():
 @pytest.mark.slow
 @pytest.mark.parametrize("case", measurements.CASES)
 def test_round_trip(case, tmp_path):
-    """The benchmark's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
+    """A small version of the benchmark's 100 seeds: by chance 1 % of the fits are outside three
+    deviations."""
     found, true = measurements.CASES[case](np.random.default_rng(3), tmp_path / "measured.csv")
     for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
@@ -234,7 +236,8 @@ def test_round_trip(case, tmp_path):
 
 @pytest.mark.slow
 def test_the_command_writes_the_hysteresis(tmp_path, capsys):
-    """Torque and angle are told from force and displacement by their names; the zeros are anywhere."""
+    """Column names distinguish torque and angle from force and displacement; the zero points are
+    arbitrary."""
     rng = np.random.default_rng(1)
     run, angle, torque = measurements.loops(measurements.drive_law(), measurements.TURNS, rng)
     path, out = tmp_path / "loops.csv", tmp_path / "drive.toml"
@@ -300,7 +303,7 @@ def test_points_fold_both_directions_and_take_the_offset_off():
 
 @pytest.mark.slow
 def test_the_stiffnesses_of_lines_are_found(tmp_path):
-    """A record of a catalogue drive from another row; the 41 knots of a mid-line round its corners."""
+    """Record of a catalogue drive, fitted from another row; the 41 knots of the midline round its corners."""
     start = load_default("harmonic_drive", "catalogue")
     truth = start.with_values({"K1": 4000.0, "K2": 7000.0, "K3": 7500.0}, "user", "test")
     T = np.concatenate([np.linspace(0, 25, 120), np.linspace(25, -25, 240), np.linspace(-25, 0, 120)])

@@ -75,7 +75,8 @@ RIPPLE = {"friction_1": 0.012, "friction_1_phase": 0.4, "friction_2": 0.008, "fr
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_friction_over_the_turn_of_the_wave_generator(sense):
-    """Slow motion over two turns: the limit at each angle; the mean is that without ripple."""
+    """In slow motion over two turns the friction is the limit at each angle; its mean is that
+    without ripple."""
     law = spring(**DRY, **RIPPLE, presliding=1e-4)
     angles = sense * np.linspace(0.0, 4.0 * np.pi, 20_001)
     memory, found = law.initial_history(), []
@@ -105,7 +106,8 @@ def test_without_friction_nothing_acts_and_nothing_is_remembered():
 
 
 def test_a_drive_begins_where_it_is():
-    """Far from zero at rest without friction, turning with that of its speed; no heat yet."""
+    """Far from zero at rest the drive has no friction, in rotation it has that of its speed; no heat in both
+    cases."""
     law = spring(**DRY)
     for speed, share in ((0.0, 0.0), (2.0, 1.0), (-2.0, -1.0)):
         out, memory = law.advance_motion((500.0, speed, 5.0, speed / 100.0), law.initial_history())
@@ -120,7 +122,7 @@ def test_a_drive_begins_where_it_is():
 
 
 def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
-    """One step against very many, of which each is nearly a trapezium."""
+    """One step against very many small steps by the trapezoidal rule."""
     brake, rng = FrictionSliders(5.0 * SLIDER_STIFFNESS_SHARES), np.random.default_rng(4)
     memory = brake.pack_history(
         brake.advance(HISTORY_LAYOUT.virgin_history(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08)
@@ -161,7 +163,7 @@ def test_no_path_gives_energy_back_from_heat():
 
 @pytest.mark.parametrize("ratio", [100.0, -100.0])
 def test_the_load_costs_its_share_by_who_drives(ratio):
-    """Starting against a load, and being turned by it: both senses of turning, both signs of the ratio."""
+    """Lifting a load and being driven by it, for both senses of rotation and both signs of the ratio."""
     start, given = 0.02, {"friction_coulomb": 0.02, "load_loss": 0.1, "load_loss_back": 0.3, "d": 0.0}
     law, T = spring(**given, friction_stribeck=0.0, ratio=ratio), 5.0
     for sense in (1.0, -1.0):
@@ -204,7 +206,7 @@ def coast(law, inertia, speed, step, count):
 
 
 def test_a_coasting_motor_stops_after_the_way_that_its_energy_lasts():
-    """J w^2/2 = M phi; what is left rings within the presliding and dies out."""
+    """J w^2/2 = M phi; the remaining oscillation in the presliding range decays."""
     inertia, speed, friction = 3e-5, 30.0, 0.03
     law = spring(friction_coulomb=friction, friction_viscous=0.0)
     ends = 0.5 * inertia * speed**2 / friction
@@ -253,7 +255,8 @@ def test_each_part_follows_its_own_exponential():
 
 
 def test_the_default_coefficient_is_that_of_a_light_machine_oil():
-    """2/3 of the viscosity's: a rolling bearing's torque goes with viscosity^(2/3)."""
+    """The coefficient is 2/3 of that of the viscosity: the torque of a rolling bearing is proportional to
+    viscosity^(2/3)."""
     found = {
         row["oil"]: 2.0 / 3.0 * math.log(float(row["T30_mPas"]) / float(row["T100_mPas"])) / 70.0
         for row in OILS
@@ -288,7 +291,7 @@ def smooth(rng, size, t):
 @pytest.mark.slow  # 200 trajectories of 1000 steps
 @pytest.mark.parametrize("ratio", [100.0, -80.0])
 def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio, native, fmus):
-    """All friction on and the temperature moving. Work is that of both torques by the trapezium rule.
+    """With all kinds of friction and changing temperature; work of both torques by the trapezoidal rule.
 
     The beginning of the first trajectory is that of every flavour too.
     """

@@ -124,7 +124,7 @@ def way(ratio: float, t: float) -> tuple[float, ...]:
 
 
 def test_friction_along_a_path_is_the_packages(rumoca: Any):
-    """With all else; alone it is nearer, see the heat port below."""
+    """With all other effects; friction alone agrees better, see the test of the heat port."""
     more = {"ratio": -80.0, "hysteresis_loss": 2e-4, "error_2": 2e-4, "error_4": 5e-5, "error_4_phase": 1.0}
     more |= {"friction_1": 0.002, "friction_1_phase": 0.5, "friction_2": 0.0015, "friction_2_phase": -1.0}
     left = 1e-4  # of the layer, for the 44 sliders of the hysteresis
@@ -149,7 +149,7 @@ def test_friction_along_a_path_is_the_packages(rumoca: Any):
 
 @pytest.mark.parametrize("speed", [-3.0, 0.0, 0.05])
 def test_a_drive_begins_where_it_is(rumoca: Any, speed: float):
-    """Far from zero at rest without friction; turning as if it had done so for 0.1 s."""
+    """Far from zero at rest without friction; in rotation as if it had rotated for 0.1 s."""
     law = spring(**DRY)
     text = top(
         f"{component(law, DRY)}\n  Move motor(at=500, rate={speed!r});"
@@ -163,7 +163,8 @@ def test_a_drive_begins_where_it_is(rumoca: Any, speed: float):
 
 
 def test_the_text_read_by_another_parser_holds_along_the_solution(rumoca: Any):
-    """All equations as pymoca reads them, at what rumoca found; states by trapezia over the corners."""
+    """All equations as pymoca reads them, at the solution of rumoca; states by the trapezoidal rule over the
+    corners."""
     values = {**DRY, "ratio": -80.0, "friction_viscous": 1e-3, "error_2": 2e-4, "hysteresis_loss": 2e-4}
     law = spring(**values)
     body = f"{component(law, values)}\n  Way way(ratio=-80);"
@@ -214,7 +215,7 @@ def swung(
 
 
 def test_a_drive_starts_turns_round_and_stops_as_on_the_fmu(rumoca: Any, native: Path):
-    """A motor with a hanging link, pushed one way, then the other, then left alone.
+    """Motor with a hanging link, driven in one direction, then in the other, then free.
 
     Heun's method on the FMU, extrapolated to a step of zero; what is left is of the layer and of corners.
     """
@@ -261,7 +262,7 @@ def test_a_drive_starts_turns_round_and_stops_as_on_the_fmu(rumoca: Any, native:
 
 
 def test_a_coasting_motor_goes_as_far_as_its_energy_lasts(rumoca: Any):
-    """J w^2/2 = M phi, with the link carried along; then the sliders spring back and hold."""
+    """J w^2/2 = M phi with the link attached; afterwards the sliders spring back and hold."""
     J, speed, friction = 3e-5, 30.0, 0.03
     law = spring(friction_coulomb=friction)
     body = "\n  ".join(
@@ -286,7 +287,8 @@ def test_a_coasting_motor_goes_as_far_as_its_energy_lasts(rumoca: Any):
 
 
 def test_a_drive_holds_a_shaken_load_without_drift(rumoca: Any):
-    """Half of the limit at the output, shaken by a fifth of it, over 100 periods; the motor is off."""
+    """Half of the friction limit at the output, with an oscillation of a fifth of it, over 100 periods, motor
+    off."""
     law = spring(friction_coulomb=0.03)
     most = 100.0 * float(friction_limits(law.joint, 0.0, 0.0)[0])
     body = "\n  ".join(
@@ -317,7 +319,8 @@ def test_a_drive_holds_a_shaken_load_without_drift(rumoca: Any):
 def test_the_kinematic_error_makes_a_ripple_that_resonates_at_half_the_natural_frequency(
     rumoca: Any, share: float
 ):
-    """Link on a drive at constant speed; error_2 comes twice per turn. Linear theory at small amplitude."""
+    """Link on a drive at constant speed; error_2 has two periods per turn. Linear theory for small
+    amplitudes."""
     J, d, error = 0.05, 2.0, 1e-6
     K = float(spring().curve.stiffness[0])
     natural = math.sqrt(K / J)
@@ -426,7 +429,7 @@ def test_at_a_temperature_the_component_is_the_package(rumoca):
 
 
 def test_all_losses_go_out_at_the_heat_port(rumoca):
-    """A body that takes them gets warmer by all that hysteresis, dry and viscous friction and damper lose.
+    """A heat capacity at the port receives the losses of hysteresis, dry and viscous friction, and damper.
 
     It is what the work put in has more than springs and sliders store.
     """

@@ -75,7 +75,7 @@ def _row(circle, axis):
 
 
 def test_a_spring_takes_the_force():
-    """A ring under an even sideways load moves as a body: force over stiffness."""
+    """A ring under a uniform lateral load moves as a rigid body by force over stiffness."""
     circle, k = Circle.of(R, 128), 1e5
     load = 700.0 * _row(circle, 0.0)
     m = load.size // 2
@@ -88,7 +88,7 @@ def test_a_spring_takes_the_force():
 
 @pytest.mark.parametrize("perturbed", [0.0, 1e-14, -1e-14])
 def test_a_loose_ring_is_refused(monkeypatch, perturbed):
-    """Also if the factor of its singular matrix does not break down."""
+    """Also if the factorisation of its singular matrix does not fail."""
     monkeypatch.setattr(contact, "splu", lambda m: splu((m + perturbed * sparse.diags(m.diagonal())).tocsc()))
     circle = Circle.of(R, 16)
     load = circle.load(0.0 * circle.theta, np.ones_like(circle.theta))  # turns it
@@ -111,7 +111,7 @@ def test_contact_laws(law):
 
 @pytest.mark.parametrize("thickness", [0.2e-3, 0.5e-3, 2e-3])
 def test_the_closed_form_is_in_equilibrium(thickness):
-    """Pressure and line forces of half the ring add up to its hoop force at the minor axis."""
+    """The sum of pressure and line forces over half the ring is its hoop force at the minor axis."""
     ring = Ring.of(2.09e11, 0.295, thickness)
     form = on_oval(ring, R, W)
     unit = ring.D * W / R**4
@@ -153,7 +153,8 @@ def test_pressure_on_the_oval_converges():
 
 
 def test_turning_the_oval_does_the_work_of_the_loads():
-    """Virtual work of turning the pattern: the oval's moment is that of the loads on the moving ring."""
+    """Virtual work of a rotation of the oval: the moment on the oval is that of the loads on the
+    moving ring."""
     circle = Circle.of(R, 128)
     radial, tangential = tooth_traction(DRIVE, SIZE_14, 1.0)(circle.theta)
     load = circle.load(radial, tangential)
@@ -181,7 +182,8 @@ def test_turning_the_oval_does_the_work_of_the_loads():
 
 
 def test_tooth_load_carries_the_torque():
-    """Moment of the teeth is the torque, with the cup's shear flow nothing is left; radial by the angle."""
+    """The moment of the teeth is the torque, balanced by the shear flow of the cup; the radial load follows
+    from the pressure angle."""
     circle = Circle.of(DRIVE.radius, 1024)
     radial, tangential = tooth_traction(DRIVE, SIZE_14, 5.0)(circle.theta)
     length = contact_length(DRIVE)
@@ -194,7 +196,7 @@ def test_tooth_load_carries_the_torque():
 
 
 def test_balls_are_hertzian():
-    """Force over approach^1.5 of a sphere on two flats, each 4/3 E* sqrt(R) d^1.5."""
+    """Force over approach^1.5 of a sphere between two flats, each 4/3 E* sqrt(R) d^1.5."""
     modulus = 1.0 / (2.0 * (1.0 - DRIVE.bearing.nu**2) / DRIVE.bearing.E)
     one = 4.0 / 3.0 * modulus * np.sqrt(SIZE_14.ball_diameter / 2.0)
     force = 30.0
@@ -203,7 +205,7 @@ def test_balls_are_hertzian():
 
 
 def test_the_flexspline_is_in_balance():
-    """Held by next to nothing at the side, its pressure has no resultant."""
+    """With a very soft lateral support, the pressure has no resultant."""
     free = replace(COARSE, lateral_stiffness=1e-3)
     one = opening(5.0, free)
     force = one.weight @ (one.pressure * np.exp(1j * one.theta))
@@ -227,7 +229,7 @@ def test_the_peak_converges():
 
 
 def test_a_clearance_opens_the_contact():
-    """An interference adds what a ring in a ring carries, a clearance lets go beside the lobes."""
+    """Interference adds the pressure of a ring in a ring; clearance opens the contact next to the lobes."""
     shrunk = opening(0.0, replace(COARSE, interference=5e-6))
     loose = opening(0.0, replace(COARSE, interference=-5e-6))
     assert np.all(shrunk.pressure > 0.0)
@@ -241,7 +243,7 @@ def test_a_clearance_opens_the_contact():
 
 
 def test_the_wave_generator_drives_with_the_power_of_the_teeth():
-    """Rings that follow the oval: torque T w/r <cos 2 theta> of the tooth load, backwards."""
+    """If the rings follow the oval, the torque is T w/r <cos 2 theta> of the tooth load, backwards."""
     zone = SIZE_14.zone
     mean = quad(lambda t: np.cos(0.5 * np.pi * t / zone) * np.cos(2 * t), -zone, zone)[0] * np.pi / (4 * zone)
     expected = -5.0 * DRIVE.radial_deformation / DRIVE.radius * mean
@@ -250,7 +252,8 @@ def test_the_wave_generator_drives_with_the_power_of_the_teeth():
 
 
 def test_oval():
-    """R_a and beta of docs/errata.md, from positions and normals alone; no normal part along the surface."""
+    """R_a and beta of docs/errata.md from positions and normals; the normal has no component along the
+    surface."""
     theta, z = np.meshgrid(np.linspace(0.0, 0.5 * np.pi, 31), np.linspace(0.0, 0.01, 5))
     position, normal = oval(DRIVE, SIZE_14, theta, z)
     w = DRIVE.radial_deformation * (1.0 - z / SIZE_14.cup_length)
@@ -275,7 +278,7 @@ def test_oval():
 
 
 def test_stiffness_of_an_even_pressure():
-    """Without lobes the twist is tangential: K_TS = K_T r^2, within the oval's 2 w/r."""
+    """Without lobes a rotation is tangential: K_TS = K_T r^2, within 2 w/r of the oval."""
     nodes = field(DRIVE, COARSE, tooth_traction(DRIVE, COARSE, 0.0))[0]
     even = replace(nodes, pressure=np.full_like(nodes.pressure, 1e6))
     assert np.sum(nodes.share) == pytest.approx(1.0, rel=1e-12)  # round-off
@@ -314,7 +317,8 @@ def test_ring_pressures_are_far_below_the_published_peak():
 
 
 def test_eccentricity_does_not_soften_the_ring_model():
-    """Published is -9.4 % by 10 um at 1 N.m; a lateral force adds load instead."""
+    """The published change is -9.4 % by 10 um at 1 N.m; in the ring model a lateral force adds load
+    instead."""
     changes = []
     for stiffness in (3e5, 7e7):
         rings = replace(COARSE, elements_per_ball=3, lateral_stiffness=stiffness)

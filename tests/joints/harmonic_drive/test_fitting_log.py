@@ -72,8 +72,8 @@ def test_steady_speeds_give_their_friction_back(seed):
 
 @pytest.mark.slow
 def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
-    """Inertias and gravity come beside: the rotor's, which nobody states, from the wind-up. In half a minute
-    the arm is slow too seldom for Stribeck's part, which steady speeds determine."""
+    """The fit also finds inertias and gravity, with the unknown rotor inertia from the wind-up. In half a
+    minute the arm is slow too rarely to determine the Stribeck friction, which steady speeds do."""
     monkeypatch.setattr(robot_log, "STEP", 8e-3)
     found = fit_log(robot_log.write_swing, {"torque_constant": robot_log.CONSTANT}, 1)
     check_friction(found, {"friction_stribeck"})
@@ -92,7 +92,7 @@ def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
 
 
 def test_a_load_that_is_measured_gives_the_losses(tmp_path):
-    """Steady speeds both ways against and with gravity; two files are one log."""
+    """Steady speeds in both senses against and with gravity; two files are one log."""
     file = robot_log.drive()
     start, paths = robot_log.start(), []
     for number, held in enumerate((-40.0, 0.0, 40.0)):
@@ -119,8 +119,8 @@ def test_a_load_that_is_measured_gives_the_losses(tmp_path):
 
 
 def test_the_base_joint_of_a_robot(drive, tmp_path, capsys):
-    """Columns are named with their units, the picture is drawn, the rest is said by name; without names the
-    headings' own units, joint_speed_rad_per_s, motor_torque_Nm, temperature_degC, give the same."""
+    """Columns are named with units, the picture is drawn, everything else is printed. Without names, the
+    units in the headings (joint_speed_rad_per_s, motor_torque_Nm, temperature_degC) give the same."""
     out, plot = tmp_path / "fitted.toml", tmp_path / "fit.png"
     words = ["fit", "log", str(TABLE), "--params", str(drive), "--columns", *NAMES, WARM]
     assert cli.main([*words, "--out", str(out), "--plot", str(plot), "--json"]) == 0
@@ -233,7 +233,7 @@ LEVEL = ("N.m", 0.0 * TIME)
 
 
 def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
-    """Its load is above the least one; what is fitted without being determined is no calibration."""
+    """The load is above the minimum; parameters that are fitted but not determined are no calibration."""
     noise = 0.1 * np.random.default_rng(0).standard_normal(4001)
     path = written(tmp_path / "log.csv", tau=("N.m", LIGHT + noise), gravity=LEVEL)
     out = tmp_path / "out.toml"
@@ -267,7 +267,8 @@ def test_a_rotor_beyond_the_whole_is_refused(drive, tmp_path, capsys, given, hin
 
 
 def test_noise_is_not_written(drive, tmp_path, capsys):
-    """Torque that has nothing to do with the motion: status 1, one line, and a file by --force alone."""
+    """With torque that is unrelated to the motion: status 1, one line; a file is written only with
+    --force."""
     noise = np.random.default_rng(0).standard_normal(4001)
     path, out = written(tmp_path / "log.csv", tau=("N.m", 0.3 + 0.02 * noise)), tmp_path / "out.toml"
     asked = ["fit", "log", str(path), "--params", str(drive), "--out", str(out)]
@@ -337,7 +338,8 @@ def test_a_sensor_at_the_joint_gives_the_losses(tmp_path):
 
 
 def test_a_sensor_that_contradicts_the_motor_is_said(tmp_path, capsys):
-    """The current of this log grows with a load that drives the motor, as by a constant too large."""
+    """The motor current of this log grows with a load that drives the motor, as with a wrong torque
+    constant."""
     path, out = tmp_path / "drive.toml", tmp_path / "out.toml"
     path.write_text(format_parameter_file(size_32_file()), encoding="utf-8")
     words = ["fit", "log", JOINT_LOG, "--params", path, "--torque-constant", "0.21", "--out", out]
@@ -366,7 +368,7 @@ def test_the_torque_at_the_joint_alone(tmp_path, capsys):
 
 
 def test_a_sensor_and_the_angle_of_the_motor_give_the_stiffness(tmp_path):
-    """Without a torque of the motor: the loads of the log lie between T1 and T2."""
+    """Without motor torque; the loads of the log are between T1 and T2."""
     log_columns, file = sensor_log(), size_32_file()
     load = 2.5 * np.gradient(log_columns["dq"], 0.01) + 110.0 * np.cos(log_columns["q"])
     wind_up = HarmonicDriveSpring.tabulate(file.values).curve.odd_inverse(load)
@@ -377,7 +379,7 @@ def test_a_sensor_and_the_angle_of_the_motor_give_the_stiffness(tmp_path):
 
 
 def test_a_controller_that_states_motor_torques_at_the_joint(tmp_path):
-    """The torque of the motor times the ratio has the friction, a sensor behind the drive has none."""
+    """Motor torque times the ratio includes friction; a sensor behind the drive does not."""
     log_columns = sensor_log()
     at_joint = log_columns | {"link_torque": 100.0 * CONSTANT * log_columns["i"]}
     path = save_log(tmp_path / "log.csv", at_joint, "time", "q", "dq", "link_torque")
@@ -447,7 +449,7 @@ def test_german_headings(tmp_path, capsys):
 
 
 def test_a_long_log_starts_from_a_part_of_its_samples(monkeypatch, tmp_path):
-    """The first fit uses every fourth sample here; the second one starts there and gives the same."""
+    """The first fit uses every fourth sample; the second fit starts from it and gives the same result."""
     path = save_log(tmp_path / "log.csv", sensor_log(), "time", "q", "dq", "i", "link_torque")
     whole = log.fit([path], size_32_file(), torque_constant=CONSTANT)
     monkeypatch.setattr(log_friction, "FIRST_FIT_SAMPLES", 80)
@@ -460,7 +462,7 @@ def test_a_long_log_starts_from_a_part_of_its_samples(monkeypatch, tmp_path):
 
 @pytest.mark.slow
 def test_a_log_of_300_000_rows_takes_seconds(tmp_path):
-    """It took 11 s: most of them went into reading, and into repeated fits to all samples."""
+    """It took 11 s, mostly for reading and for repeated fits to all samples."""
     time, rng = np.arange(300_000) * 1e-3, np.random.default_rng(0)
     dq = 2.0 * np.pi * (0.22 * np.cos(2.0 * np.pi * 0.31 * time) + 0.33 * np.cos(2.0 * np.pi * 0.83 * time))
     current = np.sign(dq) + 0.6 * dq + 0.02 * rng.standard_normal(time.size)
@@ -497,7 +499,8 @@ def ripple_columns(senses):
     ],
 )
 def test_a_measured_ripple_is_found(tmp_path, senses, mean, amplitudes):
-    """Mean, and amplitudes once and twice a turn [N.m], at the output; the senses differ by a tenth."""
+    """Mean and amplitudes of the first and second harmonic per turn [N.m] at the output; both senses differ
+    by a tenth."""
     path = tmp_path / "ripple.csv"
     heads = [("tau", "N.m"), ("dq", "rad/s"), ("q_motor", "rad")]
     path.write_text(columns.format_table(heads, [*ripple_columns(senses)]))

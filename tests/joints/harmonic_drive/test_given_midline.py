@@ -61,7 +61,7 @@ def name_of(row):
 
 @pytest.mark.parametrize("row", ROWS, ids=name_of)
 def test_every_row_keeps_its_angles(row):
-    """At T1, T2, rated and peak torque, and outside the corners exactly, through the exported spring."""
+    """At T1, T2, rated and peak torque, and exactly outside the corners, by the exported spring."""
     K = {
         n: float(row[k]) for n, k in (("K1", "K1_Nm_per_rad"), ("K2", "K2"), ("T1", "T1_Nm"), ("T2", "T2_Nm"))
     }
@@ -83,7 +83,7 @@ def test_every_row_keeps_its_angles(row):
 
 
 def test_stiffness_is_the_derivative_and_has_no_kink():
-    """Central differences, and the derivative of the stiffness from both sides of every node."""
+    """Central differences, and the derivative of the stiffness on both sides of every node."""
     curve = torque_curve(drive())
     x, h = np.linspace(1e-6, curve.end_point[0], 4001), 1e-8
     slope = (curve.derivatives(x + h, 0)[0] - curve.derivatives(x - h, 0)[0]) / (2.0 * h)
@@ -106,7 +106,7 @@ def test_a_drive_that_softens_and_lines_without_a_corner():
 
 
 def test_parts_and_pressure_of_a_given_midline():
-    """1/K_WTS = 1/K_FTS + 1/K_TS with equal parts where the drive is stiffest; no pressure."""
+    """1/K_WTS = 1/K_FTS + 1/K_TS with equal parts at the largest stiffness of the drive; no pressure."""
     state = HarmonicDriveSpring.tabulate(drive()).evaluate_torque([0.0, 8.0, 60.0])
     np.testing.assert_allclose(1.0 / state["K_FTS"] + 1.0 / state["K_TS"], 1.0 / state["K_WTS"], rtol=SAME)
     np.testing.assert_array_equal(state["K_FTS"], 3.2e4)
@@ -133,14 +133,14 @@ def test_lines_that_cannot_be_are_refused(changes, text):
 
 
 def test_the_table_reaches_past_the_second_corner():
-    """A T2 tuned beyond max_torque moves the end of the table, and nothing is refused."""
+    """If T2 is set above max_torque, the end of the table moves, and nothing is refused."""
     curve = torque_curve(drive(T2=200.0))
     assert curve.end_point[1] > 200.0
     assert float(curve.inverse(300.0)) == pytest.approx(lines(300.0, **CSG_17 | {"T2": 200.0}), rel=SAME)
 
 
 def test_hysteresis_of_a_drive_without_a_pair():
-    """Exponential as Dahl's friction, and as wide as stated after rated torque; energy closes."""
+    """Exponential as Dahl's friction, with the stated width after rated torque; the energy balance closes."""
     loss = 3e-4
     assert stiffness_exponent(drive()) == 1.0
     spring = HarmonicDriveSpring.tabulate(drive(hysteresis_loss=loss))
@@ -172,7 +172,8 @@ def random_table(rng, n):
 
 
 def test_a_table_of_a_smooth_law_gives_it_back():
-    """T = K x (1 + b x^2): the stiffness within the spacing, the torque within its square."""
+    """T = K x (1 + b x^2): the error of the stiffness is of the order of the spacing, that of the torque of
+    its square."""
     x = np.linspace(0.0, 2e-3, 41)[1:]
     K, b = 1e4, 2e5
     spring = HarmonicDriveSpring.tabulate(table(K * x * (1.0 + b * x**2), x))
@@ -184,7 +185,8 @@ def test_a_table_of_a_smooth_law_gives_it_back():
 
 @pytest.mark.parametrize("seed", range(20))
 def test_any_rising_table_gives_a_rising_curve_through_its_points(seed):
-    """Steps of stiffness over decades: it stays positive and continuous, and slopes are those of PCHIP."""
+    """Random steps of the stiffness over decades: the curve stays increasing and smooth, with slopes of
+    PCHIP."""
     torque, angle = random_table(np.random.default_rng(seed), 30)
     d = table(torque, angle)
     curve = torque_curve(d)
@@ -268,7 +270,7 @@ def test_uncertainty(law, given):
 
 
 def test_the_fractal_drive_as_a_table_is_near_it():
-    """The shipped table stands for a measurement: 19 points of the default drive."""
+    """The shipped table represents a measurement: 19 points of the default drive."""
     file, exact = load_default("harmonic_drive", "table"), torque_curve(load_default("harmonic_drive").values)
     points = file.values.table
     np.testing.assert_allclose(exact.inverse(points.torque), points.angle, rtol=1e-5)  # six digits

@@ -67,7 +67,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_fmu_keeps_the_lines_of_the_catalogue(host: Host, built: Path) -> None:
-    """CSG-17-100 at T1, T2, rated and repeated peak torque, both signs; exact off the corners, tuned too."""
+    """CSG-17-100 at T1, T2, rated and repeated peak torque, both signs; exact outside the corners, also with
+    tuned parameters."""
     instance = host(COMPLIANCE, "fmi3", built / "catalogue").start()
 
     def lines(T: float, K1: float = 1e4, K2: float = 1.4e4, K3: float = 1.6e4) -> float:
@@ -108,7 +109,7 @@ def test_the_python_flavour_has_the_same_variables_and_numbers(
 
 @pytest.mark.parametrize("one", LAWS)
 def test_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, one: str) -> None:
-    """On the lines and within a corner (where the wind-up is that of T1)."""
+    """On the lines and inside a corner (at the wind-up of T1)."""
     values = file_of(one).values
     for phi in (1e-4, 3.92e-4, 6e-4, 2e-3):
         state = CASES[SPRING].numbers.state | {"phi1": 0.0, "phi2": phi}
@@ -155,7 +156,7 @@ def table_of(points: int) -> ParameterFile:
 def test_another_table_needs_no_compiler(
     host: Host, built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, points: int
 ) -> None:
-    """However many points it has; with the numbers of the package, the largest stiffness among them."""
+    """For any number of points, with the numbers of the package, the largest stiffness included."""
 
     def refused(*_: object) -> None:
         raise AssertionError("compiled")

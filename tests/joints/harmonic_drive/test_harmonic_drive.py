@@ -65,7 +65,7 @@ def still(spring, phi):
 
 @each_drive
 def test_peak_pressure(it):
-    """Its derivative, its evenness, and its two defining values."""
+    """Its derivative, its symmetry, and its two defining values."""
     T = np.array([1e-3, 0.03, 0.1, 1.0, 5.0, 20.0])
     h = 1e-3 * T
     around = peak_pressure(it, T + h * FIVE[:, None])[0]
@@ -84,7 +84,7 @@ def test_peak_pressure(it):
 
 @each_drive
 def test_derivatives_of_the_stiffness(it):
-    """dK_TS/dT and dK_WTS/dT against central differences of both laws."""
+    """dK_TS/dT and dK_WTS/dT against central differences for both laws."""
     T = np.array([0.02, 0.3, 2.0, 5.0, 11.0])
     h = 1e-3 * np.hypot(T, it.torque_smoothing)
     for law in (pair_stiffness, drive_stiffness):
@@ -108,7 +108,7 @@ def test_eq_46(it):
 
 
 def test_printed_equations():
-    """K_TS of Eqs. 17, 18, 23, 28, 30, 39, 45 in the symbols of the paper, at the mean pressure."""
+    """K_TS by Eqs. 17, 18, 23, 28, 30, 39, 45 in the symbols of the paper, at the mean pressure."""
     s, T = DRIVE.surface, np.array([0.5, 5.0, 20.0])
     P = DRIVE.mean_over_peak * peak_pressure(DRIVE, T)[0]
     bodies = (DRIVE.flexspline, DRIVE.bearing)
@@ -129,7 +129,7 @@ def test_printed_equations():
 
 
 def test_roughness_has_no_scale():
-    """Energy of a unit twist by the law at the mean pressure."""
+    """K_TS by the energy of a unit twist with the law at the mean pressure."""
     it, T = SETS["rough"], np.array([0.0, 1.0, 5.0, 25.0])
     p = it.mean_over_peak * peak_pressure(it, T)[0]
     expected = evaluate_at_pressure(it.law, p)["K_T"] * it.radius**2
@@ -140,7 +140,7 @@ def test_roughness_has_no_scale():
 
 
 def test_beyond_rated_torque_the_stiffness_settles():
-    """K3 = 7100 N.m/rad of catalogue drives of size 14, in their range of 10 to 30 N.m, within a tenth."""
+    """K3 = 7100 N.m/rad of catalogue drives of size 14, within a tenth in their range of 10 to 30 N.m."""
     K = drive_stiffness(DRIVE, np.array([10.0, 15.0, 30.0, 1e3, 1e9]))[0]
     np.testing.assert_allclose(K[:3], 7100.0, rtol=0.11)
     assert K[4] == pytest.approx(K[3], rel=1e-8)
@@ -157,7 +157,7 @@ def test_beyond_rated_torque_the_stiffness_settles():
 
 
 def test_published_stiffness():
-    """Hu 2023: K_TS of sections 3.2 and 3.4, K_WTS of section 3.1 and 4; all fitted, to 1e-8."""
+    """Hu 2023: K_TS of sections 3.2 and 3.4, K_WTS of sections 3.1 and 4; all fitted, to 1e-8."""
     assert float(pair_stiffness(DRIVE, 5.0)[0]) == pytest.approx(4.0 * 1820.44, rel=1e-8)
     best = replace(DRIVE, radial_deformation=0.21e-3)
     assert float(pair_stiffness(best, 5.0)[0]) == pytest.approx(4.0 * 1940.49, rel=1e-8)
@@ -219,7 +219,7 @@ def test_table_follows_the_law_between_its_nodes(it, springs):
 
 @pytest.mark.parametrize("side", ["flexspline", "bearing"])
 def test_spots_that_would_yield_are_refused(side):
-    """The largest spot reaches s_ec where F_r/S_r does: at the pressure of max_torque."""
+    """The largest spot reaches s_ec where F_r/S_r reaches the pressure at max_torque."""
     it = drive(**{f"{side}__sigma_y": 3e8})
     with pytest.raises(ValueError, match=rf"{side}\.sigma_y = 3e\+08 Pa is outside \(") as error:
         torque_curve(it)
@@ -273,7 +273,7 @@ def test_torque_is_odd_and_stiffness_even(springs, name):
 
 @pytest.mark.parametrize("name", SETS)
 def test_smooth_through_zero(springs, name):
-    """First and second differences of T over an odd extension: slope K(0), no kink, no bend."""
+    """First and second differences of T over an odd extension: slope K(0), no kink and no curvature."""
     spring = springs[name]
     K_0 = float(still(spring, 0.0)["K_WTS"])
     scale = spring.joint.torque_smoothing / K_0  # rad, over which the stiffness bends
@@ -291,7 +291,7 @@ def test_smooth_through_zero(springs, name):
 
 @pytest.mark.parametrize("name", SETS)
 def test_inverse_is_consistent(springs, name):
-    """Compliance and spring are one law, also beyond the table."""
+    """Compliance and spring follow the same law, also beyond the table."""
     spring = springs[name]
     T = np.concatenate([np.geomspace(1e-9, 1.0, 201), np.linspace(-1.5, 1.5, 202)]) * spring.joint.max_torque
     given_torque = spring.evaluate_torque(T)
@@ -353,7 +353,7 @@ def test_torques_on_the_flanges(spring):
 
 
 def test_rigid_rotation_makes_no_torque(spring):
-    """Both flanges turned together at the ratio: exactly zero wind-up for binary-exact angles."""
+    """Both flanges rotated at the ratio: the wind-up is exactly zero for binary-exact angles."""
     out = spring.evaluate_motion(100.0 * 0.25, 100.0 * 0.5, 0.25, 0.5)
     assert (out["phi_rel"], out["tau"], out["tau1"], out["tau2"]) == (0.0, 0.0, 0.0, 0.0)
 
@@ -367,7 +367,7 @@ def energy(spring, start, end, pieces):
 
 
 def test_closed_cycle_returns_its_energy(spring):
-    """Forth and back through zero on different points; and the energy is the law's own."""
+    """Path back and forth through zero on different points; the energy agrees with that of the law."""
     turns = [0.0, 4e-3, -2e-3, 1e-3, -4.5e-3, 0.0]  # rad, past the end of the table at 4.36e-3
     parts = [energy(spring, a, b, 400 + 37 * i) for i, (a, b) in enumerate(pairwise(turns))]
     # pieces of 1e-5 rad do not end at the nodes, where the third derivative jumps by interpolation
@@ -379,7 +379,7 @@ def test_closed_cycle_returns_its_energy(spring):
 
 
 def test_damping_dissipates(spring):
-    """A cycle at speed loses pi d omega phi^2, whatever the spring."""
+    """A cycle at angular frequency omega dissipates pi d omega phi^2, for any spring."""
     omega, phi = 20.0, 3e-3
     t = np.arange(4096) / 4096 * 2 * np.pi / omega
     out = spring.evaluate_motion(0.0, 0.0, phi * np.sin(omega * t), phi * omega * np.cos(omega * t))

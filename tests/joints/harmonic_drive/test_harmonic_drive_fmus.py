@@ -145,7 +145,8 @@ def wound_up(path: Path, torque: float) -> float:
 def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
     path: Path, dither: float, kelvin: float
 ) -> None:
-    """0.7 of the limit hangs on a motor without current, which is shaken or not, cold or warm: 1e5 steps."""
+    """0.7 of the friction limit on a motor without current, with and without vibration, cold and warm, for
+    1e5 steps."""
     warmer = kelvin - 293.15
     most, step, steps, period = 0.05 * np.exp(-0.01 * warmer), 1e-4, 100_000, 500
     wound, phi, w = wound_up(path, 0.7 * 100.0 * most), 0.0, 0.0
@@ -186,7 +187,7 @@ def swing(path: Path, given: dict[str, float], step: float = 1e-4, steps: int = 
 
 
 def test_a_swinging_link_stops_where_friction_holds_it(path: Path) -> None:
-    """Not at the bottom: where its weight is less than the friction at the motor times the ratio."""
+    """It stops where its weight torque is below the motor friction times the ratio, not at the bottom."""
     free, braked = swing(path, {}), swing(path, DRY | {"friction_viscous": 1e-3})
     assert np.ptp(free[-10_000:, 0]) > 1.0
     late = braked[-5_000:]

@@ -124,7 +124,8 @@ def test_a_row_that_cannot_be_is_refused(capsys, words, text):
     ],
 )
 def test_what_is_fixed_decides_the_ratio(capsys, words, ratio):
-    """Of teeth: 2 R on the flexspline, 2 more on the circular spline; friction is what is printed for R."""
+    """Tooth numbers: 2 R on the flexspline, 2 more on the circular spline; the friction is
+    published for R."""
     asked = ["new", "harmonic-drive", "--catalogue", "CSG-17-80", "--starting-torque", "0.029"]
     if "wave-generator" in words:
         assert "stands with --fixed wave-generator" in refused_line(capsys, *asked, *words)
@@ -168,7 +169,7 @@ def made(name, **options):
 @pytest.mark.slow
 @pytest.mark.parametrize("size", sorted({item.name.rsplit("-", 1)[0] for item in DRIVES}))
 def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
-    """A prediction of stiffness and rated torque alone; hysteresis at its limit takes up to 15 % of it.
+    """Prediction from stiffness and rated torque only; hysteresis at its limit uses up to 15 % of it.
 
     No row needs a play of its own. The largest is 0.89 of the limit, so that a first line softer by 11 %,
     or a limit at 5 % of rated torque, would break it.
@@ -191,7 +192,7 @@ def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
 
 
 def test_lost_motion_is_midway_in_the_loop_through_rated_torque():
-    """The mean of both angles at 4 % of rated torque less that at -4 %, read off the loop itself."""
+    """Mean of both angles at 4 % of rated torque minus that at -4 %, from the loop itself."""
     spring = HarmonicDriveSpring.tabulate(made("CSG-17-100", hysteresis="1").values)
     rated = spring.joint.rated_torque
     steps = rated * np.concatenate([np.linspace(1.0, -1.0, 51), np.linspace(-0.96, 1.0, 50)])
@@ -219,7 +220,7 @@ def test_lost_motion_counts_play_and_a_loop_is_what_it_was_made_for():
 
 @pytest.mark.parametrize("row", OTHER, ids=lambda row: f"{row['size']}-{row['ratio']}")
 def test_another_maker_prints_the_same_torques_and_no_less_lost_motion(row):
-    """Torques that are estimates for a CSF, 1/1.3 of the CSG's, within 2 %: they are rounded."""
+    """Estimated CSF torques, 1/1.3 of CSG ones, within 2 %, because published torques are rounded."""
     drive = made(f"CSF-{row['size']}-{row['ratio']}").values
     assert drive.rated_torque == pytest.approx(float(row["rated_Nm"]), rel=0.02)
     assert drive.max_torque == pytest.approx(float(row["repeated_peak_Nm"]), rel=0.02)
@@ -231,7 +232,7 @@ def test_another_maker_prints_the_same_torques_and_no_less_lost_motion(row):
 
 @pytest.mark.parametrize("item", PRINTED.values(), ids=PRINTED)
 def test_a_printed_drive_has_its_friction(item):
-    """Starting, running, back-driving torque and efficiency together, by construction.
+    """Starting, running and back-driving torque and efficiency agree, by construction.
 
     The efficiency fixes load_loss, the back-driving torque load_loss_back, or both where it is alone, if it
     does not ask for less than nothing. One share for both senses was 3 to 11 % off.
@@ -262,7 +263,7 @@ def test_a_printed_drive_has_its_friction(item):
 
 @pytest.mark.parametrize("name", [n for n, item in PRINTED.items() if is_printed(item, "efficiency")])
 def test_efficiency_at_rated_torque_is_predicted_without_it(name):
-    """From starting, running and back-driving torque alone: 1.5 to 5.2 points above the published one.
+    """From starting, running and back-driving torque alone: 1.5 to 5.2 points above the published value.
 
     Beyond the catalogue's own scatter of 3 points for two of four; no load_loss is 4.7 to 8.9 points off.
     """
@@ -278,7 +279,7 @@ def test_efficiency_at_rated_torque_is_predicted_without_it(name):
 
 
 def test_the_fmu_has_the_friction_of_every_printed_drive(native):
-    """As on the Python drive: starting and back-driving torque, efficiency."""
+    """As in the Python drive: starting and back-driving torque, efficiency."""
     for item in PRINTED.values():
         own, back = make_test_rig(SPRING, made(item.name)), item.numbers["back_driving_torque"].value
         with open_fmu_test_rig(
@@ -315,7 +316,7 @@ def test_what_is_stated_makes_the_friction(tmp_path):
 
 
 def test_lost_motion_is_told_beside_its_limit(capsys):
-    """Below it with the catalogue's stiffness, above with a softer one."""
+    """Below the limit with the catalogue's stiffness, above it with a softer drive."""
     for words, place in (([], "below"), (["--K1", "20000"], "above")):
         assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-25-100", *words]) == 0
         assert f"; {place} 0.0002909 rad: limit" in capsys.readouterr().out

@@ -65,7 +65,7 @@ def test_torques_are_those_of_virtual_work(ratio):
 
 
 def test_damping_takes_power_from_both_flanges():
-    """What the damper takes, d der(phi_rel)^2, is what the flanges put in beside the spring."""
+    """Power d der(phi_rel)^2 of the damper is the power of the flanges beyond that of the spring."""
     law = default_spring(d=2.0, **ERROR)
     motion = (3.0, 40.0, 0.0305, -0.3)
     still, moving = law.evaluate_motion(3.0, 0.0, 0.0305, 0.0), law.evaluate_motion(*motion)
@@ -112,7 +112,7 @@ def test_velocity_ripple_resonates_at_half_the_natural_frequency():
 
 
 def test_lost_motion_is_what_the_catalogue_measures_beside_the_wind_up():
-    """The angle between +4 % and -4 % of rated torque grows by it."""
+    """The angle between +4 % and -4 % of rated torque increases by it."""
     stiff, loose = default_spring(), default_spring(lost_motion=PLAY)
     torque = 0.04 * stiff.joint.rated_torque
     wound = [law.evaluate_torque([torque, -torque])["phi_rel"] for law in (stiff, loose)]
@@ -195,7 +195,7 @@ def stored(law, memory):
 
 
 def test_exponent_is_that_of_the_pairs_law():
-    """K_N in proportion to P as Hu 2023 is printed; between few spots and many ones with a roughness."""
+    """K_N is proportional to P for Hu 2023 as printed; for a roughness between few and many spots."""
     assert float(hysteresis.stiffness_exponent(drive())) == pytest.approx(1.0, abs=1e-12)
     rough = drive("roughness")
     assert 1.0 / (1.0 + rough.hurst) < hysteresis.stiffness_exponent(rough) < 1.0
@@ -223,7 +223,7 @@ def test_sliders_follow_the_theorem_from_rest(m):
 
 @pytest.mark.parametrize("m", EXPONENTS)
 def test_loops_have_the_area_of_masings_rule(m):
-    """8 (integral of the curve from rest, less half of its last triangle), from a tenth of M_f on."""
+    """8 times (integral of the first loading minus half its last triangle), from a tenth of M_f on."""
     springs, friction = shared(m)
     place = friction / springs
     most = 8.0 if m == 1.0 else 1.0 / (1.0 - m)
@@ -251,7 +251,7 @@ def test_first_friction_is_the_extra_stiffness():
 @pytest.mark.parametrize("law", [None, "roughness"])
 @pytest.mark.parametrize(("loss", "stiffness"), [(0.25, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (1.0, 2e4)])
 def test_branches_at_zero_torque_are_apart_as_stated(law, loss, stiffness):
-    """After rated torque one way and the other, step by step; 1 % is asked for, found is round-off."""
+    """At zero torque after rated torque in both directions, in steps; allowed 1 %, measured round-off."""
     found = spring(law, loss * ARCMIN, hysteresis_stiffness=stiffness)
     memory, place = HISTORY_LAYOUT.virgin_history(), []
     for start, end in pairwise((0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0)):
@@ -263,7 +263,7 @@ def test_branches_at_zero_torque_are_apart_as_stated(law, loss, stiffness):
 
 
 def test_fully_slipped_friction_carries_the_midline_at_half_of_the_loss():
-    """With an extra stiffness so large that all sliders have turned round before the torque is zero."""
+    """With so large a stiffness that all sliders have reversed before the torque is zero."""
     found = spring(hysteresis_stiffness=1e5)
     midline = float(found.curve.derivatives(0.5 * ARCMIN)[0])
     assert np.sum(found.hysteresis.friction_limit) == pytest.approx(midline, rel=1e-12)
@@ -347,7 +347,8 @@ def test_ten_times_larger_steps_agree():
 
 
 def test_work_is_stored_or_lost_along_random_paths():
-    """Work of a step: the midline's energy, and trapezia between places where a slider begins to slip."""
+    """Work of a step: change of the midline's energy, and trapezoidal rule between the points where sliders
+    start to slip."""
     law, rng = spring(), np.random.default_rng(3)
     memory, work, previous = law.initial_history(), 0.0, 0.0
     for end in np.cumsum(rng.normal(0.0, 4e-4, 400)):

@@ -153,7 +153,7 @@ def test_the_loop_opens_as_stated(instance: Any, flavour: str) -> None:
 def test_derivatives_are_those_at_the_accepted_state(
     host: Host, name: str, given: dict[str, float], version: str
 ) -> None:
-    """Against central differences of trials, away from the point where the motion turns."""
+    """Against central differences of trial evaluations, away from reversals of the motion."""
     found, driven = begin(host(name, version), given), "tau" if name == COMPLIANCE else "phi2"
     size = {"tau": 1.0, "phi1": 0.1, "phi2": 1e-3, "w1": 1.0, "w2": 0.01, "temperature": 10.0}
     for inputs in path(name, given)[:-1]:
@@ -212,7 +212,7 @@ def test_no_step_changes_an_output_whose_inputs_did_not_change(
 
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3", "python"])
 def test_a_master_may_go_back(instance: Any, flavour: str) -> None:
-    """Some steps, back to the state before, once more in another order: as if it had never been."""
+    """Some steps, back to the saved state, then other steps: as if the first steps had not been done."""
     plain, used = (begin(instance(SPRING, flavour), LOOP) for _ in range(2))
     way = path(SPRING)
     for inputs in way[:3]:
@@ -285,7 +285,7 @@ def test_another_process_goes_on(
 
 
 def test_inputs_that_move_in_a_step_come_from_where_they_are(host: Host) -> None:
-    """FMI 2: to the turning point by set, on from there by a derivative, in one step."""
+    """FMI 2: inputs set to the turning point, then moved by a derivative, in one step."""
     moving, plain = (begin(host(SPRING, "fmi2"), LOOP) for _ in range(2))
     for one in (moving, plain):
         one.set_values({"phi2": 6e-4})
