@@ -107,7 +107,7 @@ def pointer(values: np.ndarray) -> object:
 
 
 def draw_foundation(library: CDLL, curve: Curve, rng: np.random.Generator) -> RandomFoundation:
-    """Foundation with random parameters; onset and lift-off approach lie in the closing, in the table or above."""
+    """Foundation with random parameters; onset and lift-off lie in the closing, in the table or above."""
     table = scaled(curve, *np.exp(rng.uniform(-2.0, 2.0, 2)))
     low, high = table.displacement[[0, -1]]
     onset, smallest, *path = low + (high - low) * (1.2 * rng.random(2 + APPROACHES) ** 3 - 0.1)
