@@ -21,6 +21,7 @@ __all__ = [
     "Law",
     "Table",
     "bolted_joint",
+    "cycloidal_drive",
     "drive",
     "fit",
     "gear_contact",

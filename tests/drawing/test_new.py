@@ -20,6 +20,7 @@ from jointfmu_tools.inputs.drawing.tables import (
     read_threads,
     read_washers,
 )
+from jointfmu_tools.joints.harmonic_drive.new_cycloidal import NEW_CYCLOIDAL_DRIVE_COMMAND
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_parameter_file
@@ -28,7 +29,7 @@ NEW = {
     kind.name.replace("_", "-"): found.NEW_JOINT_COMMAND
     for kind in KINDS.values()
     if (found := load_tool_module(kind, "new"))
-}
+} | {"cycloidal-drive": NEW_CYCLOIDAL_DRIVE_COMMAND}
 
 
 def said(capsys, *words):
@@ -50,7 +51,7 @@ def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
     text = said(capsys, *words).out
     assert text.endswith(f"wrote {path}\n")
     file = load_parameter_file(path)
-    assert file.joint == name.replace("-", "_")
+    assert file.joint == {"cycloidal-drive": "harmonic_drive"}.get(name, name.replace("-", "_"))
     found = json.loads(said(capsys, *words, "--json").out)
     assert found["parameters"] == json.loads(json.dumps(file.values_by_name))
     assert found["inputs"] == file.inputs

@@ -78,6 +78,7 @@ def test_examples(name):
     "name",
     [
         "drive",
+        "cycloidal_drive",
         pytest.param("bolted_joint", marks=[pytest.mark.slow, needs("gmsh")]),
         "gear_contact",
         "gear_mesh",

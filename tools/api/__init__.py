@@ -1,7 +1,10 @@
 """Public interface of `import jointfmu`: joints, laws, fits and FMU runs. `jointfmu.__all__` lists it."""
 
-from jointfmu.joints import KINDS
-
+from ..joints.bolted_joint.new import NEW_JOINT_COMMAND as NEW_BOLTED_JOINT
+from ..joints.gear_contact.new import NEW_JOINT_COMMAND as NEW_GEAR_CONTACT
+from ..joints.gear_mesh.new import NEW_JOINT_COMMAND as NEW_GEAR_MESH
+from ..joints.harmonic_drive.new import NEW_JOINT_COMMAND as NEW_DRIVE
+from ..joints.harmonic_drive.new_cycloidal import NEW_CYCLOIDAL_DRIVE_COMMAND
 from .frame import Frame as Frame
 from .frame import Table as Table
 from .frame import run as run
@@ -15,13 +18,19 @@ from .make import load as load
 
 drive = create_drawing_function(
     "drive",
-    KINDS["harmonic_drive"],
+    NEW_DRIVE,
     'jointfmu.drive("CSG-25-100").values["T2"]  # N.m\n48.0',
     first_option="catalogue",
 )
+cycloidal_drive = create_drawing_function(
+    "cycloidal_drive",
+    NEW_CYCLOIDAL_DRIVE_COMMAND,
+    "drive = jointfmu.cycloidal_drive(ratio=121, rated_torque=412, rigidity=108, lost_motion=1)\n"
+    '>>> drive.values["T2"]  # N.m\n412.0',
+)
 bolted_joint = create_drawing_function(
     "bolted_joint",
-    KINDS["bolted_joint"],
+    NEW_BOLTED_JOINT,
     "plate = jointfmu.bolted_joint(\n"
     '...     plate=(200, 100), bolts="4xM12", at=(160, 60), grip=40, material="steel", Ra=0.8\n'
     "... )\n"
@@ -29,7 +38,7 @@ bolted_joint = create_drawing_function(
 )
 gear_contact = create_drawing_function(
     "gear_contact",
-    KINDS["gear_contact"],
+    NEW_GEAR_CONTACT,
     "flanks = jointfmu.gear_contact(\n"
     '...     width=20, radii=[12, 30], load=2000, material="hardened steel", finish="ground"\n'
     "... )\n"
@@ -37,7 +46,7 @@ gear_contact = create_drawing_function(
 )
 gear_mesh = create_drawing_function(
     "gear_mesh",
-    KINDS["gear_mesh"],
+    NEW_GEAR_MESH,
     "mesh = jointfmu.gear_mesh(\n"
     '...     module=3, teeth=[20, 40], width=25, torque=50, material="steel", finish="ground"\n'
     "... )\n"

@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.parameters import load_parameter_file as load_file
 
 from ..common import plots
-from ..common.joint_parts import load_tool_module
 from ..common.options import Option
 from ..inputs.drawing.part import NewJoint, NewJointCommand
 from ..inputs.drawing.reading import parse_number
@@ -144,25 +142,28 @@ def _format_value(value: Any) -> str:
 
 
 def create_drawing_function(
-    function_name: str, kind: JointKind, doctest_example: str, first_option: str | None = None
+    function_name: str,
+    joint_command: NewJointCommand,
+    doctest_example: str,
+    first_option: str | None = None,
 ) -> Callable[..., Joint]:
     """Create a public function such as `jointfmu.bolted_joint`, which makes a joint from its drawing.
 
     The signature and the docstring of the function list the options of the drawing.
 
     function_name   : name of the function
+    joint_command   : the drawing: its options, and how they make the joint
     doctest_example : call of the function and its result, as in a doctest
     first_option    : option that may be passed as the first positional argument
     """
-    drawing: NewJointCommand = load_tool_module(kind, "new").NEW_JOINT_COMMAND  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
     def make_joint(*args: object, **options: object) -> Joint:
         arguments = signature.bind(*args, **options).arguments
         with _rename_options_in_errors():
-            return make_from_drawing(drawing, arguments)
+            return make_from_drawing(joint_command, arguments)
 
-    ordered = sorted(drawing.options, key=lambda option: option.name != first_option)
+    ordered = sorted(joint_command.options, key=lambda option: option.name != first_option)
     parameters = [
         inspect.Parameter(
             option.name,
@@ -177,7 +178,7 @@ def create_drawing_function(
     make_joint.__signature__ = signature  # type: ignore[attr-defined]
     meanings = "\n".join(f"    {option.name} : {_option_help(option)}" for option in ordered)
     make_joint.__doc__ = _JOINT_FUNCTION_DOCSTRING.format(
-        drawing.description, meanings, doctest_example.replace("\n", "\n    ")
+        joint_command.description, meanings, doctest_example.replace("\n", "\n    ")
     )
     return make_joint
 

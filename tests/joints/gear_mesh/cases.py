@@ -23,7 +23,7 @@ MESH = Case(
     description=Description(
         inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
         results={
-            "tau1": "N.m", "tau2": "N.m", "s_rel": "m", "f": "N", "K": "N/m",
+            "tau1": "N.m", "tau2": "N.m", "s_rel": "m", "transmission_error": "m", "f": "N", "K": "N/m",
             "step_at_once": "s", "step_side_by_side": "s",
         },
         parameters={
@@ -33,7 +33,7 @@ MESH = Case(
             "r_b1": "m", "r_b2": "m", "teeth1": "1", "backlash": "m", "K_tooth": "N/m", "contact_ratio": "1",
             "d": "N.s/m",
         },
-        shown={"phi1": "deg", "s_rel": "um", "f": "kN", "K": "N/um"},
+        shown={"phi1": "deg", "s_rel": "um", "transmission_error": "um", "f": "kN", "K": "N/um"},
         flanges={"flange1": "phi1 w1 tau1", "flange2": "phi2 w2 tau2"},
         domain="Rotational",
     ),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.gear_mesh.spring import GearMeshParameters, GearMeshSpring, base_pitch
@@ -83,6 +84,26 @@ def test_torques_are_the_gradient_of_the_energy(spring):
         noise = 50.0 * EPS * out["E"] * (1.0 + pitch / np.abs(s)) / h  # the way along again
         # truncation: (h/s)^4 of a power law; of the pairs' transition, whose fourth derivative jumps
         assert np.all(np.abs(torque + slope) <= 1e-7 * scale + noise)
+
+
+@each
+def test_the_transmission_error_under_constant_load_varies_with_the_pairs(spring):
+    """Wheel 2 lags behind a rigid mesh by the deflection at which the pairs in contact carry the load."""
+    pitch, load = base_pitch(spring.joint), 0.1 * spring.curve.end_point[1]
+    phases = pitch * np.linspace(-0.5, 0.5, 21)
+
+    errors = []
+    for roll in phases:
+        s = brentq(lambda s, roll=roll: motion(spring, s, roll)["f"] - load, 0.0, spring.curve.end_point[0])
+        phi1, phi2 = at(spring, s, roll)
+        out = motion(spring, s, roll)
+        lag = spring.joint.r_b1 * phi1 + spring.joint.r_b2 * phi2 - 0.5 * spring.joint.backlash
+        assert out["transmission_error"] == pytest.approx(lag, rel=1e-9, abs=1e-15)
+        errors.append((float(out["pairs"]), float(out["transmission_error"])))
+    pairs, lags = np.array(sorted(errors)).T
+    assert pairs[-1] > pairs[0]
+    assert np.all(np.diff(lags)[np.diff(pairs) > 1e-9] < 0.0)
+    assert motion(spring, 0.0, phases[3])["transmission_error"] == 0.0
 
 
 def closed_path(spring, seed, t):

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
     """Add an option that a joint defines to the parser of a command."""
+    help_text = option.help_text.replace("%", "%%")  # argparse formats the text
     if option.is_flag:
-        parser.add_argument(format_option_flag(option.name), action="store_true", help=option.help_text)
+        parser.add_argument(format_option_flag(option.name), action="store_true", help=help_text)
         return
     parser.add_argument(
         format_option_flag(option.name),
@@ -29,7 +30,7 @@ def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
         choices=option.choices or None,
         required=option.is_required,
         metavar=None if option.choices else option.metavar,
-        help=option.help_text,
+        help=help_text,
     )
 
 

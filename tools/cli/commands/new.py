@@ -22,6 +22,7 @@ from ...common.shown import align_columns, facts_to_json, format_facts
 from ...inputs.catalogue import CatalogueColumn, CatalogueEntry
 from ...inputs.drawing.part import NewJointCommand
 from ...joints.harmonic_drive.catalogue import CATALOGUE_COLUMNS, list_drives
+from ...joints.harmonic_drive.new_cycloidal import NEW_CYCLOIDAL_DRIVE_COMMAND
 from ..command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
 from ..outputs import declare_output
 from . import declare_option
@@ -35,6 +36,7 @@ def add_command(command_parsers: SubParsers) -> None:
     for kind in KINDS.values():
         if module := load_tool_module(kind, "new"):
             _declare_joint(things, kind.name.replace("_", "-"), module.NEW_JOINT_COMMAND)
+    _declare_joint(things, "cycloidal-drive", NEW_CYCLOIDAL_DRIVE_COMMAND)
     for name, rows in PRINTED_TABLES.items():
         declare_command(things, name, partial(_run_table, rows), f"print the table of known {name}")
 

@@ -194,7 +194,7 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     ),
     # bolts and gears
     "torque": _declare_torque("torque", 0.01, 1e7, allows_range=True),
-    # harmonic drives
+    # drives
     "ratio": DrawingQuantity("ratio of a drive", "1", "1", has_sign=True),
     "K1": DrawingQuantity("stiffness up to T1", "N.m/rad", "N.m/rad"),
     "K2": DrawingQuantity("stiffness from T1 to T2", "N.m/rad", "N.m/rad"),
@@ -205,6 +205,17 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "hysteresis": DrawingQuantity(
         "hysteresis loss", "arcmin", "rad", (0.01, 60.0), other_units=("rad", "deg", "arcsec")
     ),
+    "lost_motion": DrawingQuantity(
+        "lost motion", "arcmin", "rad", (0.01, 60.0), other_units=("rad", "deg", "arcsec")
+    ),
+    "rigidity": DrawingQuantity(
+        "torsional rigidity",
+        "N.m/arcmin",
+        "N.m/rad",
+        (0.1, 1e4),
+        other_units=("N.m/rad", "kN.m/rad", "kgf.m/arcmin"),
+    ),
+    "peak_torque": _declare_torque("largest permissible torque", 0.01, 1e6),
     "starting_torque": _declare_torque("starting torque", 1e-4, 100.0),
     "running_torque": _declare_torque("running torque", 1e-4, 100.0),
     "back_driving_torque": _declare_torque("back-driving torque", 1e-3, 1e4),

@@ -189,17 +189,18 @@ def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
     return unloading - loading
 
 
-def lost_motion(spring: HarmonicDriveSpring) -> float:
+def lost_motion(spring: HarmonicDriveSpring, torque_ratio: float = LOST_MOTION_TORQUE_RATIO) -> float:
     """Lost motion [rad]: change of the mean angle of both branches between -4 % and +4 % of the rated torque.
 
-    The branches are those of the loop up to the rated torque; LOST_MOTION_TORQUE_RATIO is the 4 %.
+    The branches are those of the loop up to the rated torque.
+
+    torque_ratio : share of the rated torque [1], the 4 %
     """
     rated = float(spring.joint.rated_torque)
     ends = (
         0.5
         * sum(
-            _final_wind_up(spring, (rated, side * rated, sign * LOST_MOTION_TORQUE_RATIO * rated))
-            for side in (1.0, -1.0)
+            _final_wind_up(spring, (rated, side * rated, sign * torque_ratio * rated)) for side in (1.0, -1.0)
         )
         for sign in (1.0, -1.0)
     )

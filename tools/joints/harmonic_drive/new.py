@@ -65,7 +65,7 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
         printed["rated_torque"] = SourcedNumber(printed["T2"].value, "estimate", text)
-    friction_numbers = _friction_parameters(options, printed)
+    friction_numbers = read_friction_parameters(options, printed)
     (printed["ratio"], ratio_text) = _signed_ratio(options, printed["ratio"])
     printed = {name: number for name, number in printed.items() if name not in FRICTION_COLUMNS}
     if options["corner"] is not None:
@@ -78,12 +78,12 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     joint = (
         _make_joint_with_contact_pair_law if options["law"] == "hu2023" else _make_joint_with_catalogue_law
     )(printed, friction_numbers, source)
-    _check_efficiency(options, joint)
+    check_efficiency(options, joint)
     joint = replace(joint, facts={"ratio": (printed["ratio"].value, "1", ratio_text), **joint.facts})
-    return joint if options["temperature"] is None else _set_temperature(joint, options["temperature"])
+    return joint if options["temperature"] is None else set_temperature(joint, options["temperature"])
 
 
-def _check_efficiency(options: DrawingOptions, joint: NewJoint) -> None:
+def check_efficiency(options: DrawingOptions, joint: NewJoint) -> None:
     """Raise ValueError if friction that the user states leaves no usable efficiency."""
     stated = [
         name for name in ("starting_torque", "running_torque", "motor_drag") if options[name] is not None
@@ -103,7 +103,7 @@ def _check_efficiency(options: DrawingOptions, joint: NewJoint) -> None:
     )
 
 
-def _set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
+def set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
     """Set the start temperature of the lubricant, and compute the friction facts at this temperature.
 
     temperature_text : temperature as the user states it
@@ -149,7 +149,7 @@ def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[Source
     return ratio._replace(value=value, source=source), FIXED_PARTS[fixed]
 
 
-def _friction_parameters(
+def read_friction_parameters(
     options: DrawingOptions, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> dict[str, SourcedNumber]:
     """Friction parameters of the drive, from stated numbers and those of the catalogue.
@@ -296,6 +296,30 @@ def _catalogue_row(sourced_numbers: Mapping[str, SourcedNumber]) -> "CatalogueRo
     )
 
 
+FRICTION_OPTIONS = (
+    Option(
+        "starting_torque",
+        "starting torque at the input (wave generator) without load [N.m] (default: that of the catalogue, "
+        "published or scaled, else none)",
+        "T",
+    ),
+    Option(
+        "running_torque",
+        "torque at the input without load, at 2000 rev/min [N.m] (default: as starting torque)",
+        "T",
+    ),
+    Option("back_driving_torque", "torque at the output that turns the drive without a motor [N.m]", "T"),
+    Option("efficiency", "efficiency at rated torque and 2000 rev/min [1]", "E"),
+    Option(
+        "motor_drag",
+        "dry friction of bearings and seals of the motor, added to the drive's [N.m] (default: none)",
+        "T",
+    ),
+    Option("temperature", "start temperature of the lubricant [degC, or as in 293 K] (default: 20)", "T"),
+)
+"""Options of friction and temperature, of all drives."""
+
+
 NEW_JOINT_COMMAND = NewJointCommand(
     description="a harmonic drive by its name in the catalogue, or from the numbers of a catalogue row",
     example="--catalogue CSG-17-100",
@@ -327,25 +351,7 @@ NEW_JOINT_COMMAND = NewJointCommand(
             "hysteresis loss, the angle between the branches at zero torque [arcmin] (default: none)",
             "H",
         ),
-        Option(
-            "starting_torque",
-            "starting torque at the wave generator without load [N.m] (default: with --catalogue the "
-            "published or scaled, else none)",
-            "T",
-        ),
-        Option(
-            "running_torque",
-            "torque at the wave generator without load, at 2000 rev/min [N.m] (default: as starting torque)",
-            "T",
-        ),
-        Option("back_driving_torque", "torque at the output that turns the drive without a motor [N.m]", "T"),
-        Option("efficiency", "efficiency at rated torque and 2000 rev/min [1]", "E"),
-        Option(
-            "motor_drag",
-            "dry friction of bearings and seals of the motor, added to the drive's [N.m] (default: none)",
-            "T",
-        ),
-        Option("temperature", "start temperature of the lubricant [degC, or as in 293 K] (default: 20)", "T"),
+        *FRICTION_OPTIONS,
         Option("source", "where the row is published", "TEXT"),
         Option(
             "corner",

@@ -36,6 +36,12 @@ MODELS = (
             Variable(
                 "s_rel", "m", "deflection r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 within it", 1e-5
             ),
+            Variable(
+                "transmission_error",
+                "m",
+                "lag of wheel 2 along the line of action, with the teeth deflected; 0 without load",
+                1e-5,
+            ),
             Variable("f", "N", "normal force of the mesh, positive on the driving flanks", 1e3),
             Variable("K", "N/m", "stiffness df/ds_rel at the present phase of the mesh cycle", 1e8),
             Variable("pairs", "1", "tooth pairs in contact at the present phase, if the flanks touch"),
@@ -49,7 +55,8 @@ MODELS = (
         validity_limits=(ValidityLimit("s_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),),
         ramp=LoadRamp("phi1", 1.5e-3, 5e-6, find_range=_find_ramp_range),
         dependencies=dict.fromkeys(
-            ("s_rel", "K", "pairs", "E", *(name for name, _ in STABLE_STEP_OUTPUTS)), _ANGLE_INPUTS
+            ("s_rel", "transmission_error", "K", "pairs", "E", *(name for name, _ in STABLE_STEP_OUTPUTS)),
+            _ANGLE_INPUTS,
         ),
         fixed_parameters=("mu", "traction_ratio"),
     ),

@@ -201,6 +201,7 @@ def mesh_outputs(
         "tau1": 0.0 - mesh.r_b1 * (force + change),
         "tau2": 0.0 - mesh.r_b2 * (force - change),
         "s_rel": s,
+        "transmission_error": s,
         "f": force,
         "K": count * stiffness,
         "pairs": count,

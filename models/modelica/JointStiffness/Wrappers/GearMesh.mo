@@ -22,7 +22,7 @@ equation
   connect(adaptor_flange1.pder, fmu.w1)
     annotation (Line(points={{-77,5},{-50.5,5},{-50.5,4.4},{-24,4.4}}, color={0,0,127}));
   connect(fmu.tau1, reaction_flange1.u)
-    annotation (Line(points={{22,16},{-8.5,16},{-8.5,-25},{-39,-25}}, color={0,0,127}));
+    annotation (Line(points={{22,16.2},{-8.5,16.2},{-8.5,-25},{-39,-25}}, color={0,0,127}));
   connect(reaction_flange1.y, adaptor_flange1.f)
     annotation (Line(points={{-50.5,-25},{-63.75,-25},{-63.75,-8},{-77,-8}}, color={0,0,127}));
   connect(flange2, adaptor_flange2.flange)
@@ -32,7 +32,7 @@ equation
   connect(adaptor_flange2.pder, fmu.w2)
     annotation (Line(points={{77,5},{26.5,5},{26.5,-13.6},{-24,-13.6}}, color={0,0,127}));
   connect(fmu.tau2, reaction_flange2.u)
-    annotation (Line(points={{22,12},{30.5,12},{30.5,-25},{39,-25}}, color={0,0,127}));
+    annotation (Line(points={{22,12.6},{30.5,12.6},{30.5,-25},{39,-25}}, color={0,0,127}));
   connect(reaction_flange2.y, adaptor_flange2.f)
     annotation (Line(points={{50.5,-25},{63.75,-25},{63.75,-8},{77,-8}}, color={0,0,127}));
   annotation (

@@ -17,6 +17,7 @@ model GearMesh "Mesh of two gear wheels with rough flanks, bending teeth and bac
   Modelica.Units.SI.Position along(nominal=1e-4) "Displacement along the line of action, sum of both base circles";
   Modelica.Units.SI.Velocity v(nominal=0.1) "Rate of along";
   Modelica.Units.SI.Position s_rel(nominal=1e-5) "<< docs.s_rel >>";
+  Modelica.Units.SI.Position transmission_error(nominal=1e-5) "<< docs.transmission_error >>";
   Real phase "Phase of the mesh cycle";
   Real pairs "<< docs.pairs >>";
   Modelica.Units.SI.Force f(nominal=1e3) "<< docs.f >>";
@@ -135,6 +136,7 @@ equation
   along = r_b1*flange_a.phi + r_b2*flange_b.phi;
   v = der(along);
   s_rel = noEvent(if along > 0.5*backlash then along - 0.5*backlash elseif along < -0.5*backlash then along + 0.5*backlash else 0);
+  transmission_error = s_rel;
   size = noEvent(if s_rel < 0 then -s_rel else s_rel);
   phase = 0.5*(r_b1*flange_a.phi - r_b2*flange_b.phi)/pitch;
   pairs = least + (if helical then part + (extraPairIntegral(phase + 0.5*spread, part, width)

@@ -1,0 +1,194 @@
+"""`jointfmu new cycloidal-drive`: a cycloidal or RV reducer from the numbers that its maker prints.
+
+Makers print the torsional rigidity K, the lost motion (between -3 % and +3 % of the rated torque, midway in
+the hysteresis loop), and the angle between the branches at zero torque, called backlash. The midline is
+
+    phi(T) = T/K + lost_motion/2 tanh(T/T_p),   T_p = PLAY_WIDTH_RATIO rated_torque.
+
+The backlash is the parameter `hysteresis_loss`. The parameter `lost_motion` is found so that the computed
+loop has the printed lost motion. The parameter file is one of a harmonic drive with the law `catalogue`: the
+input shaft takes the place of the wave generator.
+"""
+
+from dataclasses import replace
+
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity.units import conversion_factor
+
+from ...common.options import Option
+from ...inputs.catalogue import SourcedNumber
+from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
+from ...inputs.drawing.quantities import parse_value
+from .efficiency import hysteresis_loss, lost_motion
+from .friction import FRICTION_COLUMNS
+from .new import (
+    DAMPING_TIME,
+    FRICTION_OPTIONS,
+    PEAK_TORQUE_RATIO,
+    check_efficiency,
+    read_friction_parameters,
+    set_temperature,
+)
+
+LOST_MOTION_TORQUE_RATIO = 0.03
+"""Torque over rated torque [1], positive and negative, at which makers of cycloidal drives state lost
+motion."""
+LOST_MOTION_TOLERANCE = 1e-9
+"""Relative tolerance [1] of the parameter `lost_motion`: far below the two digits that makers print."""
+ARCMIN = conversion_factor("arcmin", "rad")
+"""Size of an arc minute [rad]."""
+RIGIDITY_CHANGE_TORQUE_RATIO = 0.5
+"""Torque over rated torque [1] at which the first torsional rigidity ends and the second begins."""
+
+
+def _make_joint(options: DrawingOptions) -> NewJoint:
+    from .fit import catalogue
+
+    source = options["source"] or "stated"
+    ratio, rated = (parse_value(name, options[name]) for name in ("ratio", "rated_torque"))
+    if ratio == 0.0:
+        raise ValueError("--ratio = 0 is outside (-inf, 0) and (0, inf)")
+    texts = options["rigidity"]
+    if len(texts) > 2:
+        raise ValueError(
+            f"--rigidity has {len(texts)} numbers; expected one, or two for up to and above 50 %"
+        )
+    low, high = parse_value("rigidity", texts[0]), parse_value("rigidity", texts[-1])
+    if high < low:
+        raise ValueError(
+            f"--rigidity = {texts[1]!r} above 50 % of rated torque is below {texts[0]!r}: a drive stiffens"
+        )
+    peak = SourcedNumber(PEAK_TORQUE_RATIO * rated, "estimate", f"{PEAK_TORQUE_RATIO:g} times rated_torque")
+    if options["peak_torque"] is not None:
+        peak = SourcedNumber(parse_value("peak_torque", options["peak_torque"]), "catalogue", source)
+        if peak.value < rated:
+            raise ValueError(
+                f"--peak-torque = {peak.value:g} N.m is outside [{rated:g}, inf) N.m: rated torque"
+            )
+    numbers = {
+        "ratio": SourcedNumber(ratio, "catalogue", f"{source}, with its sign"),
+        "rated_torque": SourcedNumber(rated, "catalogue", source),
+        "max_torque": peak,
+        "K1": SourcedNumber(low, "catalogue", source),
+        "K2": SourcedNumber(high, "catalogue", source),
+        "K3": SourcedNumber(high, "catalogue", source),
+        "T1": SourcedNumber(
+            RIGIDITY_CHANGE_TORQUE_RATIO * rated,
+            "derived",
+            f"{RIGIDITY_CHANGE_TORQUE_RATIO:.0%} of rated torque",
+        ),
+        "T2": SourcedNumber(rated, "derived", "rated torque"),
+        "d": SourcedNumber(
+            DAMPING_TIME * low, "estimate", f"not published; {DAMPING_TIME:g} s times the torsional rigidity"
+        ),
+    }
+    if options["hysteresis"] is not None:
+        loss = parse_value("hysteresis", options["hysteresis"])
+        numbers["hysteresis_loss"] = SourcedNumber(loss, "catalogue", source)
+    for name in FRICTION_COLUMNS:
+        if options[name] is not None:
+            numbers[name] = SourcedNumber(parse_value(name, options[name]), "catalogue", source)
+    friction = read_friction_parameters({**options, "fixed": None}, numbers)
+    numbers = {name: number for name, number in numbers.items() if name not in FRICTION_COLUMNS} | friction
+    name = f"cycloidal drive {rated:g} N.m, ratio {ratio:g}"
+    file = catalogue.make_drive_with_catalogue_law(name, numbers)
+    if options["lost_motion"] is not None:
+        file = _set_lost_motion(file, options["lost_motion"], source)
+    joint = NewJoint(file, {})
+    check_efficiency(options, joint)
+    guessed = ", ".join(sorted(n for n, number in numbers.items() if number.kind == "estimate"))
+    joint = replace(joint, facts=_drive_facts(joint), warnings=[f"estimated, not printed: {guessed}"])
+    return joint if options["temperature"] is None else set_temperature(joint, options["temperature"])
+
+
+def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, source: str) -> ParameterFile:
+    """Set the parameter `lost_motion` so that the computed loop has the printed lost motion.
+
+    lost_motion_text : printed lost motion as the user states it
+
+    Raises ValueError if the elastic wind-up alone exceeds the printed lost motion.
+    """
+    from scipy.optimize import brentq
+
+    printed = parse_value("lost_motion", lost_motion_text)
+
+    def excess(play: float) -> float:
+        """Computed lost motion less the printed one [rad], at a parameter `lost_motion` [rad]."""
+        drive = replace(parameter_file.values, lost_motion=play)
+        return lost_motion(HarmonicDriveSpring.tabulate(drive), LOST_MOTION_TORQUE_RATIO) - printed
+
+    if (elastic := excess(0.0)) > 0.0:
+        raise ValueError(
+            f"--lost-motion = {lost_motion_text!r} is outside [{(elastic + printed) / ARCMIN:.4g}, inf) "
+            "arcmin: the torsional rigidity alone gives this angle between -3 % and +3 % of rated torque"
+        )
+    high = printed
+    while excess(high) < 0.0:
+        high *= 2.0
+    text = f"{source}: {printed:.5g} rad between -3 % and +3 % of rated torque, less the elastic wind-up"
+    play = float(brentq(excess, 0.0, high, rtol=LOST_MOTION_TOLERANCE))
+    return parameter_file.with_values({"lost_motion": play}, "derived", text)
+
+
+def _drive_facts(joint: NewJoint) -> dict[str, tuple[float, str, str]]:
+    """Wind-up at rated torque, lost motion and hysteresis loss, as computed with the parameters."""
+    drive = joint.file.values
+    spring = HarmonicDriveSpring.tabulate(drive)
+    facts = {
+        "wind_up": (
+            float(spring.curve.inverse(drive.rated_torque)),
+            "rad",
+            f"at the rated torque {drive.rated_torque:g} N.m, on the midline",
+        ),
+        "lost_motion": (
+            lost_motion(spring, LOST_MOTION_TORQUE_RATIO),
+            "rad",
+            f"computed between +-{LOST_MOTION_TORQUE_RATIO:g} times the rated torque, midway in the loop",
+        ),
+    }
+    if drive.hysteresis_loss:
+        text = "computed angle between the branches at zero torque, after rated torque"
+        facts["hysteresis_loss"] = (hysteresis_loss(spring), "rad", text)
+    return facts
+
+
+NEW_CYCLOIDAL_DRIVE_COMMAND = NewJointCommand(
+    description="a cycloidal or RV reducer from the numbers that its maker prints",
+    example="--ratio 121 --rated-torque 412 --rigidity 108 --lost-motion 1 --hysteresis 1",
+    options=(
+        Option(
+            "ratio",
+            "speed of the input over speed of the output [1]; negative: the output turns against the input",
+            "R",
+            is_required=True,
+        ),
+        Option("rated_torque", "rated torque at the output [N.m]", "T", is_required=True),
+        Option(
+            "rigidity",
+            "torsional rigidity [N.m/arcmin]; with two numbers: up to 50 % of rated torque, and above",
+            "K",
+            is_required=True,
+            is_list=True,
+        ),
+        Option(
+            "lost_motion",
+            "angle between -3 % and +3 % of rated torque, midway in the hysteresis loop [arcmin] (default: "
+            "only the elastic wind-up)",
+            "A",
+        ),
+        Option(
+            "hysteresis",
+            "angle between the branches at zero torque, printed as backlash [arcmin] (default: none)",
+            "H",
+        ),
+        Option(
+            "peak_torque",
+            f"largest permissible torque at the output [N.m] (default: {PEAK_TORQUE_RATIO:g} times rated)",
+            "T",
+        ),
+        *FRICTION_OPTIONS,
+        Option("source", "where the numbers are published", "TEXT"),
+    ),
+    make_joint=_make_joint,
+)
