@@ -27,7 +27,7 @@ PLATE = ("--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "
 POINTS, ROUNDS = 200, 3
 MAX_SHEAR_MOTION = 6e-6
 """Largest displacement along x [m]: the interface slips."""
-MEASURED = {"mu": 0.2, "h": 1.2e-6}
+FITTED_PARAMETERS = {"mu": 0.2, "h": 1.2e-6}
 """Parameters of the loops that are fitted: {name: value [SI]}."""
 TARGETS = {"follow": 0.1, "plot": 2.0, "report": 3.0, "new": 6.0}
 """Target times [s] on two idle cores."""
@@ -70,7 +70,7 @@ def shear_cycles() -> np.ndarray:
 
 def write_loops(joint: jointfmu.Joint, path: Path) -> None:
     """Write loops of force over displacement as a file of measurements."""
-    columns = joint.with_values(MEASURED).follow(s_rel_x=shear_cycles())
+    columns = joint.with_values(FITTED_PARAMETERS).follow(s_rel_x=shear_cycles())
     table = np.column_stack([columns["s_rel_x"], -columns["f_x"]])
     np.savetxt(path, table, delimiter=",", header="displacement [m],force [N]", comments="", fmt="%.17g")
 

@@ -68,12 +68,12 @@ FRICTION = LOOP | {
 }
 """Losses of the drive that are off by default."""
 LOOPS = {f"{name}+loop": (name, LOOP) for name in ("HarmonicDriveSpring", "HarmonicDriveCompliance")}
-OTHERS = LOOPS | {"HarmonicDriveSpring+all": ("HarmonicDriveSpring", FRICTION)}
+DRIVES_WITH_LOSSES = LOOPS | {"HarmonicDriveSpring+all": ("HarmonicDriveSpring", FRICTION)}
 """Drives with hysteresis, and with all losses: {name in the table: (FMU, parameters)}."""
 RANGES = {name: dict(case.numbers.span) for name, case in CASES.items()} | {
     name: {f"u{i}": (-1, 1) for i in range(n)} for name, (n, _) in PASS_THROUGH.items()
 }
-RANGES |= {label: RANGES[name] for label, (name, _) in OTHERS.items()}
+RANGES |= {label: RANGES[name] for label, (name, _) in DRIVES_WITH_LOSSES.items()}
 """Ranges of the inputs, those of the tables."""
 CONSTANT = ("preload", "moment")
 """Inputs that are constant along the input path: a joint is tightened once."""
@@ -159,7 +159,7 @@ class Linked(NamedTuple):
 
 def as_built(name: str) -> Linked:
     """Libraries of an FMU with default parameters, or of one of OTHERS."""
-    own, changes = OTHERS.get(name, (name, {}))
+    own, changes = DRIVES_WITH_LOSSES.get(name, (name, {}))
     file = load_default(MODELS[own].joint).with_values(changes, "user", "benchmark")
     model = MODELS[own].with_parameters(file.joint, file.values)
     given = data.split_parameters(model, file)
@@ -179,8 +179,8 @@ def as_compiled(name: str) -> Linked:
 
 def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
     """Name, flavour, library, token and number of outputs of every native FMU and pass-through."""
-    for name in (*MODELS, *OTHERS, *PASS_THROUGH):
-        model = MODELS.get(OTHERS.get(name, (name, {}))[0])
+    for name in (*MODELS, *DRIVES_WITH_LOSSES, *PASS_THROUGH):
+        model = MODELS.get(DRIVES_WITH_LOSSES.get(name, (name, {}))[0])
         outputs = len(model.outputs) if model else PASS_THROUGH[name][1]
         linked = as_built(name) if model else as_compiled(name)
         for flavour, library in linked.libraries.items():
@@ -285,7 +285,7 @@ def print_times(times: dict[tuple[str, str], Times]) -> None:
     """Print the table of times and the targets."""
     print(f"{'FMU':28} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
     print(" " * 36 + "".join(f" {unit:>13}" for *_, unit in COLUMNS.values()))
-    for name in (*MODELS, *OTHERS, *PASS_THROUGH):
+    for name in (*MODELS, *DRIVES_WITH_LOSSES, *PASS_THROUGH):
         for flavour in FLAVOUR_BUILDERS:
             if found := times.get((name, flavour)):
                 print(f"{name:28} {flavour:7}" + "".join(f" {cell(found, key):>13}" for key in COLUMNS))

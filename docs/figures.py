@@ -39,7 +39,7 @@ ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 
-WIDTH, LEFT, ROW, HEAD, EDGE = 9.4, 6.5, 0.29, 0.36, 0.08
+WIDTH, LAYER_WIDTH, ROW, HEAD, EDGE = 9.4, 6.5, 0.29, 0.36, 0.08
 """Sizes in the architecture picture [inch]: width, width of the layers, height of a layer and of a title,
 margin."""
 PACKAGES = {"jointfmu_tools": "tools", "jointfmu_fmu_src": "fmu_src", "jointfmu": "core/jointfmu"}
@@ -51,12 +51,12 @@ LETTER = 0.078
 def main() -> None:
     """Draw the pictures in docs/images."""
     if sys.argv[1:] in ([], ["house"]):
-        write_text(IMAGES / "house.svg", house())
+        write_text(IMAGES / "house.svg", draw_architecture())
     if sys.argv[1:] in ([], ["examples"]):
         for script in EXAMPLES:
-            example(script)
+            draw_example(script)
     if sys.argv[1:] in ([], ["elastic"]):
-        elastic(IMAGES / "robot_frequencies.png")
+        draw_robot_frequencies(IMAGES / "robot_frequencies.png")
     if sys.argv[1:]:
         return
     result = run_default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
@@ -65,10 +65,10 @@ def main() -> None:
         IMAGES / "harmonic_drive_ramp.svg",
         svg(lambda canvas: draw_panels(canvas, panels), RESONANCE_FIGURE_SIZE),
     )
-    resonance(IMAGES / "tutorial_resonance.png")
+    draw_tutorial_resonance(IMAGES / "tutorial_resonance.png")
 
 
-def elastic(path: Path) -> None:
+def draw_robot_frequencies(path: Path) -> None:
     """Draw the natural frequencies of the six-axis arm over its poses, with the shipped drives."""
     sizes = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
     drives = [f"joint{i}={size}" for i, size in enumerate(sizes, 1)]
@@ -78,7 +78,7 @@ def elastic(path: Path) -> None:
         write_bytes(path, (Path(folder) / "frequencies.png").read_bytes())
 
 
-def example(script: Path) -> None:
+def draw_example(script: Path) -> None:
     """Run an example in an empty folder and keep its picture."""
     environment = os.environ | {"MPLBACKEND": "agg"}
     with TemporaryDirectory() as folder:
@@ -87,7 +87,7 @@ def example(script: Path) -> None:
         write_bytes(IMAGES / f"example_{picture.name}", picture.read_bytes())
 
 
-def resonance(path: Path) -> None:
+def draw_tutorial_resonance(path: Path) -> None:
     """Draw the plot at the end of the tutorial."""
     row = CatalogueRow(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
     drive = catalogue.make_drive_with_catalogue_law_from_row(
@@ -101,7 +101,7 @@ def resonance(path: Path) -> None:
             draw_panels(canvas, resonance_charts(points, one, Path(folder) / "fmi2"))
 
 
-def house() -> str:
+def draw_architecture() -> str:
     """Draw the architecture as SVG: three packages one above the other, with the layers of the import
     contracts."""
     storeys = [(title, _layers(package)) for package, title in PACKAGES.items()]
@@ -157,8 +157,10 @@ def _storey(axes: Axes, top: float, layers: Sequence[Sequence[str]], running: se
         y = top - ROW * (i + 1)
         colours = [RED if name == "joints" else BLUE if name in running else "black" for name in names]
         face = "#fbeeea" if RED in colours else "#e8f0fa" if BLUE in colours else "#f4f4f4"
-        axes.add_patch(Rectangle((EDGE, y), LEFT, ROW, facecolor=face, edgecolor="white", linewidth=2.0))
-        _words(axes, EDGE + 0.5 * LEFT, y + 0.5 * ROW, list(zip(names, colours, strict=True)))
+        axes.add_patch(
+            Rectangle((EDGE, y), LAYER_WIDTH, ROW, facecolor=face, edgecolor="white", linewidth=2.0)
+        )
+        _words(axes, EDGE + 0.5 * LAYER_WIDTH, y + 0.5 * ROW, list(zip(names, colours, strict=True)))
 
 
 def _words(axes: Axes, x: float, y: float, words: Sequence[tuple[str, str]]) -> None:
@@ -172,7 +174,7 @@ def _words(axes: Axes, x: float, y: float, words: Sequence[tuple[str, str]]) -> 
 
 def _legend(axes: Axes, top: float) -> None:
     """Draw the legend: meaning of arrow and colours."""
-    x = EDGE + LEFT + 0.35
+    x = EDGE + LAYER_WIDTH + 0.35
     arrow = {"arrowstyle": "->", "color": GREY, "lw": 1.5}
     axes.annotate("", (x - 0.18, EDGE), (x - 0.18, top), arrowprops=arrow)
     lines = (

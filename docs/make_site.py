@@ -14,7 +14,7 @@ from runpy import run_path
 from tempfile import TemporaryDirectory
 
 ROOT = Path(__file__).resolve().parent.parent
-CARRIED = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
+PAGE_OF_TEXT = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
 """{text of the repository: page of the site that shows it}."""
 LABORATORY = "laboratory/page.html"
 """Path of the laboratory page in the site."""
@@ -41,20 +41,20 @@ disk."""
 _LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+[^)\s#]+)(#[^)\s]*)?\)")
 
 
-def place(source: str, target: str) -> str | None:
+def repository_path(source: str, target: str) -> str | None:
     """Path in the repository to which a link of a page leads; None if the link stays inside the pages."""
     path = posixpath.normpath(posixpath.join("docs", posixpath.dirname(source), target))
     return None if path.startswith("docs/") else path
 
 
-def address(path: str) -> str:
+def site_path(path: str) -> str:
     """Address of a repository file in the site."""
-    if path in CARRIED:
-        return CARRIED[path]
+    if path in PAGE_OF_TEXT:
+        return PAGE_OF_TEXT[path]
     return f"files/{path}.txt" if path.endswith((".md", ".py")) else f"files/{path}"
 
 
-def carried(name: str) -> str:
+def convert_text(name: str) -> str:
     """Text of the repository as a page in `docs`."""
     text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
     outside = r"\]\((?!https?:|#)([\w./-]+)\)"
@@ -80,37 +80,38 @@ def page_of(script: str) -> str:
     return str(run_path(str(Path(__file__).with_name(script)))["page"]())
 
 
-def led(markdown: str, source: str) -> tuple[str, set[str]]:
+def redirect_links(markdown: str, source: str) -> tuple[str, set[str]]:
     """Page with its links out of `docs` led to files of the site, and the list of these files. Links to
     folders are removed."""
     here, linked = posixpath.dirname(source) or ".", set()
 
     def lead(match: re.Match[str]) -> str:
         text, target, anchor = match.groups()
-        path = place(source, target)
+        path = repository_path(source, target)
         if path is None or not (ROOT / path).exists():
             return match[0]
         if (ROOT / path).is_dir():
             return str(text)
-        if path not in CARRIED:
+        if path not in PAGE_OF_TEXT:
             linked.add(path)
-        return f"[{text}]({posixpath.relpath(address(path), here)}{anchor or ''})"
+        return f"[{text}]({posixpath.relpath(site_path(path), here)}{anchor or ''})"
 
     return _LINK.sub(lead, markdown), linked
 
 
-def lay_out(docs: Path) -> None:
+def copy_inputs(docs: Path) -> None:
     """Copy all inputs of the site generator into the folder `docs`."""
     shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     made = {LABORATORY: laboratory()} | {page: page_of(script) for page, script in SCRIPTS.items()}
-    for place, text in (made | {page: carried(name) for name, page in CARRIED.items()}).items():
-        (docs / place).parent.mkdir(exist_ok=True)
-        (docs / place).write_text(text, encoding="utf-8")
+    made |= {page: convert_text(name) for name, page in PAGE_OF_TEXT.items()}
+    for page_path, text in made.items():
+        (docs / page_path).parent.mkdir(exist_ok=True)
+        (docs / page_path).write_text(text, encoding="utf-8")
     for page in sorted(docs.rglob("*.md")):
-        text, linked = led(page.read_text(encoding="utf-8"), page.relative_to(docs).as_posix())
+        text, linked = redirect_links(page.read_text(encoding="utf-8"), page.relative_to(docs).as_posix())
         page.write_text(text, encoding="utf-8")
         for path in linked:
-            copy = docs / address(path)
+            copy = docs / site_path(path)
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / path, copy)
 
@@ -131,7 +132,7 @@ def build(out: Path) -> int:
     links."""
     with TemporaryDirectory() as name:
         work = Path(name)
-        lay_out(work / "docs")
+        copy_inputs(work / "docs")
         shutil.copy(ROOT / "mkdocs.yml", work)
         done = subprocess.run([sys.executable, "-m", "zensical", "build", "--strict"], cwd=work)
         if done.returncode == 0:

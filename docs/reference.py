@@ -12,7 +12,7 @@ import jointfmu
 WIDTH = 90
 """Largest number of letters of a signature in one line."""
 BREAK = ",\n    "
-_LISTED = re.compile(r"^(\w[\w, ]*?) +: (.*)")
+_LIST_ITEM_PATTERN = re.compile(r"^(\w[\w, ]*?) +: (.*)")
 """Pattern of a list item in a docstring: names and their meaning."""
 
 
@@ -55,7 +55,7 @@ def markdown(text: str) -> str:
     for block in text.split("\n\n"):
         if block.startswith(">>>"):
             blocks.append(f"```pycon\n{block}\n```")
-        elif _LISTED.match(block):
+        elif _LIST_ITEM_PATTERN.match(block):
             blocks.append(_bullets(block))
         else:
             blocks.append(block)
@@ -66,7 +66,7 @@ def _bullets(block: str) -> str:
     """Convert lines `names : meaning`, with continuation lines, to a bullet list."""
     lines = []
     for line in block.splitlines():
-        if match := _LISTED.match(line):
+        if match := _LIST_ITEM_PATTERN.match(line):
             lines.append(f"- `{match[1].strip()}`: {match[2]}")
         else:
             lines.append(f"  {line.strip()}")

@@ -30,7 +30,7 @@ MIN_LENGTHS = np.array([0.20, 0.08, 0.008, 0.010, 0.0285, 0.0005, 0.005])
 MAX_LENGTHS = np.array([0.80, 0.80, 0.060, 0.080, 0.0900, 0.0800, 0.060])
 """Bounds [m]: a bolt head fits on the overhang, the flange is at least as thick as a washer is wide."""
 E, NU, DENSITY, ROWS = 1.5e11, 0.28, 7800.0, 0.3
-ACROSS, ALONG, MIDDLE = 1, 3, 2
+BRICKS_ACROSS_WALL, BRICKS_ALONG_HEIGHT, BRICKS_ALONG_HALF_OPENING = 1, 3, 2
 """Number of bricks across a wall or ledge, along the height, along half of the opening."""
 SAMPLES = 5
 """Number of random draws; the best one starts a fit."""
@@ -61,7 +61,7 @@ class Box:
         depth = np.array([overhang + wall + ledge, overhang + wall, overhang, 0.0])
         lines = [_line(end - depth) for end in half]
         levels = [0.0, flange, height - floor[0], height] if floor else [0.0, flange, height]
-        z = _steps(np.array(levels), [1, ALONG, 1][: len(levels) - 1])
+        z = _steps(np.array(levels), [1, BRICKS_ALONG_HEIGHT, 1][: len(levels) - 1])
         mesh = MeshHex.init_tensor(*lines, z)
         x, y, at = mesh.p[:, mesh.t].mean(axis=1)
         inside = (np.abs(x) < half[0] - overhang) & (np.abs(y) < half[1] - overhang)
@@ -111,7 +111,10 @@ class Box:
 def _line(places: Array) -> Array:
     """Grid lines [m] in ascending order at both signs of the given distances, with divisions of the opening
     between."""
-    right = _steps(np.concatenate([[0.0], places]), [MIDDLE, ACROSS, ACROSS, ACROSS])
+    right = _steps(
+        np.concatenate([[0.0], places]),
+        [BRICKS_ALONG_HALF_OPENING, BRICKS_ACROSS_WALL, BRICKS_ACROSS_WALL, BRICKS_ACROSS_WALL],
+    )
     return np.concatenate([-right[:0:-1], right])
 
 

@@ -34,7 +34,7 @@ def print_table(columns, rows):
         row(*cells)
 
 
-def spread(values, form="{:.2g}"):
+def format_mean_and_deviation(values, form="{:.2g}"):
     """Format mean and standard deviation of values over the first axis."""
     values = np.asarray(values)
     return f"{form.format(values.mean())} ± {form.format(values.std(ddof=1))}"

@@ -43,7 +43,7 @@ def fit_logs(make, options, seeds):
     for seed in range(seeds):
         fit = robot_log.fit_log(make, options, seed)
         for label in fit.solution.values:
-            truth = robot_log.TRUE[label]
+            truth = robot_log.TRUE_VALUES[label]
             relative_errors, held = found.setdefault(label, ([], []))
             relative_errors.append(fit.parameters.values_by_name[label] / truth - 1.0)
             if label in fit.confidence_intervals:

@@ -34,7 +34,7 @@ from jointfmu.progress import track_progress
 DRIVE = load_default("harmonic_drive").values
 HU = {point.id: float(point.value) for point in read_points("hu2023")}
 TORQUES = (1.0, 3.0, 5.0)
-LEAST, BEST, MOST = 0.195e-3, 0.21e-3, 0.215e-3
+MIN_DEFORMATION, BEST_DEFORMATION, MAX_DEFORMATION = 0.195e-3, 0.21e-3, 0.215e-3
 """Smallest, best and largest radial deformation [m] of Hu 2023, section 3.4."""
 MAXIMA = [HU[f"K_TS.max.{T:.0f}"] for T in TORQUES]
 MINIMA = [HU[f"K_TS.min.{T:.0f}"] for T in TORQUES]
@@ -152,7 +152,8 @@ def published():
     print(f"published over computed K_TS at 5 N.m: {scale:.3g}")
     for T, most, least, change in zip(TORQUES, MAXIMA, MINIMA, CHANGES, strict=True):
         low, best, high = (
-            scale * stiffness(replace(DRIVE, radial_deformation=w), SIZE_14, T) for w in (LEAST, BEST, MOST)
+            scale * stiffness(replace(DRIVE, radial_deformation=w), SIZE_14, T)
+            for w in (MIN_DEFORMATION, BEST_DEFORMATION, MAX_DEFORMATION)
         )
         print(
             f"T = {T:g}: K_TS at 0.21 mm {best:.0f} (published {most:.0f}: {100 * (best / most - 1):+.1f} %)"
@@ -201,11 +202,14 @@ def variants():
         end="",
     )
     print(f" {100 * (MAXIMA[0] / MINIMA[0] - 1):26.2f} {CHANGES[0]:14.2f}")
-    best = replace(DRIVE, radial_deformation=BEST)
+    best = replace(DRIVE, radial_deformation=BEST_DEFORMATION)
     for name, changes in track_progress(list(VARIANTS.items()), "estimates"):
         rings = replace(SIZE_14, **changes)
         K = [stiffness(best, rings, T) for T in TORQUES]
-        low, high = (stiffness(replace(DRIVE, radial_deformation=w), rings, 1.0) for w in (LEAST, MOST))
+        low, high = (
+            stiffness(replace(DRIVE, radial_deformation=w), rings, 1.0)
+            for w in (MIN_DEFORMATION, MAX_DEFORMATION)
+        )
         moved = stiffness(replace(best, eccentricity=1e-5), rings, 1.0)
         peak = opening(DRIVE, rings, 5.0).pressure.max()
         print(f"{name:20} {peak / 1e6:13.3f} {K[0] / K[2]:7.3f} {K[1] / K[2]:7.3f}", end="")

@@ -31,16 +31,16 @@ from jointfmu.parameters import load_default
 
 CHANGED, BENT, STILL = 0.02, 0.2, 1e-4
 """Ratios [1] of the bolted joint component, as in its Modelica text."""
-PARTS = 4
+PATH_PARTS = 4
 """Number of parts of a path in the Modelica function `slide`."""
-MASS, RINGING = 20.0, (0.7, 0.5, 0.1)
+MASS, AMPLITUDES = 20.0, (0.7, 0.5, 0.1)
 """Mass [kg]; amplitudes along x and y over the displacement of gross slip, along z over the compression [1].
 """
 FRICTION = {"friction_coulomb": 0.004, "friction_stribeck": 0.003, "stribeck_speed": 2.0, "load_loss": 0.15}
-OTHERS = {"friction_viscous": 1e-5, "error_2": 2e-4, "hysteresis_loss": 2.9e-4}
+OTHER_LOSSES = {"friction_viscous": 1e-5, "error_2": 2e-4, "hysteresis_loss": 2.9e-4}
 MOTOR, LINK, WEIGHT, STOP = 1e-5, 0.05, 9.80665 * 0.2, 0.6
 """Moments of inertia [kg.m2], torque of the horizontal link [N.m], stop time [s]."""
-LAYER, FORGETS = 1e-3, 1e-4
+LAYER, MEMORY_TIME = 1e-3, 1e-4
 """Layer width [1] and time constant [s] of the Modelica component."""
 
 
@@ -49,7 +49,7 @@ class Drive:
     if any."""
 
     def __init__(self, friction, turns):
-        given = OTHERS | (FRICTION if friction else {})
+        given = OTHER_LOSSES | (FRICTION if friction else {})
         self.law = HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **given))
         self.brakes, self.turns = SLIDER_LIMIT_SHARES.size if friction else 0, turns
         joint = self.law.joint
@@ -58,7 +58,7 @@ class Drive:
         )
         self.held, self.place = np.zeros(self.law.hysteresis.friction_limit.size), 0.0
 
-    def seen(self, x):
+    def wind_up_and_rate(self, x):
         """Wind-up [rad], derivative of the kinematic error, rate of the wind-up [rad/s]."""
         error, slope, _ = kinematic_error(self.law.joint, x[0])
         return wind_up(self.law.joint, x[:4], error), slope, x[3] - x[1] / self.law.joint.ratio - slope * x[1]
@@ -72,7 +72,7 @@ class Drive:
 
     def rates(self, t, x):
         joint, found = self.law.joint, self.law.hysteresis
-        phi, slope, rise = self.seen(x)
+        phi, slope, rise = self.wind_up_and_rate(x)
         states = x[4 + self.brakes :]
         held = (
             self.hysteresis(phi)
@@ -86,7 +86,7 @@ class Drive:
         share = SLIDER_LIMIT_SHARES[: self.brakes]
         braked = np.clip(q, -negative * share, positive * share)
         stuck = self.law.friction.stiffness[: self.brakes]
-        rate = stuck * (x[1] - abs(x[1]) * (q - braked) / self.most) - (q - braked) / FORGETS
+        rate = stuck * (x[1] - abs(x[1]) * (q - braked) / self.most) - (q - braked) / MEMORY_TIME
         push = 0.03 * math.sin(26.179938779914945 * t) ** 3 if t < 0.24 else 0.0
         torque = push + tau * (1.0 / joint.ratio + slope) - braked.sum() - viscous_torque(joint, x[1])
         own = [x[1], torque / MOTOR, x[3], -(tau + WEIGHT * math.sin(x[2])) / LINK]
@@ -101,10 +101,10 @@ class Drive:
         x, t, counts = np.zeros(size), 0.0, np.zeros(3, dtype=int)
         scale = np.concatenate([[1e-3, 0.1, 1e-3, 0.1], np.full(size - 4, 0.01)])
 
-        def turned(t, x):
-            return self.seen(x)[2]
+        def reversal_function(t, x):
+            return self.wind_up_and_rate(x)[2]
 
-        turned.terminal = True
+        reversal_function.terminal = True
         events = 0
         while t < STOP:
             found = solve_ivp(
@@ -114,12 +114,12 @@ class Drive:
                 "BDF",
                 rtol=tolerance,
                 atol=tolerance * scale,
-                events=turned if self.turns else None,
+                events=reversal_function if self.turns else None,
             )
             counts += len(found.t), found.nfev, found.njev
             t, x = found.t[-1], found.y[:, -1]
             if found.status == 1:
-                phi = self.seen(x)[0]
+                phi = self.wind_up_and_rate(x)[0]
                 self.held, self.place, events = self.hysteresis(phi), phi, events + 1
                 t, x = t + 1e-9, x + 1e-9 * self.rates(t, x)  # past the turn
         return *counts, size, events
@@ -164,18 +164,18 @@ class Bolted:
         rates = 0.5 * self.shear * np.array([grow, grow]), 0.5 * self.mu * np.array([S - widen, S + widen])
         return *(x.ravel() for x in half), *(x.ravel() * v_c for x in rates)
 
-    def slid(self, s):
+    def slider_forces(self, s):
         """Forces of the sliders by a straight path from the last stored state, their stiffness and friction
         limit."""
         force, place, first, most, _ = self.last
         K, Q, _, _ = self.sliders(-s[2], 0.0)
         before = first
-        for part in np.arange(1, PARTS + 1) / PARTS:
+        for part in np.arange(1, PATH_PARTS + 1) / PATH_PARTS:
             here, limit = first + (K - first) * part, most + (Q - most) * part
             falls = here < before
             keeps = np.where(falls, here / np.where(before > 0.0, before, 1.0), 1.0)
             carries = np.where(falls, here, 0.5 * (before + here))
-            force = keeps * force + carries * (s[:2] - place[:2])[:, None] / PARTS
+            force = keeps * force + carries * (s[:2] - place[:2])[:, None] / PATH_PARTS
             force = force * np.minimum(1.0, limit / np.maximum(np.hypot(*force), 1e-60))
             before = here
         return force, K, Q
@@ -183,7 +183,7 @@ class Bolted:
     def rates(self, t, x):
         s, v = x[:3], x[3:6]
         if self.kept:
-            held, more = self.slid(s)[0], np.zeros(0)
+            held, more = self.slider_forces(s)[0], np.zeros(0)
         else:
             q = x[6:].reshape(2, -1)
             K, Q, K_rate, Q_rate = self.sliders(-s[2], -v[2])
@@ -196,7 +196,7 @@ class Bolted:
         force = np.array([*-held.sum(axis=1), float(self.load(-s[2]))])
         return np.concatenate([v, force / MASS, more.ravel()])
 
-    def turned(self, t, x):
+    def reversal_function(self, t, x):
         u, v = x[:2] - self.last[1][:2], x[3:5]
         across, along = abs(u[0] * v[1] - u[1] * v[0]), u @ v
         return across - BENT * along - STILL * self.reach[0] * math.hypot(*v)
@@ -207,7 +207,7 @@ class Bolted:
     def run(self, tolerance, stop):
         """Numbers of steps, right-hand sides without those of Jacobians, Jacobians, states and events of a
         simulation."""
-        amplitude = np.array(RINGING) * self.reach
+        amplitude = np.array(AMPLITUDES) * self.reach
         x = np.concatenate([[0.0, amplitude[1], 0.0], amplitude * self.rate * [1.0, 0.0, 1.0]])
         usual = np.concatenate([self.reach, self.reach * self.rate])
         if not self.kept:
@@ -228,7 +228,7 @@ class Bolted:
             counts += len(found.t), found.nfev, found.njev
             t, x = found.t[-1], found.y[:, -1]
             if found.status == 1:
-                force, K, Q = self.slid(x[:3])
+                force, K, Q = self.slider_forces(x[:3])
                 self.keep(force, x[:3], K, Q)
                 events += 1
         return *counts, x.size, events

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from common import heading, row, spread
+from common import format_mean_and_deviation, heading, row
 from oracles import interface_laws as compare
 from oracles import roughness_law as cases
 from oracles.measured_joints import LONGEST, joint_law, level, measured
@@ -18,8 +18,8 @@ WAVES = (5e-3, 40e-3)
 """Longest waves [m] in addition to the default; the second one is the side of the joints."""
 HEIGHTS = (0.3e-6, 1e-6, 3e-6)
 """Rms heights [m] of a second roughness scale."""
-FITTED = slice(0, 4)
-"""Pressures of `cases.MEASURED` to which a second scale is fitted: 0.1 to 2 MPa."""
+FITTED_PRESSURES = slice(0, 4)
+"""Pressures of `cases.MEASURED_PRESSURES` to which a second scale is fitted: 0.1 to 2 MPa."""
 
 
 def wave_name(roll_off):
@@ -58,7 +58,13 @@ def print_elastic():
     heading("exponent d ln k/d ln p", "H", "longest wave", "boundary elements", "law", "difference of means")
     for (H, roll_off), one in found.items():
         k, law = cases.exponents(one, roll_off)
-        row(H, wave_name(roll_off), spread(k), f"{law.mean():.2f}", f"{(law - k).mean():+.2f}")
+        row(
+            H,
+            wave_name(roll_off),
+            format_mean_and_deviation(k),
+            f"{law.mean():.2f}",
+            f"{(law - k).mean():+.2f}",
+        )
 
 
 def print_plastic():
@@ -68,19 +74,29 @@ def print_plastic():
     for roll_off in track_progress((1, 4), "hardness"):
         for hardness, load in ((0.5, 0.03), (0.5, 0.1), (0.15, 0.03), (0.15, 0.1), (0.05, 0.1), (0.05, 0.3)):
             both = [cases.plastic(H, roll_off, hardness, load, seeds=cases.SEEDS[16]) for H in (0.3, 0.8)]
-            row(wave_name(roll_off), hardness, load, *(spread(one) for one in np.concatenate(both, axis=1)))
+            row(
+                wave_name(roll_off),
+                hardness,
+                load,
+                *(format_mean_and_deviation(one) for one in np.concatenate(both, axis=1)),
+            )
 
 
 def print_joints():
     """Print the law over measured joints, and the other three laws over measured joints."""
-    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
+    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED_PRESSURES]
     heading("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
     for joint in cases.joints_with_roughness():
         law = joint_law(joint)
-        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         height = f"{law.h * 1e6:.2f}"
-        row(joint["id"], height, "p/(0.45 h)", *two_digits(cases.MEASURED / (law.gamma * law.h) / middle))
-        row(joint["id"], height, "roughness", *two_digits(level(law, cases.MEASURED) / middle))
+        row(
+            joint["id"],
+            height,
+            "p/(0.45 h)",
+            *two_digits(cases.MEASURED_PRESSURES / (law.gamma * law.h) / middle),
+        )
+        row(joint["id"], height, "roughness", *two_digits(level(law, cases.MEASURED_PRESSURES) / middle))
     zhao, hu, yu = (case.law for case in compare.cases().values())
     others = {
         f"zhao2018 {area} {spot}": replace(zhao, critical_area=area, spot_stiffness=spot)
@@ -89,35 +105,35 @@ def print_joints():
     }
     heading("the same of the other laws, whatever the finish", "joint", "law", *pressures)
     for joint in measured()["normal"]:
-        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         for text, law in {**others, "hu2023": hu, "yu2022": yu}.items():
-            k = stiffness_curve(law, cases.MEASURED)[0]
+            k = stiffness_curve(law, cases.MEASURED_PRESSURES)[0]
             row(joint["id"], text, *(f"{one:.2g}" for one in k / middle))
 
 
 def print_second_scale():
     """Print the law with longer waves, and with a second scale in series, over measured joints."""
-    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
+    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED_PRESSURES]
     heading("law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures)
     for joint in cases.joints_with_roughness():
         law = joint_law(joint)
-        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         for wave in WAVES:
-            k = level(replace(law, longest_wave=wave), cases.MEASURED)
+            k = level(replace(law, longest_wave=wave), cases.MEASURED_PRESSURES)
             row(joint["id"], f"longest wave {wave * 1e3:g} mm", *two_digits(k / middle))
         row(
             joint["id"],
             "with the tail of the heights",
-            *two_digits(cases.stiffness_with_tail(law, cases.MEASURED) / middle),
+            *two_digits(cases.stiffness_with_tail(law, cases.MEASURED_PRESSURES) / middle),
         )
         for h in HEIGHTS:
-            k = cases.two_scale_stiffness(law, cases.MEASURED, h, WAVES[-1])
+            k = cases.two_scale_stiffness(law, cases.MEASURED_PRESSURES, h, WAVES[-1])
             row(joint["id"], f"in series {h * 1e6:g} µm over 40 mm", *two_digits(k / middle))
     heading("best two scales in series, 0.1 to 2 MPa", "joint", "h [µm]", "h_w [µm]", *pressures, "exponent")
     for joint in cases.joints_with_roughness():
-        middle = compare.mean_measured_stiffness(joint, cases.MEASURED)
+        middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         h, k = fit_second_scale(joint, middle)
-        power = compare.exponent(cases.MEASURED[FITTED], k[FITTED])
+        power = compare.exponent(cases.MEASURED_PRESSURES[FITTED_PRESSURES], k[FITTED_PRESSURES])
         row(joint["id"], *(f"{one * 1e6:.3g}" for one in h), *two_digits(k / middle), f"{power:.2f}")
 
 
@@ -126,10 +142,10 @@ def fit_second_scale(joint, middle):
 
     def stiffness(logs):
         h, second = np.exp(logs)
-        return cases.two_scale_stiffness(joint_law(joint, h=h), cases.MEASURED, second, WAVES[-1])
+        return cases.two_scale_stiffness(joint_law(joint, h=h), cases.MEASURED_PRESSURES, second, WAVES[-1])
 
     def miss(logs):
-        return np.log(stiffness(logs) / middle)[FITTED]
+        return np.log(stiffness(logs) / middle)[FITTED_PRESSURES]
 
     fit = least_squares(miss, np.log([1e-6, 1e-6]), bounds=np.log([1e-9, 1e-4]))
     return np.exp(fit.x), stiffness(fit.x)

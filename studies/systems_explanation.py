@@ -36,7 +36,7 @@ LOSSES = ("d", "friction_coulomb", "friction_stribeck", "friction_viscous", "hys
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8)
 WIND_UP, SWING = 1e-3, 2.0
 DRAWS, STEP, STEPS = 10_000, 1e-2, 3
-LONG = (0.03, 1.0, 40.0)
+LONG_DURATIONS = (0.03, 1.0, 40.0)
 
 
 def build_unpacked(path: Path, out: Path) -> str:
@@ -166,7 +166,7 @@ def prove_long_system() -> None:
 
 def prove_long_system_in(folder: Path) -> None:
     """Build the bolted column in a folder, and print its proof."""
-    for stop in LONG:
+    for stop in LONG_DURATIONS:
         begin = time.perf_counter()
         column = replace(load_system("bolted_column"), stop_time=stop)
         (file,) = build_system(assemble_system(column), folder, ("2",), (fmpy.platform_tuple,))

@@ -54,7 +54,7 @@ class Surface:
 
 
 ISOTROPIC = [Surface(H, r, seed) for r, seeds in SEEDS.items() for H in HURST for seed in seeds]
-OTHERS = {
+OTHER_SURFACES = {
     "one hill, other seeds": [Surface(H, 1, seed) for H in HURST for seed in (500, 501)],
     "nu = 0": [Surface(0.3, 4, nu=0.0), Surface(0.8, 1, nu=0.0)],
     "nu = 0.49": [Surface(0.3, 4, nu=0.49), Surface(0.8, 4, nu=0.49)],
@@ -254,7 +254,7 @@ def draw_losses(axes, found):
 
 def compare_all(options):
     """Compare theory and boundary elements for spheres, grids and rough surfaces; print all tables."""
-    surfaces = [*ISOTROPIC, *(s for some in OTHERS.values() for s in some)]
+    surfaces = [*ISOTROPIC, *(s for some in OTHER_SURFACES.values() for s in some)]
     with ProcessPoolExecutor() as pool:
         spheres = [pool.submit(cases.sphere_errors, points, nu) for nu, points in SPHERES]
         grids = pool.map(grid, GRIDS)
@@ -271,9 +271,9 @@ def compare_all(options):
     groups = {
         "waves up to the side": [one for s in ISOTROPIC if s.roll_off == 1 for one in found[s]],
         "waves up to side/4, side/8": [one for s in ISOTROPIC if s.roll_off > 1 for one in found[s]],
-        **{name: [one for s in some for one in found[s]] for name, some in OTHERS.items()},
-        "textured, across the ridges": [found[s][0] for s in OTHERS["textured"]],
-        "textured, along the ridges": [found[s][1] for s in OTHERS["textured"]],
+        **{name: [one for s in some for one in found[s]] for name, some in OTHER_SURFACES.items()},
+        "textured, across the ridges": [found[s][0] for s in OTHER_SURFACES["textured"]],
+        "textured, along the ridges": [found[s][1] for s in OTHER_SURFACES["textured"]],
     }
     print_summary(groups)
     print_exponents(groups)

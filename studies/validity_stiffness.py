@@ -19,7 +19,7 @@ from dataclasses import replace
 
 import numpy as np
 import roughness_law
-from common import IMAGES, heading, row, run_study, spread
+from common import IMAGES, format_mean_and_deviation, heading, row, run_study
 from jointfmu_tools.common import plots
 from oracles import interface_laws as compare
 from oracles.boundary_element import hertz, westergaard
@@ -40,8 +40,8 @@ COLORS = (plots.BLUE, plots.RED, plots.GREEN)
 ROLL_OFF = (1, 4)
 LOADS = (0.003, 0.006, 0.012, 0.025, 0.05, 0.1)
 """Pressures of the elastic contacts over E* h'_rms [1]."""
-JUDGED = np.array([0.5e6, 1e6, 2e6, 8e6])
-MEASURED = np.array([0.1e6, 1e6, 2.45e6, 9.8e6])
+COMPARED_PRESSURES = np.array([0.5e6, 1e6, 2e6, 8e6])
+MEASURED_PRESSURES = np.array([0.1e6, 1e6, 2.45e6, 9.8e6])
 
 
 # laws and measured joints, without boundary elements
@@ -100,15 +100,15 @@ def print_levels():
     iron."""
     file = load_default("bolted_joint")
     h = combined_height(file.roughness)
-    names = [f"{p / 1e6:g} MPa" for p in JUDGED]
+    names = [f"{p / 1e6:g} MPa" for p in COMPARED_PRESSURES]
     heading(f"K over p/(0.45 h), h = {1e6 * h:.3g} um", "law", *names, "K_T/K_N", "measured rows within 2")
     laws = {f"{a} {s}": replace(file.values, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
     for name, law in {**laws, "roughness": load_default("bolted_joint", "roughness").values}.items():
-        state = evaluate_at_pressure(law, JUDGED)
+        state = evaluate_at_pressure(law, COMPARED_PRESSURES)
         k = state["K_N"] / law.A_0
         row(
             name,
-            *(f"{ratio:.2g}" for ratio in k / predicted_stiffness(JUDGED, h)),
+            *(f"{ratio:.2g}" for ratio in k / predicted_stiffness(COMPARED_PRESSURES, h)),
             f"{state['K_T'][-1] / state['K_N'][-1]:.3f}",
             rows_within_factor_2(k),
         )
@@ -118,7 +118,7 @@ def print_levels():
 
 def rows_within_factor_2(k):
     """Number of measured joints whose stiffness is within a factor of 2 of k: text for each pressure."""
-    ends = [compare.measured_stiffness(one, JUDGED) for one in measured()["normal"]]
+    ends = [compare.measured_stiffness(one, COMPARED_PRESSURES) for one in measured()["normal"]]
     middle = [np.sqrt(low * high) for low, high in ends]
     off = [(k >= 0.5 * one) & (k <= 2.0 * one) for one in middle]
     return "/".join(str(count) for count in np.sum(off, axis=0)) + f" of {len(off)}"
@@ -126,32 +126,32 @@ def rows_within_factor_2(k):
 
 def print_joints():
     """Print the stiffness of measured joints and of the laws."""
-    pressures = [f"{p / 1e6:g} MPa" for p in MEASURED]
+    pressures = [f"{p / 1e6:g} MPa" for p in MEASURED_PRESSURES]
     data = measured()
     for kind in ("normal", "tangential"):
         heading(f"measured {kind} stiffness [N/m3]", "joint", *pressures, "exponent")
         for joint in data[kind]:
-            low, high = compare.measured_stiffness(joint, MEASURED)
+            low, high = compare.measured_stiffness(joint, MEASURED_PRESSURES)
             powers = sorted(1.0 - m for m in joint["m"]) if "m" in joint else joint["S"]
             cells = [f"{a:.2g} to {b:.2g}" for a, b in zip(low, high, strict=True)]
             row(joint["id"], *cells, f"{powers[0]:.2f} to {powers[-1]:.2f}")
     heading("tangential over normal", "joint", *pressures)
     normal = {joint["id"]: joint for joint in data["normal"]}
     for joint in data["tangential"]:
-        low, high = compare.measured_stiffness(joint, MEASURED)
-        least, most = compare.measured_stiffness(normal[joint["id"]], MEASURED)
+        low, high = compare.measured_stiffness(joint, MEASURED_PRESSURES)
+        least, most = compare.measured_stiffness(normal[joint["id"]], MEASURED_PRESSURES)
         row(joint["id"], *(f"{a:.2f} to {b:.2f}" for a, b in zip(low / most, high / least, strict=True)))
     names = ("exponent", "K_T/K_N", "eta_n at 1 MPa", "eta_t", "k at 1 MPa on (8 mm)2")
     heading("laws: k [N/m3]", "law", *pressures, *names)
     zhao, hu, yu = (case.law for case in compare.cases().values())
     choices = {f"zhao2018 {a} {s}": replace(zhao, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
     for name, law in {**choices, "hu2023": hu, "yu2022": yu}.items():
-        state = evaluate_at_pressure(law, MEASURED)
+        state = evaluate_at_pressure(law, MEASURED_PRESSURES)
         ratio = f"{state['K_T'][-1] / state['K_N'][-1]:.3f}" if "K_T" in state else "-"
         eta = [f"{state[q][1]:.2g}" if q in state else "-" for q in ("eta_n", "eta_t")]
         k = state["K_N"] / law.A_0
-        power = f"{compare.exponent(MEASURED, k):.2f}" if np.all(k > 0.0) else "-"
-        small = stiffness_curve(replace(law, A_0=64e-6), MEASURED[1:2])[0][0]
+        power = f"{compare.exponent(MEASURED_PRESSURES, k):.2f}" if np.all(k > 0.0) else "-"
+        small = stiffness_curve(replace(law, A_0=64e-6), MEASURED_PRESSURES[1:2])[0][0]
         row(name, *(f"{one:.2g}" for one in k), power, ratio, *eta, f"{small:.2g}")
     losses = [d / np.pi for one in data["statement"] for d in one.get("decrement", [])]
     print(f"\nloss factor of whole bolted structures: {min(losses):.3f} to {max(losses):.3f}")
@@ -180,7 +180,11 @@ def print_verification():
         row(factor, *(", ".join(f"{x:.2f}" for x in one) for one in (alpha, kappa)))
     heading("K_T/K_N of bonded contacts", "nu", "boundary elements", "2(1 - nu)/(2 - nu)")
     for nu in (0.0, 0.28, 0.45):
-        row(nu, spread(compare.tangential_ratio(nu), "{:.3f}"), f"{2 * (1 - nu) / (2 - nu):.3f}")
+        row(
+            nu,
+            format_mean_and_deviation(compare.tangential_ratio(nu), "{:.3f}"),
+            f"{2 * (1 - nu) / (2 - nu):.3f}",
+        )
 
 
 def print_elastic():
@@ -193,17 +197,26 @@ def print_elastic():
     ):
         heading(f"{title}, at p/(E* h'_rms)", "H", "longest wave", *LOADS)
         for (H, r), one in found.items():
-            row(H, "side" if r == 1 else f"side/{r}", *(spread(column) for column in one[name].T))
+            row(
+                H,
+                "side" if r == 1 else f"side/{r}",
+                *(format_mean_and_deviation(column) for column in one[name].T),
+            )
     heading("exponent of k over p, first and last three loads", "H", "longest wave", "low", "high", "1/(1+H)")
     for (H, r), one in found.items():
         k = one["alpha"] * np.array(LOADS)
         ends = [[compare.exponent(LOADS[s], x[s]) for x in k] for s in (slice(3), slice(3, 6))]
-        row(H, "side" if r == 1 else f"side/{r}", *(spread(e) for e in ends), f"{1 / (1 + H):.2f}")
+        row(
+            H,
+            "side" if r == 1 else f"side/{r}",
+            *(format_mean_and_deviation(e) for e in ends),
+            f"{1 / (1 + H):.2f}",
+        )
     loads = (0.0003, 0.001, 0.003, 0.01)
     heading("alpha of many spots at light load, H = 0.58", "longest wave", *loads)
     for part, finest in ((8, 8), (16, 4)):
         alpha = compare.elastic(0.58, part, loads, finest=finest)["alpha"]
-        row(f"side/{part}", *(spread(column) for column in alpha.T))
+        row(f"side/{part}", *(format_mean_and_deviation(column) for column in alpha.T))
     return found
 
 
@@ -230,12 +243,12 @@ def print_laws():
             for i, p in enumerate(case.pressures):
                 row(
                     f"{p / 1e6:.3g}",
-                    *(spread(b[q][:, i]) for q in ("k", "loading")),
+                    *(format_mean_and_deviation(b[q][:, i]) for q in ("k", "loading")),
                     f"{law['k'][i]:.2g}",
                     f"{law['k'][i] / b['k'][:, i].mean():.2g}",
-                    spread(b["area"][:, i]),
+                    format_mean_and_deviation(b["area"][:, i]),
                     f"{law['area'][i]:.2g}",
-                    spread(b["plastic"][:, i]),
+                    format_mean_and_deviation(b["plastic"][:, i]),
                     f"{law['plastic'][i]:.2g}",
                     f"{p / (GAMMA * b['rms'].mean()):.2g}",
                 )
@@ -243,7 +256,8 @@ def print_laws():
             areas = [compare.exponent(case.pressures, a) for a in b["area"]]
             own = [compare.exponent(case.pressures, np.maximum(law[q], 1e-300)) for q in ("k", "area")]
             print(
-                f"exponent of k {spread(slopes)}, law {own[0]:.2f}; of A_r {spread(areas)}, law {own[1]:.2f}"
+                f"exponent of k {format_mean_and_deviation(slopes)}, law {own[0]:.2f}; "
+                f"of A_r {format_mean_and_deviation(areas)}, law {own[1]:.2f}"
             )
     return results
 
@@ -264,7 +278,11 @@ def print_grids():
         compare.boundary_element_results(case, 1e-3, points=128)["k"],
         compare.law_state(case, 1e-3)["k"],
     )
-    print("\nzhao2018 on 1 mm2 at 1, 4, 16 MPa: boundary elements", *(spread(k) for k in found.T), end="")
+    print(
+        "\nzhao2018 on 1 mm2 at 1, 4, 16 MPa: boundary elements",
+        *(format_mean_and_deviation(k) for k in found.T),
+        end="",
+    )
     print(", law", *(f"{k:.2g}" for k in law))
 
 

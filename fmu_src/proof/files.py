@@ -43,7 +43,7 @@ _PURPOSE_TITLES = {
 
 
 class RelatedFile(NamedTuple):
-    """File listed in the manifest; experiments have `labels` {interface type: how they are run}."""
+    """File listed in the manifest; experiments have labels {interface type: how they are run}."""
 
     file_path: str
     mime_type: str

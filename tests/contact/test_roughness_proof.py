@@ -137,7 +137,7 @@ def test_a_filter_leaves_half_of_its_wave():
 
 def test_a_second_scale_in_series_does_not_explain_light_load():
     """An element in series reduces the stiffness, but the joints are stiffer than the law at 0.1 MPa."""
-    p = cases.MEASURED[:1]
+    p = cases.MEASURED_PRESSURES[:1]
     for joint in cases.joints_with_roughness():
         law = joint_law(joint)
         alone = level(law, p)

@@ -239,18 +239,18 @@ def friction_and_losses(
         sliders = sliders_at_levels(spring.curve, ratio, spring.joint.mu, FINE)
     gross = spring.joint.mu / ratio * largest * along
 
-    def moved(force: Array, way: float) -> SliderUpdate:
+    def displace(force: Array, way: float) -> SliderUpdate:
         return sliders.advance(force, approach, approach, way * gross)
 
     rest, losses = sliders.virgin_forces(approach.size), []
     forces = [
-        shape.area_share @ np.sum(sum_slider_forces(moved(rest, way).force) * along, axis=1)
+        shape.area_share @ np.sum(sum_slider_forces(displace(rest, way).force) * along, axis=1)
         for way in DISPLACEMENTS
     ]
     for size in AMPLITUDES:
-        back = moved(moved(rest, size).force, -2.0 * size)
+        back = displace(displace(rest, size).force, -2.0 * size)
         losses.append(
-            shape.area_share @ (back.dissipated_energy + moved(back.force, 2.0 * size).dissipated_energy)
+            shape.area_share @ (back.dissipated_energy + displace(back.force, 2.0 * size).dissipated_energy)
         )
     return np.array(forces), np.array(losses)
 

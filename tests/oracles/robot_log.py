@@ -16,7 +16,7 @@ from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-TRUE = {
+TRUE_VALUES = {
     "friction_coulomb": 0.05,
     "friction_stribeck": 0.03,
     "stribeck_speed": 10.0,
@@ -45,13 +45,13 @@ SPEEDS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 1.5, 2.2, 3.2)
 def drive():
     """Parameter file of the drive with the true values."""
     given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": "CSG-25-100"}
-    return NEW_JOINT_COMMAND.make_joint(given).file.with_values(TRUE, "user", "made up")
+    return NEW_JOINT_COMMAND.make_joint(given).file.with_values(TRUE_VALUES, "user", "made up")
 
 
 def start():
     """Parameter file with the start values of the fit: the same drive with another friction."""
-    other = {name: 1.4 * value for name, value in TRUE.items() if name != "stribeck_speed"}
-    other |= {name: 1.2 * TRUE[name] for name in ("K1", "K2", "K3")}
+    other = {name: 1.4 * value for name, value in TRUE_VALUES.items() if name != "stribeck_speed"}
+    other |= {name: 1.2 * TRUE_VALUES[name] for name in ("K1", "K2", "K3")}
     return drive().with_values(other, "user", "start")
 
 

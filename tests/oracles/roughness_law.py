@@ -31,7 +31,7 @@ MIN_LOAD, MIN_PRESSURE, MAX_PRESSURE, MAX_AREA = 0.3, 0.01, 1.5, 0.15
 """Range of validity of the law [1]: smallest x, smallest and largest y, largest real area share."""
 NO_HARDNESS = 1e30
 """Hardness [Pa] of an elastic contact."""
-MEASURED = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
+MEASURED_PRESSURES = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
 
 
 def dimensionless_law(H, roll_off, h, gradient, hardness=NO_HARDNESS):

@@ -125,7 +125,10 @@ def test_the_house_is_drawn_as_it_is_built() -> None:
     spec.loader.exec_module(figures)
     drawn, committed = (
         re.findall(r'<!-- (.*?) -->\s*<g(?: style="fill: (#\w+)")?', picture)
-        for picture in (figures.house(), (DOCS / "images" / "house.svg").read_text(encoding="utf-8"))
+        for picture in (
+            figures.draw_architecture(),
+            (DOCS / "images" / "house.svg").read_text(encoding="utf-8"),
+        )
     )
     assert {("contact", "#1f5fa8"), ("building", ""), ("tools", "")} <= set(drawn)
     assert committed == drawn, "write it again: python docs/figures.py house"

@@ -307,7 +307,7 @@ def _resolve_alias(
     allowed_units: Mapping[str, UnitSizes],
     aliases: Mapping[str, Sequence[str]],
 ) -> str:
-    """Return the column that has `word` as an alias and allows the unit; else `word` itself."""
+    """Return the column that has `heading_name` as an alias and allows the unit; else `heading_name`."""
     for name, words in aliases.items():
         if heading_name in words and name in allowed_units and unit is not None:
             with suppress(ValueError):

@@ -17,7 +17,7 @@ from jointfmu_tools.joints.harmonic_drive.fit.log_friction import motor_friction
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from matplotlib.figure import Figure
 from oracles import robot_log
-from oracles.robot_log import CASES, TRUE, fit_log
+from oracles.robot_log import CASES, TRUE_VALUES, fit_log
 
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -55,7 +55,7 @@ def check_friction(found, undetermined=frozenset()):
     assert not any("--motor-inertia" in note for note in found.notes)
     assert found.facts["held_out"][0] < 0.1 * found.facts["held_out_constant"][0]
     for label, deviation in found.solution.relative_deviations.items():
-        assert abs(math.log(found.parameters.values_by_name[label] / TRUE[label])) < 4.0 * deviation
+        assert abs(math.log(found.parameters.values_by_name[label] / TRUE_VALUES[label])) < 4.0 * deviation
         if label in undetermined:
             assert label not in found.confidence_intervals
             continue
@@ -106,7 +106,7 @@ def test_a_load_that_is_measured_gives_the_losses(tmp_path):
         paths[-1].write_text(columns.format_table(heads, [np.full(8, held), 1e3 * torque, dq]))
     found = log.fit(paths, start)
     for name in ("friction_coulomb", "friction_stribeck", "friction_viscous", "load_loss", "load_loss_back"):
-        assert found.parameters.values_by_name[name] == pytest.approx(TRUE[name], rel=1e-3)
+        assert found.parameters.values_by_name[name] == pytest.approx(TRUE_VALUES[name], rel=1e-3)
     assert any("viscous_temperature_coefficient" in note for note in found.notes)
     figure = Figure(outcome.figure_size(found), layout="constrained")
     outcome.draw_fit(figure, found)

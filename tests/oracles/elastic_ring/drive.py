@@ -28,10 +28,10 @@ from .nodes import Footprint
 from .ring import Circle, Ring
 
 Array = NDArray[np.float64]
-_ALONG = np.polynomial.legendre.leggauss(6)
-HEIGHTS, HEIGHT_WEIGHTS = 0.5 * (1.0 + _ALONG[0]), 0.5 * _ALONG[1]
+_SECTION_QUADRATURE = np.polynomial.legendre.leggauss(6)
+HEIGHTS, HEIGHT_WEIGHTS = 0.5 * (1.0 + _SECTION_QUADRATURE[0]), 0.5 * _SECTION_QUADRATURE[1]
 """Sections along the contact from 0 to 1 and their weights [1]."""
-_PRESSED = 5e-6
+_START_OVERLAP = 5e-6
 """Overlap [m] of the balls at the start of Newton's method; a tenth of it between the rings."""
 
 
@@ -200,7 +200,9 @@ def _start(circle: Circle, cam: _Cam, turn: float) -> Array:
         return circle.unknowns(lambda t: value(t + turn) - less, lambda t: slope(t + turn))
 
     v = unknowns(cam.tangential, cam.tangential_slope, 0.0)
-    flexspline, bearing = (unknowns(cam.radial, cam.slope, less) for less in (1.1 * _PRESSED, _PRESSED))
+    flexspline, bearing = (
+        unknowns(cam.radial, cam.slope, less) for less in (1.1 * _START_OVERLAP, _START_OVERLAP)
+    )
     return np.concatenate([flexspline, v, bearing, v])
 
 

@@ -51,24 +51,28 @@ def on_oval(ring: Ring, radius: float, deformation: float) -> OnOval:
     Raises ValueError if the ring is so thin, or so thick, that it lies on all or hardly any of the oval.
     """
 
-    def free(half: float) -> tuple[float, float, float]:
+    def free_part_constants(half: float) -> tuple[float, float, float]:
         """Constants A, B, c of the free part within +-half about the minor axis."""
         sine, cosine = np.sin(half), np.cos(half)
         slopes = [[-sine, sine + half * cosine], [-cosine, 2.0 * cosine - half * sine]]
         a, b = np.linalg.solve(slopes, [2.0 * np.sin(2.0 * half), 4.0 * np.cos(2.0 * half)])
         return float(a), float(b), float(a * cosine + b * half * sine + np.cos(2.0 * half))
 
-    def stretch(half: float) -> float:
+    def stiffness_ratio_at(half: float) -> float:
         """Ratio D/(A r^2) at which the ring leaves the oval at this angle."""
-        a, b, c = free(half)
+        a, b, c = free_part_constants(half)
         off = -c * half + a * np.sin(half) + b * (np.sin(half) - half * np.cos(half))
         return float((off + 0.5 * np.sin(2.0 * half)) / (0.5 * np.pi * c))
 
-    share, low, high = ring.D / (ring.A * radius**2), stretch(_HALVES[0]), stretch(_HALVES[1])
+    share, low, high = (
+        ring.D / (ring.A * radius**2),
+        stiffness_ratio_at(_HALVES[0]),
+        stiffness_ratio_at(_HALVES[1]),
+    )
     if not low < share < high:
         raise ValueError(f"D/(A r^2) = {share:g} is outside ({low:.2g}, {high:.2g}): a thin ring that bends")
-    half = brentq(lambda x: stretch(x) - share, *_HALVES, xtol=1e-14)
-    a, b, c = free(half)
+    half = brentq(lambda x: stiffness_ratio_at(x) - share, *_HALVES, xtol=1e-14)
+    a, b, c = free_part_constants(half)
     third = a * np.sin(half) - b * (3.0 * np.sin(half) + half * np.cos(half))
     unit = ring.D * deformation / radius**4
     return OnOval(

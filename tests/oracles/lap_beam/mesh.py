@@ -64,7 +64,7 @@ def bodies(beam, view, size):
 
 def contact(beam, view):
     """Plane mesh of the contact."""
-    touching = (np.abs(view.centres[0]) < 0.5 * beam.lap) & ~view.within(0.5 * beam.hole, beam.holes)
+    touching = (np.abs(view.centres[0]) < 0.5 * beam.lap) & ~view.cells_within(0.5 * beam.hole, beam.holes)
     used, cells = np.unique(view.cells[:, touching], return_inverse=True)
     return MeshQuad(np.ascontiguousarray(view.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1)))
 
@@ -72,9 +72,9 @@ def contact(beam, view):
 def _half(beam, view, size, side):
     """Mesh of half 1 or 2 of the beam, extruded level by level from the plan."""
     end, out = 0.5 * beam.lap, 1.0 if side == 2 else -1.0
-    x, drilled = view.centres[0] * out, view.within(0.5 * beam.hole, beam.holes)
+    x, drilled = view.centres[0] * out, view.cells_within(0.5 * beam.hole, beam.holes)
     arm, own = x > end, (x > -end) & ~drilled
-    under = view.within(0.5 * beam.washer, beam.holes)
+    under = view.cells_within(0.5 * beam.washer, beam.holes)
     height = 0.5 * beam.side
     levels = height * size.levels
     slabs = [(-z, arm) for z in levels[:0:-1]] + [(z, own) for z in levels[:-1]]

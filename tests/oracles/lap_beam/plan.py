@@ -44,7 +44,7 @@ class Plan:
     def __post_init__(self):
         object.__setattr__(self, "centres", self.points[:, self.cells].mean(axis=1))
 
-    def within(self, radius, places):
+    def cells_within(self, radius, places):
         """Mask (m) of the cells within a radius [m] of positions along x."""
         x, y = self.centres
         return np.any([np.hypot(x - at, y) < radius for at in places], axis=0) if places else x > np.inf

@@ -141,7 +141,7 @@ class ReducedBeam:
 
 def spectrum(structure, springs, count=3):
     """Frequencies [Hz] and shapes (n, count) of the lowest modes; modal mass of the whole beam 1 kg."""
-    free = _free(structure)
+    free = _free_unknowns(structure)
     stiffness = structure.stiffness(springs)[free][:, free]
     mass = sp.block_diag([body.mass for body in structure.bodies], format="csr")[free][:, free]
     shift = -((2.0 * np.pi * SHIFT) ** 2)
@@ -155,7 +155,7 @@ def spectrum(structure, springs, count=3):
     return np.sqrt(np.maximum(squares[order], 0.0)) / (2.0 * np.pi), whole
 
 
-def _free(structure):
+def _free_unknowns(structure):
     """Unknowns of both bodies that the symmetry leaves free."""
     first, second = structure.symmetric
     size = structure.bodies[0].unknown_count
@@ -199,7 +199,7 @@ def _tip(structure):
 def _compliance(structure, springs):
     """Compliance (3 P, 3 P) [m/N] of the patches for pairs of opposite forces, ordered by patch, then x, y,
     z."""
-    free = np.setdiff1d(_free(structure), pinned_unknowns(structure.bodies[0]))
+    free = np.setdiff1d(_free_unknowns(structure), pinned_unknowns(structure.bodies[0]))
     factor = Cholesky(structure.stiffness(springs)[free][:, free])
     stacked = sp.vstack([structure.relative(axis) for axis in AXES]).tocsr()
     count = stacked.shape[0] // 3

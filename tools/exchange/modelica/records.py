@@ -196,7 +196,7 @@ class ModelicaRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelicaComponent:
-    """Modelica component of a joint: the constant COMPONENT in the folder `modelica` of the joint.
+    """Modelica component of a joint: MODELICA_COMPONENT in the folder `modelica` of the joint.
 
     This folder has the templates Components/NAME.mo and Data/BASE.mo. The template of the component gets the
     variables `meta` (meanings of the parameters), `docs` (meanings of inputs and outputs), `html` (sections

@@ -353,7 +353,11 @@ def _compute_position_factors(normalised_pressure: PressureDistribution) -> Arra
 
 
 def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
-    """Scales (m, 9) of sums (m, 9); radius_x and radius_y [m] are the radii of gyration of the contact."""
+    """Sizes (m, 9) to which deviations of the 9 sums are related, in m load cases.
+
+    sums               : (m, 9)
+    radius_x, radius_y : [m] radii of gyration of the contact
+    """
     p = sums[:, 0]
     k = sums[:, 3]
     x_scale = COUPLING_TOLERANCE_FACTOR * radius_x

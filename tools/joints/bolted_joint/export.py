@@ -47,7 +47,7 @@ def springs_of_joint(
     """Springs at the joint's own pressure nodes, for a preload [N] per bolt and a moment [N.m].
 
     Every node becomes a pair of coincident nodes with consecutive labels: the node of
-    side 1, then that of side 2. The first label is `first_label`.
+    side 1, then that of side 2. The first label is `first_node_label`.
     """
     count = spring.points.area_share.size
     labels = first_node_label + np.arange(2 * count, dtype=np.int64).reshape(2, count).T

@@ -35,7 +35,7 @@ def run_fmpy(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows
 
 
 def read_start_values(experiment_task: ExperimentTask, messages: list[str]) -> list[list[Any]]:
-    """Read the start values of the variables `task.outputs`, of any type, in fmpy: one row."""
+    """Read the start values of the variables `experiment_task.outputs`, of any type, in fmpy: one row."""
     exchanged = experiment_task.interface == MODEL_EXCHANGE
     with open_instance(
         experiment_task.folder,

@@ -40,7 +40,7 @@ class ExpectedFmuContents:
 
 
 def prove(fmu: Path, importer: str = "fmpy", expected_contents: ExpectedFmuContents | None = None) -> Proof:
-    """Execute all experiments in the manifest of an FMU, or in the manifest of `expected`.
+    """Execute all experiments in the manifest of an FMU, or in that of `expected_contents`.
 
     Raises ValueError, one line: no FMU, an FMU that does not run on this platform, no manifest, a broken
     manifest, an importer that is not installed or does not support the FMI version of the FMU.

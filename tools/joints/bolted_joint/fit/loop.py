@@ -178,7 +178,7 @@ def _masing_deviation(joint: AnyBoltedJoint, preload: float, loops: Loops, law: 
 def shear_stiffness_at_rest(joint: AnyBoltedJoint, preload: float) -> float:
     """Shear stiffness K_xx [N/m] at rest, at a preload [N] of each bolt.
 
-    Raises ValueError as `first_loading`.
+    Raises ValueError as `_preloaded_interface`.
     """
     curve, approach, weight = _preloaded_interface(joint, preload)
     if joint.has_elastic_members:

@@ -4,9 +4,9 @@
 It adds the friction torque of the exported drive: the angle between the branches at zero torque determines
 `hysteresis_loss`, the change of the torque after a reversal determines `hysteresis_stiffness`.
 
-`fit_log` also determines the stiffness. It needs a log with the angles of both joint and motor. The wind-up
-is the joint angle minus the motor angle over the ratio; the torque is that of the teeth. The friction torque
-follows the measured wind-up. The zero of the wind-up is a further unknown.
+`fit_robot_log` also determines the stiffness. It needs a log with the angles of both joint and motor. The
+wind-up is the joint angle minus the motor angle over the ratio; the torque is that of the teeth. The friction
+torque follows the measured wind-up. The zero of the wind-up is a further unknown.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -150,7 +150,7 @@ def _set_start_hysteresis(
 STIFFNESS_NAMES = ("K1", "K2", "K3")
 """Stiffnesses of the law `catalogue`. The fit to a log needs this law."""
 ROBOT_LOG_FITTED_PARAMETERS = (*STIFFNESS_NAMES, HYSTERESIS_LOSS_NAME)
-"""Parameters that `fit_log` can fit."""
+"""Parameters that `fit_robot_log` can fit."""
 ROTOR_INERTIA_NAME = "motor_inertia"
 """Name of the unknown inertia of the rotor, which is fitted if the user does not state it."""
 DEFAULT_HYSTERESIS_LOSS = 0.3 * RAD_PER_ARCMIN
@@ -178,7 +178,7 @@ def fit_rotor_inertia(
 ) -> tuple[float, float] | None:
     """Fit the inertia of the rotor to measured wind-ups (n) [rad].
 
-    torques, torque_changes : as in `fit_log`, for a rotor without inertia
+    torques, torque_changes : as in `fit_robot_log`, for a rotor without inertia
     torque_per_inertia      : (n) [N.m/(kg.m2)] change of the torque by the inertia of the rotor
     max_inertia             : [kg.m2] upper bound: the total inertia belongs to the rotor
 
@@ -244,7 +244,7 @@ def _fit_wind_ups(
     """Fit stiffness and hysteresis to wind-ups (n) [rad]; return solution and wind-up (n) [rad] of the law.
 
     torque         : {name: value} -> torque (n) [N.m]
-    torque_changes : as in `fit_log`
+    torque_changes : as in `fit_robot_log`
     extra_unknowns : on which the torque depends
     """
     begin = (
