@@ -1,4 +1,4 @@
-"""Time of the first build of an FMU, which is compiled, over that of variants, which take the compiled model.
+"""Time of the first build of an FMU, which compiles, over that of variants, which use the compiled model.
 
     python benchmarks/build.py [--quick]
 

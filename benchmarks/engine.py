@@ -1,4 +1,4 @@
-"""Times of what evaluates a joint at many points: by the library of its FMU, and by the Python law.
+"""Times to evaluate a joint at many points: by the library of its FMU, and by the Python law.
 
     python benchmarks/engine.py [--library-alone]
 

@@ -1,4 +1,4 @@
-"""Time of the laboratory to redraw when a slider moves, in headless Chromium; and pictures of its pages.
+"""Time of the laboratory page to redraw when a slider moves, in headless Chromium; and pictures of its pages.
 
     python benchmarks/laboratory.py [--quick] [--pictures DIR]
 

@@ -1,4 +1,4 @@
-"""The reference of `import jointfmu` as a page: signatures and help as Python itself has them."""
+"""Page on the public interface `import jointfmu`: signatures and help of Python."""
 
 import inspect
 import re

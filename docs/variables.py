@@ -1,4 +1,4 @@
-"""Tables of the variables of all FMUs for the page variables.md, from the list that the FMUs are made of."""
+"""Tables of the variables of all FMUs for the page variables.md, from the declared variables."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A drive by its name: the resonance of an axis rises with the torque that its drive carries."""
+"""A drive by its name: the resonance of an axis increases with the torque on its drive."""
 
 import matplotlib.pyplot as plt
 import numpy as np

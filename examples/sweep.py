@@ -1,4 +1,4 @@
-"""What is not known of a joint becomes a band: an FMU over many samples. Needs the extra `uncertainty`."""
+"""Uncertain parameters of a joint give a band: an FMU over many samples. Needs the extra `uncertainty`."""
 
 import csv
 import subprocess

@@ -1,4 +1,4 @@
-"""Table of docs/export_reference.md: exported joints in CalculiX (`ccx`) beside the package.
+"""Table of docs/export_reference.md: exported joints in CalculiX (`ccx`) compared with the package.
 
 python studies/export_reference.py
 """

@@ -1,4 +1,4 @@
-"""Figures of docs/fields_explanation.md: points, patches and sliders of a bolted contact beside all its
+"""Figures of docs/fields_explanation.md: points, patches and sliders of a bolted contact against all its
 nodes.
 
     python studies/fields_explanation.py [SECTION ...]

@@ -1,4 +1,4 @@
-"""Figures of docs/models_explanation.md on elastic plates: the reduced joint of the README beside finite
+"""Figures of docs/models_explanation.md on elastic plates: reduced joint of the README against finite
 elements.
 
     python studies/models_explanation.py [SECTION ...] [--cells N] [--paths N]

@@ -1,4 +1,4 @@
-"""Figures of docs/validity_bolted_joint.md: the complete bolted joint beside standards, finite elements and
+"""Figures of docs/validity_bolted_joint.md: complete bolted joint against standards, finite elements and
 beams.
 
     python studies/validity_bolted_joint.py [SECTION ...]

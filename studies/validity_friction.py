@@ -1,4 +1,4 @@
-"""Figures of docs/validity_friction.md: partial slip by boundary elements beside the prediction from the
+"""Figures of docs/validity_friction.md: partial slip by boundary elements against the prediction from the
 normal curve.
 
     python studies/validity_friction.py [--images]

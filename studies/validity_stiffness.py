@@ -1,4 +1,4 @@
-"""Figures of docs/validity_stiffness.md: interface laws beside boundary elements and measured joints.
+"""Figures of docs/validity_stiffness.md: interface laws against boundary elements and measured joints.
 
     python studies/validity_stiffness.py [SECTION ...] [--images]
 

@@ -1,4 +1,4 @@
-"""Random cases are the same in every run, so a failure can be replayed. FMUs are built once."""
+"""Fixtures of all tests. Random cases are the same in every run; FMUs are built once."""
 
 import gc
 import json

@@ -1,4 +1,4 @@
-"""Building: what comes out, and that a failure says why and leaves nothing behind."""
+"""Build of FMUs: its files, its error messages, and that a failed build leaves nothing behind."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Model descriptions: the public variables, their units, and what the standard asks for."""
+"""Model descriptions of FMUs: public variables, units, and requirements of the standard."""
 
 import ast
 import math

@@ -1,4 +1,4 @@
-"""Instances, threads, builds and hosts that share a process do not see each other."""
+"""Instances, threads, builds and hosts in one process do not affect each other."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Bad values are refused with one line that names them; a refusal harms nothing else."""
+"""Invalid values are refused with one line that names them; a refusal has no other effect."""
 
 import json
 import math

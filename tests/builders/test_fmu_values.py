@@ -1,4 +1,4 @@
-"""Numbers of the FMUs: equal to the package's laws, at once, and consistent among themselves."""
+"""Outputs of the FMUs: equal to the package's laws, at any time, and consistent with each other."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""FMUs of parameter files with the law `roughness`: both languages give the package's numbers."""
+"""FMUs of parameter files with the law `roughness`: Python and C give the numbers of the package."""
 
 from collections.abc import Callable
 from pathlib import Path

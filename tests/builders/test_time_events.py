@@ -1,4 +1,4 @@
-"""Loads over time in model exchange: their corners are time events, so that no solver steps over a pulse."""
+"""Loads over time in model exchange: their corners are time events, so that solvers do not miss a pulse."""
 
 import ctypes
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""`jointfmu cache`: what is kept, that nothing else is removed, and whose files are trusted."""
+"""`jointfmu cache`: which files it stores, removes, and accepts from the disk."""
 
 import io
 import json

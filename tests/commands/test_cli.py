@@ -1,4 +1,4 @@
-"""The command line: what it prints, its exit status, and one line for whatever it refuses."""
+"""Command line: printed results, exit status, and one line for each invalid input."""
 
 import json
 import math

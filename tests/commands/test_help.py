@@ -1,4 +1,4 @@
-"""The help of every command: an example that works, and the list of what can be set."""
+"""Help of every command: an example that works, and the list of settings."""
 
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""A wrong word is answered with the nearest right one, a number in another unit with what is possible."""
+"""Errors for a wrong word suggest the nearest right one; errors for a number suggest the likely unit."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Outputs of commands: no input is lost, no foreign file is replaced unasked, devices are written to."""
+"""Output files of commands: inputs and foreign files are not overwritten unasked; devices can be written."""
 
 import os
 import stat

@@ -1,4 +1,4 @@
-"""The command line as a whole: its help in groups, completion in a shell, what a build replaces."""
+"""Command line in a shell: grouped help, completion, and files that a build replaces."""
 
 import io
 import json

@@ -1,4 +1,4 @@
-"""Hu 2023: sums over spots by quadrature of the paper's equations, its closed forms, its numbers."""
+"""Law of Hu 2023 against quadrature of the paper's equations, closed forms and printed numbers."""
 
 from dataclasses import dataclass
 from math import exp, log, pi, sqrt

@@ -1,4 +1,4 @@
-"""Yu 2022: sums over spots by quadrature of the paper's equations, corrected, and its closed forms."""
+"""Law of Yu 2022 against quadrature of the paper's corrected equations, and closed forms."""
 
 from dataclasses import dataclass
 from math import exp, log, pi, sqrt

@@ -1,4 +1,4 @@
-"""Zhao 2018: sums over spots by quadrature of the paper's equations, and its closed forms, corrected."""
+"""Law of Zhao 2018 against quadrature of the paper's equations, and corrected closed forms."""
 
 from dataclasses import dataclass
 from math import log, pi, sqrt

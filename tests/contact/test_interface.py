@@ -1,4 +1,4 @@
-"""From pressure to largest spot to stiffness: the inversion, its limits, and what every law must obey."""
+"""Inversion from pressure to largest spot and stiffness, its limits, and properties of every law."""
 
 from dataclasses import fields, is_dataclass, replace
 

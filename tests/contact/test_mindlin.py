@@ -1,4 +1,4 @@
-"""Partial slip of one spot: published formulas, their limits, and the loop itself."""
+"""Partial slip of one spot: published formulas, their limits, and the friction loop."""
 
 import math
 

@@ -1,4 +1,5 @@
-"""The one integral: against adaptive quadrature, through its removable singularity, clipped to a_L."""
+"""Integral of a power law over the spots: against adaptive quadrature, at its removable
+singularity, clipped."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""What is known of the surfaces: the sections of parameter files for it, and the level it stands for."""
+"""Surface heights in parameter files, and the stiffness estimate that follows from them."""
 
 import math
 import re

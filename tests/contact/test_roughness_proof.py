@@ -1,4 +1,4 @@
-"""The law `roughness` against boundary elements on fresh surfaces, measured joints, a published contact law.
+"""Law `roughness` against boundary elements on new surfaces, measured joints, and a published contact law.
 
 The tables of docs/validity_stiffness.md come from studies/validity_stiffness.py. The tests have few surfaces,
 with other seeds, and every measured joint. Bounds are those that the law has to keep.

@@ -1,4 +1,4 @@
-"""What stands beside every stiffness: its level over that of the roughness, and where the law ends."""
+"""Judgement printed with every stiffness: ratio to the estimate from roughness, range of the law."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""CalculiX runs what is exported: its displacements are the package's.
+"""Exported joints in CalculiX: the displacements are those of the package.
 
 Without the solver (Debian's calculix-ccx) these tests skip.
 """

@@ -1,4 +1,4 @@
-"""The command `jointfmu export`: what it writes, says and refuses."""
+"""Command `jointfmu export`: written files, messages, refusals."""
 
 import json
 import re

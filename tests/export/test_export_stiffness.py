@@ -1,4 +1,4 @@
-"""The stiffness of a complete joint in each format: read back, its node moves as the 6 x 6 compliance says.
+"""Stiffness of a complete joint in each format: read back, the node moves by the 6 x 6 compliance.
 
 The expected displacement of a loaded node does not use the rigid arms of the package: the load of the node is
 moved to the centroid, the compliance gives the motion there, and the node follows as a point of a rigid body.

@@ -1,4 +1,4 @@
-"""Tables of curves: their errors are what they say, and every format is read back by others."""
+"""Tables of curves: their stated errors, and each format read by another program."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""The contact of two elastic bodies against closed forms, and the balance of bolted joints."""
+"""Contact of two elastic bodies against closed forms, and equilibrium of bolted joints."""
 
 from dataclasses import replace
 from itertools import pairwise

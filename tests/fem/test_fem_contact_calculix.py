@@ -1,4 +1,4 @@
-"""The same two plates, opening at their ends, in CalculiX: its own elements, its own contact."""
+"""Two plates that open at their ends, by CalculiX with its own elements and contact."""
 
 import subprocess
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""`jointfmu footprint compute`: what it prints, writes and refuses."""
+"""`jointfmu footprint compute`: printed results, written files, refusals."""
 
 import json
 import math

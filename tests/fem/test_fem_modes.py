@@ -1,4 +1,4 @@
-"""Modes of two bodies on the springs of their contact, against closed forms."""
+"""Modes of two bodies on contact springs, against closed forms."""
 
 from dataclasses import dataclass, replace
 

@@ -1,4 +1,4 @@
-"""`jointfmu modes`: what it prints, writes and refuses."""
+"""`jointfmu modes`: printed results, written files, refusals."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The whole bolted joint between its attachments: members, interface and bolts."""
+"""Complete bolted joint between its attachments: members, interface and bolts."""
 
 from dataclasses import replace
 from types import SimpleNamespace

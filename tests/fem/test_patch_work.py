@@ -1,4 +1,4 @@
-"""Few patches whose friction works on the modes of elastic sides as the whole contact does."""
+"""Friction patches whose work on the modes of elastic members is that of the complete contact."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""ANSYS archives (CDWRITE) beside listings of contact pressure."""
+"""ANSYS archives (CDWRITE) together with listings of contact pressure."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,5 @@
-"""Nodal contact results from files: areas from faces, formats, and what is refused with its place."""
+"""Nodal contact results from files: formats, areas from faces, and refusals that name the place in
+the file."""
 
 from pathlib import Path
 

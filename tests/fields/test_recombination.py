@@ -1,4 +1,4 @@
-"""Few nodes keep the sums of many."""
+"""Selection of few nodes that keep the sums over many nodes."""
 
 import numpy as np
 from jointfmu_tools.inputs.fields.reduction import recombine_weights

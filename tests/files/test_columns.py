@@ -1,4 +1,4 @@
-"""CSV with units: what is written is read back to the last bit, and every fault is named with its place."""
+"""CSV files with units: numbers are read back to the last bit, and each fault is named with its place."""
 
 import csv
 

@@ -1,4 +1,4 @@
-"""The name that a user gives an FMU: what is refused."""
+"""Names that a user may give to an FMU, and refused names."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Parameter files: what is read is what was written, and what is wrong is named in one line."""
+"""Parameter files: a written file is read back, and a fault is named in one line."""
 
 import os
 import tomllib

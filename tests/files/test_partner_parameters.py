@@ -1,4 +1,4 @@
-"""The partners' parameter files: one each, with sources; what is wrong in one is named in one line."""
+"""Parameter files of the partners: one each, with sources; a fault is named in one line."""
 
 from pathlib import Path
 

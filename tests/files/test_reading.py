@@ -1,4 +1,4 @@
-"""What is read: archives are measured before they are unpacked, pipes and devices are refused at once."""
+"""Input files: archives are checked before they are unpacked; pipes and devices are refused at once."""
 
 import os
 import re

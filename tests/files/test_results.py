@@ -1,4 +1,4 @@
-"""Results that the tools keep between processes: the same bits, and computed where they cannot be kept."""
+"""Results that tools store between processes: equal bits, and computed anew where they cannot be stored."""
 
 import subprocess
 import sys

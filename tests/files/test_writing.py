@@ -1,4 +1,4 @@
-"""Files and folders that are written whole or not at all, and refused before the work."""
+"""Output files and folders: written completely or not at all, and refused before the work starts."""
 
 import errno
 import os

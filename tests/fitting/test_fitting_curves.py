@@ -1,4 +1,4 @@
-"""Fits of measured curves: round trips, what the data do not determine, loops, bad files."""
+"""Fits of measured curves: round trips, undetermined parameters, loops, faulty files."""
 
 import json
 from dataclasses import replace

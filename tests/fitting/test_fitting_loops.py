@@ -1,4 +1,4 @@
-"""Fits of joints with memory: the law of a loop, what is read off data, round trips, refused files."""
+"""Fits of joints with hysteresis: law of a loop, quantities read from data, round trips, refused files."""
 
 import json
 from dataclasses import replace

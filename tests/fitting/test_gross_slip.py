@@ -1,4 +1,4 @@
-"""Loops in gross slip: stiffness after reversals, plateau, work of the loop, clearance, unit guesses."""
+"""Loops in gross slip: stiffness after reversals, plateau, work, clearance, unit suggestions."""
 
 import json
 from pathlib import Path

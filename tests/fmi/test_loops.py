@@ -1,4 +1,4 @@
-"""Loops of FMUs: how the input is driven, which output belongs to it, what is lost."""
+"""Load cycles of FMUs: path of the input, conjugate output, dissipated energy."""
 
 import json
 

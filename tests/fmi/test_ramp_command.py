@@ -1,4 +1,4 @@
-"""`jointfmu ramp`: chosen columns, a table on a terminal, a picture."""
+"""`jointfmu ramp`: selected columns, table on a terminal, picture."""
 
 import json
 import sys

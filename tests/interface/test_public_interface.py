@@ -1,4 +1,4 @@
-"""`import jointfmu`: what a notebook finds there."""
+"""Public interface `import jointfmu`, as used in a notebook."""
 
 import doctest
 import json

@@ -1,4 +1,4 @@
-"""Inputs that are wrong or unusual get one line that says what to do, in Python and on the command line."""
+"""Wrong or unusual inputs give one line with advice, in Python and on the command line."""
 
 from dataclasses import dataclass
 

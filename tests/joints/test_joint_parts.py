@@ -1,4 +1,4 @@
-"""What builders and tools know of a joint: named, and a wrong name fails at import."""
+"""Modules of a joint for builders and tools: they are named, and a wrong name fails at import."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Adding a joint is adding a folder: a joint of another package, under 100 lines, through the whole chain."""
+"""Toy joint of another package in less than 100 lines, through all tools: a new joint is a new folder."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Tables of monotone force laws: the spline, its inverse, its error, and the approach of an interface."""
+"""Tabulated monotone force laws: spline, inverse, interpolation error, approach of an interface."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""The layout of a memory: its parts are found again where C finds them."""
+"""Layout of history variables: Python and C use the same positions."""
 
 import numpy as np
 

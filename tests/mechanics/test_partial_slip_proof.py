@@ -1,4 +1,4 @@
-"""Friction with memory against boundary elements with partial slip, which know nothing of its theory.
+"""Friction with history against boundary elements with partial slip, an independent method.
 
 The tables of docs/validity_friction.md come from studies/validity_friction.py. The tests have surfaces of
 other seeds, on 64 points. Bounds on displacements and loops are those that the theory keeps where many hills

@@ -1,4 +1,4 @@
-"""Few patches stand for the nodes of a bolted contact."""
+"""Points and patches that represent the nodes of a bolted contact."""
 
 from functools import cache
 

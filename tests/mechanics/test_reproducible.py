@@ -1,4 +1,4 @@
-"""Points and patches of a contact do not hang on the last bits of what they are made of."""
+"""Points and patches of a contact do not depend on the last bits of their inputs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Friction with memory: the sliders against closed forms and against many springs, and laws of any path.
+"""Friction sliders with history: closed forms, many springs, and properties for any path.
 
 The sphere's load is the approach to the power 1.5. Tolerances of forces and losses that come from the
 number of heights are about twice what studies/fields_explanation.py prints for as many.

@@ -1,4 +1,4 @@
-"""The stable steps that joints state, against the eigenvalues of a body and a joint that step as FMUs do."""
+"""Stable steps that joints output, against the eigenvalues of a body and a joint in co-simulation."""
 
 import numpy as np
 import pytest

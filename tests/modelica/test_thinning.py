@@ -1,4 +1,4 @@
-"""Which nodes are kept: as far apart as fits, stops among them, with few questions."""
+"""Selection of nodes of a table: segments as long as allowed, with fixed nodes, and few evaluations."""
 
 import numpy as np
 import pytest

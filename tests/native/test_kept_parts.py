@@ -1,4 +1,4 @@
-"""Variants of an FMU without a compiler: what parts are kept by, and that data and code fit together."""
+"""Variants of an FMU without compiler: keys of the compiled parts, and agreement of data and code."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""The five binaries of each native FMU: what they export and need, that they repeat, and what fails how.
+"""Binaries of native FMUs for five platforms: exports, dependencies, reproducibility, error messages.
 
 macOS binaries cannot run here; their load commands and signatures are checked instead.
 """

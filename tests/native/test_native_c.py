@@ -1,4 +1,4 @@
-"""The C sources of every native FMU: two compilers' warnings, with sanitizers, in and out of order, fuzzed.
+"""C sources of all native FMUs: warnings of two compilers, sanitizers, order of calls, fuzzing.
 
 The programs in tests/native/hosts drive both FMI versions of a joint. Joints of their own there test the
 runtime alone: `dummy` has everything a joint without memory can have, `passthrough` the least, `slider` a

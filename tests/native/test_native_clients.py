@@ -1,4 +1,4 @@
-"""Native FMUs in clients that are not fmpy: CasADi's import, ecos and libcosim, in processes of their own."""
+"""Native FMUs in other clients than fmpy: CasADi, ecos and libcosim, in processes of their own."""
 
 import itertools
 import json

@@ -1,4 +1,4 @@
-"""What describes a native FMU: XML of FMI 2.0 and 3.0, terminals, icons and the page."""
+"""Descriptions of a native FMU: XML of FMI 2.0 and 3.0, terminals, icons and page."""
 
 import csv
 import io

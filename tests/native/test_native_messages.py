@@ -1,4 +1,4 @@
-"""What native FMUs warn of, refuse and log: the same words as the python flavour's."""
+"""Warnings, refusals and log messages of native FMUs: the same words as in the python flavour."""
 
 import math
 from typing import Any

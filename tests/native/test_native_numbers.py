@@ -1,4 +1,4 @@
-"""Numbers of the package in the C of the native FMUs: C follows when one changes, or the build refuses."""
+"""Constants of the package in the C of native FMUs: a change reaches the C, or the build refuses."""
 
 import re
 import subprocess

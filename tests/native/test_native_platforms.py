@@ -1,4 +1,4 @@
-"""Binaries for other platforms, run: Windows in wine, Linux aarch64 in qemu; both against Linux x86_64.
+"""Binaries for Windows (in Wine) and Linux aarch64 (in QEMU) against Linux on x86_64.
 
 The hosts in tests/native/hosts are built for each platform by the same compiler as the FMUs. macOS is not
 run. Where there is no C library of aarch64 to load a binary with, programs that need none are run all the

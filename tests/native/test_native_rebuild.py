@@ -1,4 +1,4 @@
-"""Native FMUs compiled again from their own sources, as a recipient of the sources would."""
+"""Native FMUs compiled again from their own sources, as by a recipient of the sources."""
 
 import os
 import subprocess

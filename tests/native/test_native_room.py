@@ -1,4 +1,4 @@
-"""What a running FMU takes: no allocation after initialization, less than a page of stack in any function."""
+"""Memory of a running FMU: no allocation after initialization, functions with less than a page of stack."""
 
 import ctypes
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Native FMUs keep their state: saved, as bytes, after a reset, beside other instances and threads."""
+"""States of native FMUs: saved, as bytes, after a reset, with other instances and threads."""
 
 import json
 from concurrent.futures import ThreadPoolExecutor

@@ -1,4 +1,4 @@
-"""One slider in C against Python: the generated rule and the loops around it, compiled without an FMU."""
+"""Friction sliders in C against Python: generated return mapping and the loops around it, without an FMU."""
 
 from collections.abc import Iterator
 from ctypes import CDLL, POINTER, Structure, byref, c_double, c_int

@@ -1,4 +1,4 @@
-"""CalculiX (`ccx`): exported joints beside the package, and bodies of the finite elements as its input.
+"""CalculiX (`ccx`): exported joints compared with the package, and finite-element bodies as its input.
 
 Cases: two rigid bodies on the springs of the joint's nodes; two elastic blocks on springs between the nodes
        of their

@@ -1,4 +1,4 @@
-"""Force, stiffness and friction of a bolted contact on all its nodes, and on few points or patches."""
+"""Force, stiffness and friction of a bolted contact: all nodes against few points or patches."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

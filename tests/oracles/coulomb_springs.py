@@ -1,4 +1,4 @@
-"""Coulomb friction by many independent springs, each with one touch and one limit.
+"""Coulomb friction by many independent springs, each with its own first contact and friction limit.
 
 The springs represent a convex curve p(delta). Each moves by the radial return of plasticity. The code is
 independent of the package's sliders.

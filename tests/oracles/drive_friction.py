@@ -1,4 +1,4 @@
-"""Friction of catalogue drives, each from the other drives, and of the base joint of a UR5e robot."""
+"""Friction of each catalogue drive from the other drives, and of the base joint of a UR5e robot."""
 
 import csv
 from importlib.resources import files

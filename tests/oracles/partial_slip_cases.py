@@ -1,4 +1,4 @@
-"""Partial slip of rough contacts: boundary elements beside the prediction from the normal curve alone.
+"""Partial slip of rough contacts: boundary elements against the prediction from the normal curve.
 
 The friction coefficient is 1: it scales forces and displacements alike. Jaeger and Ciavarella predict the
                                force

@@ -1,4 +1,4 @@
-"""Synthetic logs of a robot's joint with known friction, and the fit that should find the friction again.
+"""Synthetic logs of a robot joint with known friction, and the fit of this friction.
 
 An arm on the exported spring of the package swings under gravity while the drive warms up. The log has a
 quantized encoder and a noisy current. A second kind of log is a table of steady speeds.

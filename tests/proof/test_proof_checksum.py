@@ -1,4 +1,4 @@
-"""Related files with a checksum in the manifest: read if they are the file, refused if they are not."""
+"""Related files with a checksum in the manifest: read if it agrees, else refused."""
 
 import hashlib
 import zipfile

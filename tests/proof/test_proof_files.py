@@ -1,4 +1,4 @@
-"""The files of FMI-LS-REF that builders put into FMUs: schemas, references, neighbours, what they say."""
+"""Files of FMI-LS-REF in FMUs: schemas, references, boundary values, text."""
 
 import io
 import math

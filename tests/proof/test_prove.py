@@ -1,4 +1,5 @@
-"""`jointfmu prove`: FMUs prove themselves in three importers; what was tampered with fails by name."""
+"""`jointfmu prove`: FMUs pass their own proof in three importers; a changed FMU fails, and the fault is
+named."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""`jointfmu prove` with an FMU and manifests of others: a neuron in C, with events of each kind."""
+"""`jointfmu prove` with an FMU and manifests of others: a neuron model in C with events of each kind."""
 
 import subprocess
 import sys

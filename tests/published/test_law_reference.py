@@ -1,4 +1,4 @@
-"""Reference values of the laws: a law that moves by 1 % is missed."""
+"""Reference values of the laws: a law with a change of 1 % fails."""
 
 from dataclasses import replace
 from importlib.resources import files

@@ -1,4 +1,4 @@
-"""Published numbers: all met, the fits read the calibration points alone, and a miss is reported."""
+"""Published numbers: all are met, fits use calibration points only, and a miss is reported."""
 
 import re
 from dataclasses import replace

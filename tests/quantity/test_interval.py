@@ -1,4 +1,4 @@
-"""One interval for declarations, limits, samples, fits and model descriptions."""
+"""Intervals of declarations, limits, samples, fits and model descriptions."""
 
 import math
 import sys

@@ -1,4 +1,4 @@
-"""Every refusal is one line that names the thing, the value with its unit, and what is allowed."""
+"""Refusals are one line: the name, the value with its unit, and the allowed values."""
 
 import re
 from dataclasses import dataclass, fields

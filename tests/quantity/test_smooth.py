@@ -1,4 +1,4 @@
-"""The smooth step: its ends, and its slopes and integral against differences of it."""
+"""Smooth step: its ends, and its derivatives and integral against differences."""
 
 import numpy as np
 

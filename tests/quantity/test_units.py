@@ -1,4 +1,4 @@
-"""The table of units: sizes and exponents against independent ones, and no unit in use that it lacks."""
+"""Table of units: sizes and exponents against independent ones; it has all units in use."""
 
 import numpy as np
 import pytest

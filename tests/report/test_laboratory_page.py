@@ -1,4 +1,5 @@
-"""The laboratory's page: alone, small, labelled, usable by keyboard and on a phone; files in and out."""
+"""Laboratory page: self-contained, small, labelled, usable by keyboard and on a phone; opening and saving
+files."""
 
 import json
 import re

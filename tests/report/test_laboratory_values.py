@@ -1,4 +1,4 @@
-"""The laboratory's modules give the native FMUs' numbers and refusals, in wasmtime and in Chromium.
+"""WebAssembly modules of the laboratory give the native FMUs' numbers and refusals, in wasmtime and Chromium.
 
 The same C with the same order of operations and no mathematical library: the same bits.
 """

@@ -1,4 +1,4 @@
-"""Every page forbids itself the network, and runs no script but its own."""
+"""Content security policy of all pages: no network, and no script but the page's own."""
 
 import re
 from base64 import b64encode

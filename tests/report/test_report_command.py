@@ -1,4 +1,4 @@
-"""`jointfmu report`: the page of a user's joint says what the joint does and where its numbers come from."""
+"""`jointfmu report`: the page states the behaviour of a user's joint and the sources of its numbers."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Without the extras: what needs none of their packages runs, the rest says in one line what is missing."""
+"""Installation without extras: commands that need none run, others say in one line what is missing."""
 
 import os
 import subprocess

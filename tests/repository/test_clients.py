@@ -1,4 +1,4 @@
-"""Clients: what only some machines have stands in one table, and only clients make a test skip."""
+"""Clients, which only some machines have: one table lists them, and only clients make a test skip."""
 
 import ast
 import re

@@ -1,4 +1,4 @@
-"""The guide: the site builds, links and anchors lead somewhere, commands parse, code and the tutorial run."""
+"""Documentation: the site builds, links lead to targets, commands parse, code and tutorial run."""
 
 import ast
 import contextlib

@@ -1,4 +1,4 @@
-"""Each extra alone is enough for the first command of its page; other packages cannot be imported."""
+"""Extras: each alone is sufficient for the first command of its page; other packages cannot be imported."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""What goes into FMUs and Modelica components is the same on every processor.
+"""Contents of FMUs and Modelica components are the same on every processor.
 
 OpenBLAS and numpy choose their code by the processor; their variables choose that of others, as far as this
 one runs it. The shipped parameter files, a plate, and a row of bolts; what `new` writes of a plate. `.ci/run`

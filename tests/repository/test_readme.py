@@ -1,4 +1,4 @@
-"""The code of the README, and of the pages that go on from it, runs; figures are those of the product."""
+"""Code in the README and in the pages that continue it runs; figures are those of the product."""
 
 import math
 import os

@@ -1,4 +1,4 @@
-"""What is published says one version, and leads to the address that is given."""
+"""Published files state one version, and link to the address that was given."""
 
 import base64
 import hashlib

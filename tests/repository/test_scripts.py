@@ -1,4 +1,4 @@
-"""Benchmarks and studies run, and each has its row in the README beside it. Times are not tested."""
+"""Benchmarks and studies run, and each has its row in the README of its folder. Times are not tested."""
 
 import ast
 import os

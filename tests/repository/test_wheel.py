@@ -1,4 +1,4 @@
-"""A wheel built here, in an environment without a compiler: FMUs for every platform all the same."""
+"""Wheel of this checkout in an environment without compiler: it builds FMUs for every platform."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""A headless Chromium that shows a file, over its debugging pipe: pages are looked at, driven and asked."""
+"""Headless Chromium that shows a file, controlled through its debugging pipe."""
 
 import base64
 import contextlib

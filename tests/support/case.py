@@ -1,4 +1,4 @@
-"""What the shared tests ask of a joint: `JOINT` in tests/joints/KIND/cases.py fills in these forms."""
+"""Forms in which tests/joints/KIND/cases.py describes a joint to the shared tests."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What the shared tests know of each joint (tests/joints/KIND/cases.py), and the package behind its FMUs."""
+"""Cases of all joints (tests/joints/KIND/cases.py), and the package's joints behind the FMUs."""
 
 from dataclasses import dataclass, replace
 from functools import cache

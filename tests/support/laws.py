@@ -1,4 +1,4 @@
-"""Default laws of the tests, random ones, and the quadrature they are compared with."""
+"""Default and random laws of the tests, and the quadrature against which they are compared."""
 
 from collections.abc import Callable, Mapping
 from itertools import pairwise

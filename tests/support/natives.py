@@ -1,4 +1,4 @@
-"""What the tests of native FMUs share: the package beside them, and how to drive them in both interfaces."""
+"""Shared functions of the tests of native FMUs: the package's results, and calls in both interfaces."""
 
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""Print as JSON all numbers that go into FMUs and Modelica components of the files of parameters, as texts.
+"""Print all numbers in the FMUs and Modelica components of parameter files as JSON.
 
 python tests/support/numbers_of_all.py FOLDER [FILE ...]
 

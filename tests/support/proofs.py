@@ -1,4 +1,4 @@
-"""What the tests of the proof inside FMUs share: changed copies of FMUs, and the command's JSON."""
+"""Shared functions of the tests of `jointfmu prove`: changed copies of FMUs, and the command's JSON."""
 
 import json
 import zipfile

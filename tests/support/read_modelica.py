@@ -1,4 +1,4 @@
-"""A component's equations as pymoca reads them, evaluated along what another tool found.
+"""Equations of a Modelica component as pymoca reads them, evaluated at the solution of another tool.
 
 pymoca simulates nothing that calls functions with matrices. Its parser is its own, though, and so is the
 meaning given to the text here: where the equations hold along rumoca's solution, that solves what is written.

@@ -1,4 +1,4 @@
-"""The laboratory's modules in a WebAssembly runtime, and the native FMUs of the same parameter files."""
+"""WebAssembly modules of the laboratory in a runtime, and native FMUs of the same parameter files."""
 
 import zipfile
 from collections.abc import Mapping

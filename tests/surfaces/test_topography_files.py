@@ -1,4 +1,4 @@
-"""Reading, repair and the command `jointfmu surface`: what is read, repaired, refused, written."""
+"""Surface files and the command `jointfmu surface`: reading, repair, refusals, writing."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Made surfaces are identified again; intervals, ranges, pairs and joints are what they claim to be."""
+"""Identification of synthesized surfaces: intervals, ranges, pairs and joints."""
 
 import json
 from dataclasses import replace

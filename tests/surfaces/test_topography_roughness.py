@@ -1,4 +1,4 @@
-"""h and slope over a longest wave: of scans against sums of waves, of D and G against made surfaces."""
+"""h and slope up to a longest wave: scans against sums of waves, D and G against synthesized surfaces."""
 
 import numpy as np
 import pytest

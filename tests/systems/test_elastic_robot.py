@@ -1,4 +1,4 @@
-"""A robot with elastic axes: what `jointfmu robot` writes, run in MuJoCo beside what it says."""
+"""Robots with elastic axes: files of `jointfmu robot`, run in MuJoCo and compared with its results."""
 
 import io
 import json

@@ -1,4 +1,4 @@
-"""Joints between two flanges in MuJoCo: the plugin of an FMU's own sources beside the FMU in fmpy."""
+"""Joints between two flanges in MuJoCo: plugin from the sources of an FMU, against the FMU in fmpy."""
 
 import re
 from collections.abc import Callable, Iterator

@@ -1,5 +1,5 @@
-"""The pages of robots' simulators: their commands and code run, those of Drake and Pinocchio where these are
-installed, and say what `robot` says.
+"""Pages on robot simulators: their commands and code run (Drake and Pinocchio if installed), with the results
+of `robot`.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Drives as plain MJCF and URDF: what the command writes is run in MuJoCo beside the drive's own spring."""
+"""Drives as plain MJCF and URDF: written files in MuJoCo, against the spring of the drive."""
 
 import json
 import re

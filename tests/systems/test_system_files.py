@@ -1,4 +1,4 @@
-"""Files of systems: what they refuse, and the arm's mechanics by other ways."""
+"""System files: refusals, and the mechanics of arms by independent methods."""
 
 import dataclasses
 import math

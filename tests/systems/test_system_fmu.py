@@ -1,4 +1,4 @@
-"""One FMU for a whole system: its motion against model exchange, derivatives, states, refusals."""
+"""FMU of a whole system: motion against model exchange, derivatives, states, refusals."""
 
 import re
 import zipfile

@@ -1,4 +1,4 @@
-"""Joints in systems: their partners, SSP archives in two simulators, and proof of the coupling."""
+"""Systems of joints: partners, SSP archives in two simulators, and proof of the coupling."""
 
 import ctypes
 import io

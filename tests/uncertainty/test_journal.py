@@ -1,4 +1,4 @@
-"""The journal of a study: what another program, or somebody else, may have written into its folder."""
+"""Journal of a study: contents that another program or person may have written into its folder."""
 
 import json
 import os

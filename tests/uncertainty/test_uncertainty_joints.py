@@ -1,4 +1,4 @@
-"""Uncertainty of the joints: outputs of a sample against the springs, refused samples, and the command."""
+"""Uncertainty of joints: outputs of a sample against the springs, refused samples, and the command."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Studies of an FMU, and of a joint, in a folder: they may be killed at any time and resumed."""
+"""Studies of an FMU or a joint in a folder: they can be killed at any time and resumed."""
 
 import json
 import multiprocessing

@@ -1,4 +1,4 @@
-"""The bolted joint in the shared tests."""
+"""Properties of the bolted joint for the shared tests."""
 
 import math
 from typing import Any

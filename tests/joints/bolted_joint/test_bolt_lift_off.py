@@ -1,4 +1,4 @@
-"""Bolts that only pull: their heads lift off where they would push. Rigid and elastic sides, all flavours."""
+"""Lift-off of bolt heads: bolts carry tension only. Rigid and elastic sides, all flavours."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Frequencies: a block on the joint, how it rings down, and Zhao's box specimen, fitted and predicted."""
+"""Frequencies of a block on the joint, its ring-down, and Zhao's box specimen, fitted and predicted."""
 
 import json
 import pickle

@@ -1,4 +1,4 @@
-"""The bolted joint with memory: partial slip, energy, six degrees of freedom."""
+"""Bolted joint with history: partial slip, energy, six degrees of freedom."""
 
 from dataclasses import replace
 from itertools import pairwise

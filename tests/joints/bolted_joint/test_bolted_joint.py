@@ -1,4 +1,4 @@
-"""The bolted joint without memory: forces from a potential, stiffnesses, separation, damping, rotation."""
+"""Bolted joint without history: forces from a potential, stiffness, separation, damping, rotation."""
 
 from dataclasses import replace
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""The bolted joint's FMU: equal to its law, with a potential, its derivatives; laboratory and report."""
+"""FMU of the bolted joint: equal to its law, potential, derivatives; laboratory and report."""
 
 import math
 from dataclasses import replace

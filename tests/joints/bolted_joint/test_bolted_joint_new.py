@@ -1,4 +1,4 @@
-"""Bolted joints from a drawing: layouts, VDI 2230 against printed numbers, every option and refusal."""
+"""Bolted joints from a drawing: layouts, VDI 2230 against printed numbers, all options and refusals."""
 
 import json
 import math

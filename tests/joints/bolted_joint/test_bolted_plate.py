@@ -1,4 +1,5 @@
-"""Bolts anywhere on a plate: layouts, equilibrium, contradictions; the complete joint that `new` prints."""
+"""Plates with bolts at any position: layouts, equilibrium, contradictions; complete joint of
+`jointfmu new`."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""Elastic sides: the complete joint against finite elements and VDI 2230, energy, FMU, what is refused."""
+"""Joints with elastic sides: finite elements, VDI 2230, energy, FMU, refusals."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Newton's method of the equilibrium, on residuals that are written out: no joint, no finite elements."""
+"""Newton's method for the equilibrium, with explicit residuals: without joint and finite elements."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""Springs between node pairs: what they add up to, on the joint's nodes and on meshes, and every format."""
+"""Exported springs between node pairs: their totals, on the joint's nodes and on meshes, in every format."""
 
 import csv
 import io

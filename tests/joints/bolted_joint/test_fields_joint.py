@@ -1,4 +1,4 @@
-"""A field in the joint: few points for many nodes, its moment, its parameter file and its FMU."""
+"""Pressure field in a bolted joint: reduction to few points, moment, parameter file, FMU."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The gear contact in the shared tests."""
+"""Properties of the gear contact for the shared tests."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The gear contact: force in, approach out; the law of Yu 2022 behind it; its FMU; from a drawing."""
+"""Gear contact: approach as a function of the force by the law of Yu 2022, its FMU, and from a drawing."""
 
 import json
 import math

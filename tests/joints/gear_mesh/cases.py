@@ -1,4 +1,4 @@
-"""The gear mesh in the shared tests."""
+"""Properties of the gear mesh for the shared tests."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The FMU of the gear mesh: its law on both flanks, in every phase, for teeth of any stiffness."""
+"""FMU of the gear mesh: its law on both flanks, in every phase, for any tooth stiffness."""
 
 from collections.abc import Callable
 from functools import cache

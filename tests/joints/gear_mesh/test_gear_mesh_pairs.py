@@ -1,4 +1,4 @@
-"""Tooth pairs of the gear mesh: how many over the mesh cycle; flanks and teeth of one in series."""
+"""Tooth pairs of the gear mesh: their number over the mesh cycle; flanks and tooth bending in series."""
 
 from itertools import pairwise
 

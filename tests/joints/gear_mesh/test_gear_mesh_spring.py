@@ -1,4 +1,4 @@
-"""The gear mesh: one pair's series of flanks and teeth, and the torques of all pairs as a gradient."""
+"""Spring of the gear mesh: flanks and teeth in series, and torques of all pairs as a gradient."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The gear mesh in the tools: from a drawing, as tables, in Modelica run by rumoca, for many samples."""
+"""Tools of the gear mesh: drawing, tables, Modelica in rumoca, many samples."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""The harmonic drive in the shared tests."""
+"""Properties of the harmonic drive for the shared tests."""
 
 import math
 

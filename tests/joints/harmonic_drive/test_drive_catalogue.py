@@ -1,4 +1,4 @@
-"""Drives of the catalogue: names, numbers, all series, their three lines without corners."""
+"""Drives of the catalogue: names, numbers, all series, three lines without rounded corners."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""Efficiency, starting and back-driving torque: closed forms, the FMU on a bench, what catalogues print."""
+"""Efficiency, starting and back-driving torque: closed forms, FMU on a test rig, published values."""
 
 import csv
 import math

@@ -1,4 +1,4 @@
-"""Fits of a drive: a catalogue row to a smooth law, loops and decays, measured torque-angle curves."""
+"""Fits of a drive: catalogue row, loops and decays, measured torque-angle curves."""
 
 import csv
 import json

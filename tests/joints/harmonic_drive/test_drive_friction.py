@@ -1,4 +1,4 @@
-"""Friction at the wave generator: its torque, its energy, what it holds at rest, and temperature."""
+"""Friction at the wave generator: torque, energy, holding at rest, temperature."""
 
 import csv
 import math

@@ -1,4 +1,4 @@
-"""Ring model of the harmonic drive's contact: closed forms, equilibrium, convergence, the decision."""
+"""Ring model of the harmonic drive's contact: closed forms, equilibrium, convergence, conclusion."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""A robot's log to the friction of its drive: round trips, a measured table, refusals."""
+"""Fit of a drive's friction to a robot's log: round trips, a measured table, refusals."""
 
 import json
 import math

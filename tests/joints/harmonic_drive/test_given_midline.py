@@ -1,4 +1,4 @@
-"""The laws `catalogue` and `table`: lines of the maker and measured points against the exported midline."""
+"""Laws `catalogue` and `table`: catalogue lines and measured points against the exported midline."""
 
 import csv
 from dataclasses import replace

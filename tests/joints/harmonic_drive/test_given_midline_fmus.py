@@ -1,4 +1,4 @@
-"""FMUs of given midlines, and of drives with names of their own: the package's numbers in all flavours."""
+"""FMUs with prescribed midlines, and drives with names of the user: the package's numbers in all flavours."""
 
 import json
 import zipfile

@@ -1,4 +1,4 @@
-"""Torsional spring of the harmonic drive: its law, its table, and what the two FMUs export."""
+"""Torsional spring of the harmonic drive: law, table, and outputs of both FMUs."""
 
 from dataclasses import replace
 from itertools import pairwise

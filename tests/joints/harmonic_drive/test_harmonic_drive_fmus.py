@@ -1,4 +1,4 @@
-"""FMUs of the harmonic drive: equal to its law, inverse to each other, and with friction at work."""
+"""FMUs of the harmonic drive: equal to the law, inverse to each other, and with friction."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""A drive from its name in the catalogue or from its row, and what catalogues quote of it, over all rows."""
+"""Drives from a catalogue name or a catalogue row, compared with all published values."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""Hysteresis and friction in the FMUs: the package's numbers, memory and derivatives, in every flavour."""
+"""Hysteresis and friction in the FMUs: the package's numbers, history and derivatives in every flavour."""
 
 import struct
 from collections.abc import Iterator, Mapping

@@ -1,4 +1,4 @@
-"""A linear spring in a package of its own: the shortest joint that goes the whole way."""
+"""Linear spring in a package of its own: the shortest complete joint."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

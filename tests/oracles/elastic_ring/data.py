@@ -1,4 +1,4 @@
-"""What the ring model of a harmonic drive needs beside its parameters, and its loads."""
+"""Data of the ring model in addition to the drive's parameters, and its loads."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

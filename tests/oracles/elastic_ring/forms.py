@@ -1,4 +1,4 @@
-"""Closed forms that the rings are checked against, and the same problems in elements."""
+"""Closed forms for rings, and the same problems by finite elements."""
 
 from typing import NamedTuple
 

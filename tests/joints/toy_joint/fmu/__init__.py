@@ -1,4 +1,4 @@
-"""The spring, for the FMU builders: an equation with one flange."""
+"""Builder data of the toy joint: an equation with one flange."""
 
 from pathlib import Path
 

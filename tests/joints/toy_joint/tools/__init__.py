@@ -1,4 +1,4 @@
-"""The toy joint, for the tools."""
+"""Tool modules of the toy joint."""
 
 from jointfmu_tools.common.joint_parts import JointToolModules
 

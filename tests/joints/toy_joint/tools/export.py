@@ -1,4 +1,4 @@
-"""The spring as a table."""
+"""Export of the toy joint: the spring as a table."""
 
 import numpy as np
 from jointfmu_tools.exchange.export.exports import Exports, LoadCurveExport

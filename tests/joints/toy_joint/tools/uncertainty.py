@@ -1,4 +1,4 @@
-"""Force of the spring over its elongation."""
+"""Uncertainty of the toy joint: force of the spring over its elongation."""
 
 import numpy as np
 from jointfmu_tools.studies.uncertainty.curves import LoadCurves
