@@ -16,7 +16,7 @@ VARIABILITIES = ("tunable", "fixed")
 
 
 class ListedVariable(NamedTuple):
-    """Variable of a model description.
+    """Variable as it is listed in a model description.
 
     start         : start value; None if the variable is calculated, a bool for a Boolean
     attributes    : XML attributes of a real number: unit, displayUnit, min, max, nominal

@@ -101,7 +101,7 @@ class ParameterFile:
 
     @property
     def law(self) -> str:
-        """Name of the interface law."""
+        """Name of the interface law of the parameter set."""
         return KINDS[self.joint].law_name(self.values)
 
     @property

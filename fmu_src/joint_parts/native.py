@@ -25,7 +25,7 @@ APPROACH_FILES = (*INVERSION_FILES, "approach")
 
 @dataclass(frozen=True, slots=True)
 class CDefinitions:
-    """Constants of the C code.
+    """Constants of the C code: integers, real numbers, arrays.
 
     integer_constants : {name: integer}, written as an enum
     real_constants    : {name: number}, written as #define

@@ -7,7 +7,7 @@ TRANSLATIONAL_FLANGE_CLASS = "Modelica.Mechanics.Translational.Interfaces.Flange
 
 
 class Terminal(NamedTuple):
-    """Flange of an FMU.
+    """Flange (FMI terminal) of an FMU: the variables of one mechanical connection.
 
     connector_class : class of the Modelica connector without its last letter
     side            : this letter: "a" is left, "b" is right

@@ -61,7 +61,7 @@ class DataMember(NamedTuple):
 
 
 class DataBlock(NamedTuple):
-    """Data block of an FMU."""
+    """Data block of an FMU: its numbers and texts that the compiled code does not contain."""
 
     token: str
     members: Sequence[DataMember]

@@ -13,7 +13,7 @@ from .joint import Joint
 
 
 class DriveJoint(Joint):
-    """Harmonic drive.
+    """Harmonic drive of the public interface.
 
     `wind_up`, `torque` and `stiffness` describe the midline, without hysteresis and with the wave generator
     locked. Above max_torque the midline continues with its last tangent: they warn, and `messages` of

@@ -37,7 +37,7 @@ from ..systems.system import System
 
 @dataclass(slots=True)
 class PipelineResult:
-    """Results of the main job.
+    """Results of the main job `python build_fmus.py`.
 
     fmi2_folder : folder of the FMUs of FMI 2.0
     fmu_paths   : FMUs of the joints, of all flavours
@@ -71,7 +71,7 @@ class PipelineResult:
 
     @property
     def failures(self) -> list[str]:
-        """One line for each failure.
+        """Failed checks of the main job, one line each.
 
         A published point that an FMU misses is listed only if the package meets it.
         """

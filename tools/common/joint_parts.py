@@ -32,7 +32,7 @@ TOOL_NAMES = (
 
 
 class JointToolModules:
-    """Tool modules of one joint.
+    """Tool modules of one joint: which module of its folder serves which tool.
 
     package      : name of the package that is the joint's folder
     module_names : tools that are served by a module of the same name

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 
 class SourcedNumber(NamedTuple):
-    """A number with its source.
+    """Number with its origin and source.
 
     value    : [SI]
     kind     : origin, one of parameters.ORIGINS

@@ -128,7 +128,7 @@ class Instance:
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=step_size)
 
     def update_discrete_states(self) -> tuple[Any, ...]:
-        """Do one event iteration.
+        """Do one event iteration: update the discrete states of the FMU.
 
         Returns the results of FMI in their order: first whether another iteration is needed, second whether
         to terminate, last the time of the next event [s].

@@ -261,7 +261,7 @@ def write_archives(system: System, out: Path) -> list[Path]:
 
 
 def _archive_path(system: System, out: Path, version: str, master: MasterKind) -> Path:
-    """Path of an archive."""
+    """Path of the archive of a system, for one SSP version and one kind of master."""
     return out / ARCHIVE_FOLDERS[version][0] / f"{system.name}{master.suffix}.ssp"
 
 

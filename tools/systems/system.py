@@ -229,7 +229,7 @@ def _check_connections(value: Any) -> list[tuple[str, str]]:
 
 
 def _make_component(path: Path, name: str, section: Any) -> Component:
-    """Make a component from its section."""
+    """Make a component from its section of the system file."""
     models = [*MODELS, *PARTNERS]
     if not isinstance(section, Mapping):
         raise ValueError(f"{name} = {section!r}, expected a section [{name}] with its model")

@@ -49,7 +49,7 @@ def _has_program_mark(path: Path) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
-    """Kind of an output file.
+    """Kind of an output file: its name, its file name endings, and how a file of this kind is recognised.
 
     name_in_messages : name of the kind in messages
     endings          : file name endings of this kind, lower case

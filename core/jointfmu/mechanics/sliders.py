@@ -419,7 +419,7 @@ class Foundation:
 
 @dataclass(frozen=True, slots=True)
 class _DisplacementIncrement:
-    """Increment of the relative displacement.
+    """Increment of the displacement of sliders: approaches at both ends, tangential displacement.
 
     start_approach, end_approach : (..., 1) [m] approaches at its ends
     tangential_displacement      : (..., 2, 1) or (..., 2, n) [m]

@@ -18,7 +18,7 @@ def quantity_field(
     default: float | None = None,
     **bounds: float,
 ) -> Any:
-    """Dataclass field for a number.
+    """Declare a number of a parameter set: dataclass field with unit, meaning and interval.
 
     unit        : SI unit
     doc         : meaning, one line

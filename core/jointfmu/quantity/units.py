@@ -65,7 +65,7 @@ _SPELLING_REPLACEMENTS = (
 
 
 class Unit(NamedTuple):
-    """An SI unit.
+    """SI unit: the quantity that it measures, its base units, its display units.
 
     quantity        : name of the quantity, that of the Modelica Standard Library if it has one
     base_exponents  : exponents of the SI base units

@@ -31,7 +31,7 @@ MAX_NODE_LABEL = 99_999_999
 
 @dataclass(frozen=True, slots=True)
 class NodePairs:
-    """Node pairs of a mesh.
+    """Opposite nodes of the user's mesh on both sides of the contact, in pairs.
 
     path        : file that the pairs were read from
     node_labels : (n, 2) labels on side 1 and side 2

@@ -16,7 +16,7 @@ ValueType = TypeVar("ValueType", float, NDArray[np.float64])
 
 @dataclass(frozen=True, slots=True)
 class UnitSet:
-    """A consistent set of units.
+    """Consistent set of units of a finite-element model.
 
     name    : units of length, force, pressure and mass, as `mm-N-MPa-t`
     symbols : {SI symbol: symbol in this set}, where they differ

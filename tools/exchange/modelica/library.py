@@ -57,7 +57,7 @@ WorkingPoints = Mapping[str, Sequence[WorkingPoint]]
 
 @dataclass(frozen=True, slots=True)
 class _LibraryJoint:
-    """A joint in the library.
+    """Joint of the Modelica library: its component, records and templates.
 
     file      : parameter file
     component : Modelica component that the joint defines

@@ -88,7 +88,7 @@ class InterpolationTable(NamedTuple):
 
 
 def make_curve_of_table(table: InterpolationTable) -> Curve:
-    """Convert a table to a curve."""
+    """Convert an interpolation table to a curve that can be evaluated."""
     x, y, k, before, after = table.rows.T
     return Curve(x, y, k, after[:-1], before[1:])
 

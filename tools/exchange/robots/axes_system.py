@@ -31,7 +31,7 @@ def format_axes_system(
     payload: float,
     tip_body: int,
 ) -> str:
-    """Format the system file.
+    """Format the system file with the elastic axes of a robot.
 
     Each axis consists of a motor, the drive and a link inertia. The motor angle is an input of the system; by
     default it is constant. The drive has the parameter file NAME.toml in the same folder. The link inertia is

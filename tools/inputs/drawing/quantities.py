@@ -21,7 +21,7 @@ _RANGE_PATTERN = re.compile(r"(.+?)\s*\.\.\s*(.+)")
 
 @dataclass(frozen=True, slots=True)
 class DrawingQuantity:
-    """Quantity of an option.
+    """Quantity of a drawing option: unit, plausible range, limits.
 
     meaning      : the quantity in words
     unit         : unit of a number that the user states without one

@@ -160,7 +160,7 @@ def find_washer(thread: Thread) -> Washer:
 
 @dataclass(frozen=True, slots=True)
 class TighteningMethod:
-    """Method of tightening a bolt.
+    """Method of tightening a bolt, with the scatter of its preload.
 
     title               : in words
     factor              : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]

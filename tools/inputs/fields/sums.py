@@ -27,7 +27,7 @@ RANDOM_SEED = 1
 
 
 class LoadCase(NamedTuple):
-    """Load case of the joint.
+    """Load case of the joint: preload, moment and normal motion.
 
     preload_ratio : preload over the preload of the field [1]
     moment_ratio  : moment over the moment at which a row of bolts loses its force [1]

@@ -493,7 +493,7 @@ _SIGN_ERROR = "the force decreases as the motion increases; reverse the sign of 
 
 @dataclass(frozen=True, slots=True)
 class _EnclosedLoop:
-    """Loop between two consecutive branches.
+    """Closed part of a measured loop between two consecutive branches.
 
     area         : work [J] dissipated between the branches
     motion_range : range of motion common to both branches

@@ -86,7 +86,7 @@ class SelfAffineLaw:
 
     @property
     def range_decades(self) -> float:
-        """Length of the range [decades]."""
+        """Length of the range of scales [decades]."""
         return float(np.log10(self.max_scale / self.min_scale))
 
 

@@ -149,7 +149,7 @@ def _fill_nearest(z: Array, valid_mask: Mask) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class PreparedScan:
-    """Scan without spikes and form.
+    """Scan without spikes and form, with gaps and with filled gaps.
 
     heights_with_gaps : heights with missing points as NaN, for the structure function
     filled_heights    : heights with missing points filled, for the spectrum

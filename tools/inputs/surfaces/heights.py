@@ -23,7 +23,7 @@ RELATIVE_ROUND_OFF = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Profile:
-    """Heights along a line.
+    """Profile: heights along a line.
 
     z    : heights (n,) [m], NaN where missing
     dx   : spacing [m]
@@ -43,7 +43,7 @@ class Profile:
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """Evaluation length [m]."""
+        """Evaluation length [m] of the profile."""
         return (self.z.size * self.dx,)
 
     def with_heights(self, z: Array) -> "Profile":
@@ -52,7 +52,7 @@ class Profile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArealMap:
-    """Heights over a rectangle (areal map).
+    """Areal map: heights over a rectangle.
 
     z      : heights (ny, nx) [m], NaN where missing
     dx, dy : spacing [m]

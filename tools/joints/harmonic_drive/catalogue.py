@@ -277,7 +277,7 @@ def _read_table(table_name: str) -> list[dict[str, str]]:
 
 
 def _join_name(drive_name: str) -> str:
-    """Normalised name without separators."""
+    """Normalised name of a drive without separators, for comparisons."""
     return drive_name.replace("-", "")
 
 

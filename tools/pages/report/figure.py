@@ -58,7 +58,7 @@ _SERIES_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
 
 class Figure(NamedTuple):
-    """A figure of a report.
+    """Figure of a report: charts, table and text.
 
     title, text : heading, and description of what the figure shows
     panels      : charts

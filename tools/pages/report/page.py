@@ -31,7 +31,7 @@ def build_figures(build_result: Any) -> dict[str, list[Figure]]:
 
 
 def write_report(path: Path, build_result: Any) -> None:
-    """Write the self-contained page.
+    """Write the report page of all joints; it contains its scripts and data.
 
     build_result : result of `python build_fmus.py`, with the figures of `build_figures`
     """

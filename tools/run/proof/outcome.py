@@ -26,7 +26,7 @@ class WorstPoint:
 
     @property
     def absolute_error(self) -> float:
-        """Absolute error."""
+        """Absolute error of the output at this point."""
         return abs(self.computed_value - self.reference_value)
 
     @property

@@ -435,7 +435,7 @@ _HEAD = """\
 
 
 def format_reference_table() -> Iterator[str]:
-    """Lines of models/reference/laws.toml."""
+    """Lines of models/reference/laws.toml: reference values of all laws."""
     yield _HEAD
     for law, evaluate, parameters, arguments in _CASES:
         rows = [evaluate(parameters, argument) for argument in arguments]

@@ -95,7 +95,7 @@ def _largest_deviation(comparisons: Sequence[LawComparison]) -> LawComparison:
 
 
 def missed_quantities(comparisons: Sequence[LawComparison]) -> list[str]:
-    """Names LAW.QUANTITY outside the tolerance."""
+    """Quantities LAW.NAME whose deviation is outside the tolerance."""
     return [f"{c.law}.{c.quantity}" for c in comparisons if not c.has_passed]
 
 

@@ -19,7 +19,7 @@ class JointSample(Protocol):
 
     @property
     def parameters(self) -> Any:
-        """Parameter set, without checks."""
+        """Parameter set of the sample, without checks."""
 
     def follow(
         self, inputs: Mapping[str, Array], settings: Mapping[str, Any] | None = None

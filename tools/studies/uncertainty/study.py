@@ -225,7 +225,7 @@ def read_study(path: str | Path) -> dict[str, object]:
 
 
 def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, object]]) -> dict[str, object]:
-    """Settings of a study file, if there is one, overridden by the stated settings (name, value)."""
+    """Settings {name: value} of a study file, if there is one; stated settings replace those of the file."""
     return (read_study(path) if path else {}) | dict(stated_settings)
 
 

@@ -184,7 +184,7 @@ class JointRamp:
 
     @property
     def curves(self) -> LoadCurves:
-        """Quantities along the ramp."""
+        """Quantities of the joint along the load ramp."""
         return load_curves(KINDS[self.file.joint])
 
     def include_files(self) -> "JointRamp":

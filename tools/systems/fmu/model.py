@@ -51,7 +51,7 @@ class SystemComponent:
 
 @dataclass(frozen=True, slots=True)
 class SystemModel:
-    """Model of a system.
+    """Model of a system: its components, and times of the default experiment.
 
     components        : loads, then joints, then bodies: the inputs of each depend on those before and on
         states
@@ -69,7 +69,7 @@ class SystemModel:
 
     @property
     def bodies(self) -> list[SystemComponent]:
-        """Bodies: components with states."""
+        """Bodies of the system: components with states."""
         return [component for component in self.components if component.model.state_count]
 
     @property

@@ -72,7 +72,7 @@ def find_friction_patches(pressure_source: PressureSource) -> FrictionPatches:
 
 
 class JointInputs(NamedTuple):
-    """Inputs of a bolted joint.
+    """Inputs of a bolted joint: preload, moment, relative motion and its rates.
 
     preload, moment : [N] of each bolt, and [N.m]
     displacement    : q (6) of side 2 from the tightened state: s_x, s_y, s_z (positive apart) [m], and small
@@ -150,7 +150,7 @@ class BoltedJointSpring:
 
     @cached_property
     def contact(self) -> Contact:
-        """Contact of points and patches."""
+        """Contact interface: points with the normal force, patches with the friction."""
         return Contact(self.curve, self.points, self.patches, self.joint.has_elastic_members)
 
     @cached_property
@@ -172,7 +172,7 @@ class BoltedJointSpring:
 
     @cached_property
     def assembly(self) -> JointAssembly:
-        """Contact, members and bolts."""
+        """Assembly of contact interface, members and bolts."""
         return JointAssembly(self.contact, self.modes, self.bolts, self.joint.A_0)
 
     @cached_property

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class BoltedPlates:
-    """Two plates with their bolts.
+    """Two bolted plates of a drawing, from which finite elements are made.
 
     plate             : contact plane with the bolt positions
     clamped_parts     : thickness and modulus of side 1 and side 2

@@ -373,7 +373,7 @@ def _start_parameters(
     rated_torque: float | None,
     ratio: float | None,
 ) -> ParameterFile:
-    """Start parameters of the drive.
+    """Start parameters of a fit: of the drive that the user states in one of several ways.
 
     Raises ValueError unless the drive is stated in exactly one way, and InputRefusal if its ratio is missing.
     """
