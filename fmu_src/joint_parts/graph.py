@@ -260,10 +260,16 @@ def add_law_functions(
         [],
         spots.regime_end_log_areas,
     )
-    head = [law.A_0, law.hardness, spots.reference_area, spots.size_exponent, spots.stiffness_onset_log_area]
+    head = [
+        law.A_0,
+        law.max_pressure,
+        spots.reference_area,
+        spots.size_exponent,
+        spots.stiffness_onset_log_area,
+    ]
     function_graph.add_function(
         "law_distribution",
-        "-> A_0 [m2], hardness [Pa], reference area [m2], exponent m, log-area of the stiffness onset",
+        "-> A_0 [m2], largest pressure [Pa], reference area [m2], exponent m, log-area of the stiffness onset",
         [],
         head,
     )

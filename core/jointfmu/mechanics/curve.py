@@ -296,21 +296,21 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
 
     Zero approach is the end of the closing of the contact; the closing has negative approaches. Beyond, the
     nodes are spaced in the log-area u of the largest spot, because load and stiffness are explicit in u. The
-    last node is at a nominal pressure equal to the hardness. Each step is integrated with five Gauss-Legendre
+    last node is at the largest pressure of the law. Each step is integrated with five Gauss-Legendre
     nodes.
 
     Raises
     ------
-    ValueError   : all spots are plastic (no stiffness) at every pressure up to the hardness
+    ValueError   : all spots are plastic (no stiffness) at every pressure up to the largest
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
     spots, area = get_checked_spot_distribution(law), law.A_0
     first = float(spots.stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO))
-    last = float(solve_largest_spot(law, law.hardness))
+    last = float(solve_largest_spot(law, law.max_pressure))
     if not last > first:
         p = float(spots.sum_over_spots("load", first)) / area
         raise ValueError(
-            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.hardness):.3g} Pa: "
+            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.max_pressure):.3g} Pa: "
             "the surface (D, G) leaves only plastic spots"
         )
     return refine_curve(

@@ -123,14 +123,14 @@ bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribu
 {
     const double first = spots->stiffness_onset + portable_log(CLOSING_AREA_RATIO);
     double last = first, slope, ends[N_LAW_REGIME_ENDS + 2], y[N_LAW_TOTALS], x = 0.0;
-    if (!solve_largest_spot(spots, c, spots->hardness, &last, &slope, reason))
+    if (!solve_largest_spot(spots, c, spots->max_pressure, &last, &slope, reason))
         return false;
     if (!(last > first)) {
         spot_totals(spots, c, first, y);
         text_append_format(reason,
                            "the law has no stiffness below %.3g Pa, above the hardness %.3g Pa: the surface (D, G) "
                            "leaves only plastic spots",
-                           y[0] / spots->nominal_area, spots->hardness);
+                           y[0] / spots->nominal_area, spots->max_pressure);
         return false;
     }
     approach->first_log_area = first;

@@ -46,7 +46,7 @@ bool set_spot_distribution(SpotDistribution *spots, const double *c, Text *reaso
     double values[N_LAW_DISTRIBUTION], ends[N_LAW_REGIME_ENDS], log_load[2], totals[N_LAW_TOTALS];
     law_distribution(0, c, values);
     spots->nominal_area = values[0];
-    spots->hardness = values[1];
+    spots->max_pressure = values[1];
     spots->reference_area = values[2];
     spots->size_exponent = values[3];
     spots->stiffness_onset = values[4];
