@@ -1,4 +1,4 @@
-"""FMUs of parameter files with the laws `roughness` and `table`: both languages give the package's numbers."""
+"""FMUs with the laws `roughness` and `table`: both languages give the numbers of the package."""
 
 from collections.abc import Callable
 from pathlib import Path
