@@ -10,13 +10,11 @@ from jointfmu.parameters import load_parameter_file
 
 HEAD = "pressure [MPa], stiffness [MPa/um]"
 POINTS = ("0.5, 0.8", "1, 1.2", "2000, 4e3")
-CONTACT = ["gear-contact", *["--width", "20", "--radii", "12", "30", "--load", "2000", "--material", "steel"]]
-MESH = [
-    "gear-mesh",
-    *["--module", "4", "--teeth", "29", "45", "--width", "10", "--torque", "100", "--material", "steel"],
-]
-PLATE = ["bolted-joint", *["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "40"]]
-PLATE += ["--material", "steel", "--preload", "30e3", "--sides", "rigid"]
+STEEL = ["--material", "steel"]
+CONTACT = ["gear-contact", "--width", "20", "--radii", "12", "30", "--load", "2000", *STEEL]
+MESH = ["gear-mesh", "--module", "4", "--teeth", "29", "45", "--width", "10", "--torque", "100", *STEEL]
+PLATE = ["bolted-joint", "--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "40", *STEEL]
+PLATE += ["--preload", "30e3", "--sides", "rigid"]
 
 
 @pytest.fixture
