@@ -4,12 +4,14 @@ from base64 import b64encode
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.laws.roughness import FEW_SPOTS_STIFFNESS_FACTOR
+from jointfmu.contact.laws.table import StiffnessTable
 from jointfmu.parameters import ParameterFile
 
 PAGE_FOLDER = Path(__file__).with_name("native")
@@ -65,9 +67,18 @@ def _format_number(value: float | str) -> str:
 
 
 def law_variables(parameters: ParameterFile) -> dict[str, object]:
-    """Variables of the contact law for page templates: {name: value}."""
+    """Template variables of the contact law.
+
+    Its name; whether it is `roughness` or `table`, and their template; numbers.
+    """
+    table: Any = getattr(parameters.values, "table", None)
+    is_rough, is_table = parameters.law == ROUGHNESS_LAW, isinstance(table, StiffnessTable)
     return {
         "law": parameters.law,
-        "rough": parameters.law == ROUGHNESS_LAW,
+        "rough": is_rough,
+        "tabular": is_table,
+        "has_law_page": is_rough or is_table,
+        "law_page": "table.html" if is_table else "roughness.html",
         "few_spots": FEW_SPOTS_STIFFNESS_FACTOR,
+        "point_pressures": table.pressure if is_table else (),
     }

@@ -4,7 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from jointfmu.quantity import Array, flatten_parameters
+from jointfmu.quantity import Array
+
+from .interface_table import find_code_class, replace_points
 
 
 class DataTable(NamedTuple):
@@ -27,7 +29,8 @@ EMPTY_TABLES: Tables = {}
 class DataConversion:
     """Conversion of parameters that are not FMU variables into data: `FmuParts.data_conversion`.
 
-    By default every real number is data. All other values (choices, series, integers) select the C code.
+    By default every real number is data, and so are the points of the law `table`. All other values (choices,
+    series, integers) select the C code.
 
     convert_parameters   : (parameter set) -> {structured name: value} of the parameter set that replaces it
         in the C code
@@ -36,8 +39,8 @@ class DataConversion:
         `data.n_NAME` rows
     """
 
-    convert_parameters: Callable[..., Mapping[str, Any]] = flatten_parameters
-    find_parameter_class: Callable[..., type[object]] = type
+    convert_parameters: Callable[..., Mapping[str, Any]] = replace_points
+    find_parameter_class: Callable[..., type[object]] = find_code_class
     make_tables: Callable[..., Tables] = lambda values: EMPTY_TABLES
 
 

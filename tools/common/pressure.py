@@ -44,7 +44,7 @@ def pressure_over_area(parameters: Any, load: float) -> float:
 
 FLANK_PRESSURE_MODEL = NominalPressureModel(
     load_variable="f",
-    default_load=lambda joint: min(3e3, 0.1 * joint.hardness * joint.A_0),
+    default_load=lambda joint: min(3e3, 0.1 * joint.max_pressure * joint.A_0),
     mean_pressure=pressure_over_area,
     peak_pressure=pressure_over_area,
 )

@@ -1,5 +1,6 @@
 """Evaluation of interface laws: stiffness, damping and real area at a nominal pressure or largest spot."""
 
+from abc import ABC, abstractmethod
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -40,8 +41,8 @@ class InterfaceLaw(Protocol):
         """Nominal area [m2]."""
 
     @property
-    def hardness(self) -> Number:
-        """Hardness of the softer body [Pa]."""
+    def max_pressure(self) -> Number:
+        """Largest pressure of the law [Pa]; tables of joints end there."""
 
     def spot_distribution(self) -> SpotDistribution:
         """Contact spots: size distribution; load, stiffness and area of a spot as functions of its size."""
@@ -51,6 +52,20 @@ class InterfaceLaw(Protocol):
 
         largest_log_area : u = ln(area of the largest spot/reference area) [1]
         """
+
+
+class HardnessLimitedLaw(ABC):
+    """Interface law that ends where the whole contact yields: at the hardness of the softer body."""
+
+    @property
+    @abstractmethod
+    def hardness(self) -> Number:
+        """Hardness of the softer body [Pa]."""
+
+    @property
+    def max_pressure(self) -> Number:
+        """Largest pressure of the law [Pa]: the hardness."""
+        return self.hardness
 
 
 @runtime_checkable
@@ -242,11 +257,10 @@ def find_validity_violations(
     means that spots overlap. Results beyond these limits are extrapolations.
     """
     messages = []
-    hardness = float(law.hardness)
-    if pressure > hardness:
+    if isinstance(law, HardnessLimitedLaw) and pressure > float(law.hardness):
         messages.append(
-            f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {hardness:.4g} Pa, "
-            "where the interface law ends: above it the whole contact yields, and the numbers are an "
+            f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {law.hardness:.4g} "
+            "Pa, where the interface law ends: above it the whole contact yields, and the numbers are an "
             "extrapolation"
         )
     limit = _full_contact_pressure(law, pressure)

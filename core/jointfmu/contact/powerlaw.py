@@ -10,7 +10,7 @@ All logarithms are relative to the reference area, which keeps the powers in ran
 zeta (D1 + D2) = 1, ...) is handled by `exprel`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Protocol
@@ -212,6 +212,7 @@ class SpotDistribution:
     regime_terms   : {quantity of a spot: its terms, one per regime}; always contains `load` [N]
     onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
     has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
+    kink_log_areas : log-areas [1], ascending, at which derivatives of a spline of the stiffness jump
     """
 
     reference_area: Number
@@ -220,6 +221,7 @@ class SpotDistribution:
     regime_terms: Mapping[str, tuple[RegimeTerm, ...]]
     onset_log_area: Number = None
     has_spot_area: bool = True
+    kink_log_areas: Sequence[Number] = ()
 
     def sum_over_spots(self, quantity: str, largest_log_area: Number) -> Number:
         """Sum Q(u) of a quantity over all spots; u is the log-area of the largest spot."""
@@ -246,20 +248,25 @@ class SpotDistribution:
         return reduce(np.minimum, (term.lower_log_area for term in self.regime_terms["normal"]))
 
     @property
+    def first_kink(self) -> Number:
+        """First of the kinks; plus infinity if the law has none."""
+        return self.kink_log_areas[0] if self.kink_log_areas else np.inf
+
+    @property
     def sorted_regime_end_log_areas(self) -> list[float]:
-        """Log-areas [1], ascending, of the ends of the stiffness regimes: its derivative jumps there."""
+        """Log-areas [1], ascending, of the ends of the stiffness regimes, and of kinks inside."""
         return sorted({float(end) for end in self.regime_end_log_areas})
 
     @property
     def regime_end_log_areas(self) -> list[Number]:
-        """Log-areas [1] of the ends of the stiffness regimes: numbers or symbols, unsorted, repeated."""
+        """Log-areas [1] of the ends of the stiffness regimes, and of kinks: numbers or symbols, unsorted."""
         ends = [
             end
             for term in self.regime_terms["normal"]
             for end in (term.lower_log_area, term.upper_log_area)
             if end is not None
         ]
-        return ends if self.onset_log_area is None else [*ends, self.onset_log_area]
+        return [*ends, *([] if self.onset_log_area is None else [self.onset_log_area]), *self.kink_log_areas]
 
     def log_sum_over_spots(self, quantity: str, largest_log_area: Number) -> tuple[Number, Number]:
         """Logarithm ln Q(u) of the sum over all spots, and its derivative with respect to u."""

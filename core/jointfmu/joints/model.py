@@ -197,7 +197,8 @@ class Model:
         return {
             name: item
             for name, item in flatten_fields(self.parameter_class)
-            if not any(name == h or name.startswith(f"{h}.") for h in self.fixed_parameters)
+            if "series" not in item.metadata
+            and not any(name == h or name.startswith(f"{h}.") for h in self.fixed_parameters)
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
 

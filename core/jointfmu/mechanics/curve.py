@@ -31,6 +31,8 @@ MAX_REFINEMENT = 16
 """Largest refinement factor of the number of steps of a table [1]; factors are 1, 2, 4, ..."""
 MIN_STEPS_PER_LOG_AREA = 12
 """Initial number of steps of the approach curve per unit of log-area [1], doubled until it is accurate."""
+MIN_SPLINE_STEPS_RATIO = 2
+"""Smallest number of steps between two kinks of a law, over the steps per unit of log-area [1]."""
 CLOSING_STEPS = 48
 """Steps of the table over the closing of the contact [1]."""
 GAUSS_RULE = np.polynomial.legendre.leggauss(5)
@@ -296,22 +298,22 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
 
     Zero approach is the end of the closing of the contact; the closing has negative approaches. Beyond, the
     nodes are spaced in the log-area u of the largest spot, because load and stiffness are explicit in u. The
-    last node is at a nominal pressure equal to the hardness. Each step is integrated with five Gauss-Legendre
+    last node is at the largest pressure of the law. Each step is integrated with five Gauss-Legendre
     nodes.
 
     Raises
     ------
-    ValueError   : all spots are plastic (no stiffness) at every pressure up to the hardness
+    ValueError   : all spots are plastic (no stiffness) at every pressure up to the largest
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
     spots, area = get_checked_spot_distribution(law), law.A_0
     first = float(spots.stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO))
-    last = float(solve_largest_spot(law, law.hardness))
+    last = float(solve_largest_spot(law, law.max_pressure))
     if not last > first:
         p = float(spots.sum_over_spots("load", first)) / area
         raise ValueError(
-            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.hardness):.3g} Pa: "
-            "the surface (D, G) leaves only plastic spots"
+            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.max_pressure):.3g} "
+            "Pa: the surface (D, G) leaves only plastic spots"
         )
     return refine_curve(
         lambda steps: _tabulate_between_log_areas(spots, area, first, last, steps), MIN_STEPS_PER_LOG_AREA
@@ -336,7 +338,8 @@ def _tabulate_between_log_areas(
     ]
     pieces, offset = [], 0.0
     for start, end in pairwise(ends):
-        n = max(2 * int(np.ceil(0.5 * steps_per_log_area * (end - start))), 2)
+        least = MIN_SPLINE_STEPS_RATIO * steps_per_log_area if start >= spot_distribution.first_kink else 2
+        n = max(2 * int(np.ceil(0.5 * steps_per_log_area * (end - start))), least)
         u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])
         inner = u[:-1, None] + half * (1.0 + GAUSS_RULE[0])

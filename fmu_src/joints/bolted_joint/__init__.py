@@ -22,10 +22,11 @@ from jointfmu.mechanics.footprint.distribution import (
     PressureDistribution,
 )
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
-from jointfmu.quantity import Array, flatten_parameters
+from jointfmu.quantity import Array
 
 from ...joint_parts import FmuParts, RampPanel, chart, make_native_definition_loader
 from ...joint_parts.data import DataConversion, DataTable
+from ...joint_parts.interface_table import replace_points
 from ...joint_parts.terminals import make_rotation_flange, make_translation_flange
 
 _REPLACED_SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
@@ -39,7 +40,7 @@ def _convert_parameters(joint: AnyBoltedJoint) -> Mapping[str, object]:
     """Parameter values with which the C code is generated: one contact point, mean positions of the bolts."""
     own = {
         name: value
-        for name, value in flatten_parameters(joint).items()
+        for name, value in replace_points(joint).items()
         if not name.startswith(_REPLACED_SECTIONS)
     }
     spread = dict(zip(BOLT_POSITION_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))

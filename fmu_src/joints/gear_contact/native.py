@@ -17,7 +17,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     pressure = np.maximum(f, 0.0) / joint.A_0
     function_graph.add_function_with_derivative("curve_argument", "inputs -> pressure", [f], [pressure])
     x = [f, approach, stiffness]
-    if isinstance(joint, spring.RoughGearContactParameters):
+    if isinstance(joint, spring.RoughGearContactParameters | spring.TableGearContactParameters):
         add_law_functions(function_graph, joint, ("normal",), lambda spots, u: [])
         area, elastic = joint.real_area(pressure)
     else:

@@ -9,5 +9,5 @@ UNCERTAINTY_CURVES = LoadCurves(
     load=KIND.variables["f"],
     outputs=tuple(KIND.variables[name] for name in ("K_N", "s_rel")),
     default_end=lambda contact: 3e3,
-    max_load=lambda contact: contact.hardness * contact.A_0,
+    max_load=lambda contact: contact.max_pressure * contact.A_0,
 )

@@ -20,9 +20,9 @@ def first_contact_angle(mesh: MeshParameters) -> float:
 def largest_table_angle(mesh: MeshParameters) -> float:
     """Angle [rad] of wheel 1 at which tooth bending alone gives the largest force of the table.
 
-    This force is the hardness times A_0. The approach of the flanks is neglected.
+    This force is the largest pressure of the law times A_0. The approach of the flanks is neglected.
     """
-    return mesh.hardness * mesh.A_0 / (mesh.K_tooth * mesh.r_b1)
+    return mesh.max_pressure * mesh.A_0 / (mesh.K_tooth * mesh.r_b1)
 
 
 UNCERTAINTY_CURVES = LoadCurves(

@@ -2,10 +2,19 @@
 
 from .hu2023 import Hu2023
 from .roughness import RoughnessLaw
+from .table import TableLaw
 from .yu2022 import Yu2022
 from .zhao2018 import Zhao2018
 
 ROUGHNESS_LAW = "roughness"
 """Name of the law with roughness parameters (h, slope, ...) instead of the fractal parameters D and G."""
-LAWS = {"zhao2018": Zhao2018, "hu2023": Hu2023, "yu2022": Yu2022, ROUGHNESS_LAW: RoughnessLaw}
-"""{name of the law: its parameter set class}; names are author and year of the paper, or `roughness`."""
+TABLE_LAW = "table"
+"""Name of the law with measured or published points of the stiffness over the pressure."""
+LAWS = {
+    "zhao2018": Zhao2018,
+    "hu2023": Hu2023,
+    "yu2022": Yu2022,
+    ROUGHNESS_LAW: RoughnessLaw,
+    TABLE_LAW: TableLaw,
+}
+"""{name of the law: its parameter set class}; author and year of a paper, or what is known."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field
+from ..interface import HardnessLimitedLaw
 from ..powerlaw import PowerTerm, RegimeTerm, SlipTerm, SpotDistribution
 from ..surface import (
     ArealSurface,
@@ -34,7 +35,7 @@ from .kogut_etsion import (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hu2023(CheckedParameters):
+class Hu2023(HardnessLimitedLaw, CheckedParameters):
     """Parameters of the interface law of Hu 2023; `side1` is the softer body."""
 
     surface: ArealSurface = group_field("equivalent rough surface")

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...quantity import CheckedParameters, Number, group_field, quantity_field
+from ..interface import HardnessLimitedLaw
 from ..powerlaw import PowerTerm, SpotDistribution
 from ..roughness import MAX_ROUGHNESS_HEIGHT
 from ..surface import ElasticConstants, contact_modulus, contact_shear_modulus
@@ -54,7 +55,7 @@ class RoughSurfaces:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughnessLaw(RoughSurfaces, CheckedParameters):
+class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
     """Parameters of the interface law `roughness`."""
 
     side1: ElasticConstants = group_field("first body")

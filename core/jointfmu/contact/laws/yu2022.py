@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field, select
+from ..interface import HardnessLimitedLaw
 from ..powerlaw import PowerTerm, SmoothTerm, SpotDistribution
 from ..surface import (
     CommonFlankParameters,
@@ -32,7 +33,7 @@ from .kogut_etsion import (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Yu2022(CheckedParameters):
+class Yu2022(HardnessLimitedLaw, CheckedParameters):
     """Parameters of the interface law of Yu 2022."""
 
     surface1: FlankSurface = group_field("fractal parameters along the major axis")

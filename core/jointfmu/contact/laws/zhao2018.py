@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field
+from ..interface import HardnessLimitedLaw
 from ..powerlaw import PowerTerm, SpotDistribution
 from ..surface import (
     ElasticConstants,
@@ -22,7 +23,7 @@ from . import mindlin
 
 
 @dataclass(frozen=True, kw_only=True)
-class Zhao2018(CheckedParameters):
+class Zhao2018(HardnessLimitedLaw, CheckedParameters):
     """Parameters of the interface law of Zhao 2018."""
 
     surface: ProfileSurface = group_field("equivalent rough surface")

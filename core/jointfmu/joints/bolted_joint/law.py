@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contact.laws.roughness import RoughnessLaw
+from ...contact.laws.table import TableLaw
 from ...contact.laws.zhao2018 import Zhao2018
+from ...contact.surface import ElasticConstants
 from ...mechanics.footprint.bolts import BoltedFrame, PressureSource
 from ...mechanics.footprint.distribution import MergedDistribution, NodalField, PressureDistribution
 from ...mechanics.footprint.plate import BoltedPlate
@@ -128,6 +130,8 @@ class ElasticBodies:
 class BoltParameters:
     """Parameters of the bolts, of the pressure under them, and of the members."""
 
+    side1: ElasticConstants = group_field("first body")
+    side2: ElasticConstants = group_field("second body")
     n_bolts: float = quantity_field("1", "number of bolts", ge=1.0, is_integer=True)
     row_bolts: float = quantity_field(
         "1", "bolts in each of the two rows that carry the moment", ge=1.0, is_integer=True
@@ -209,8 +213,8 @@ class BoltedJointParameters(BoltParameters, Zhao2018):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughBoltedJointParameters(BoltParameters, RoughnessLaw):
-    """Parameters of the bolted joint with the law `roughness`, which has no plastic work."""
+class _WithoutPlasticWork(BoltParameters):
+    """Parameters of the bolted joint with a law that has no plastic work."""
 
     plastic_damping: ClassVar[bool] = False
 
@@ -219,8 +223,18 @@ class RoughBoltedJointParameters(BoltParameters, RoughnessLaw):
     )
 
 
-AnyBoltedJoint: TypeAlias = BoltedJointParameters | RoughBoltedJointParameters
-"""Parameter set of a bolted joint with either interface law."""
+@dataclass(frozen=True, kw_only=True)
+class RoughBoltedJointParameters(_WithoutPlasticWork, RoughnessLaw):
+    """Parameters of the bolted joint with the law `roughness`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TableBoltedJointParameters(_WithoutPlasticWork, TableLaw):
+    """Parameters of the bolted joint with the law `table`."""
+
+
+AnyBoltedJoint: TypeAlias = BoltedJointParameters | RoughBoltedJointParameters | TableBoltedJointParameters
+"""Parameter set of a bolted joint with any interface law."""
 
 
 def with_rigid_members(joint: AnyBoltedJoint) -> AnyBoltedJoint:

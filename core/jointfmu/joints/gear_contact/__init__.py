@@ -4,7 +4,12 @@ import math
 
 from ..kind import JointKind, RoughSurface
 from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable
-from .spring import GearContactParameters, GearContactSpring, RoughGearContactParameters
+from .spring import (
+    GearContactParameters,
+    GearContactSpring,
+    RoughGearContactParameters,
+    TableGearContactParameters,
+)
 
 _RAMP_PRESSURE_RATIO = 0.05
 """Mean pressure over the hardness [1] at the end of the load ramp, or beyond: at twice a stated load."""
@@ -40,7 +45,7 @@ MODELS = (
             ),
         ),
         dependencies={},
-        fixed_parameters=("mu", "traction_ratio"),
+        fixed_parameters=("mu", "traction_ratio", "table.ratio"),
     ),
 )
 
@@ -48,7 +53,11 @@ KIND = JointKind(
     name="gear_contact",
     package=__name__,
     default_file_stem="beveloid",
-    laws={"yu2022": GearContactParameters, "roughness": RoughGearContactParameters},
+    laws={
+        "yu2022": GearContactParameters,
+        "roughness": RoughGearContactParameters,
+        "table": TableGearContactParameters,
+    },
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
 )

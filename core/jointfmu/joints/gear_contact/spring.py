@@ -8,9 +8,10 @@ from numpy.typing import ArrayLike
 
 from ...contact.interface import evaluate_at_pressure
 from ...contact.laws.roughness import RoughnessLaw
+from ...contact.laws.table import TableLaw
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, tabulate_approach
-from ...quantity import Array, Number
+from ...quantity import Array, Number, quantity_field
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,8 +24,30 @@ class RoughGearContactParameters(RoughnessLaw):
     """Parameters of the gear contact with the law `roughness`."""
 
 
-ContactParameters: TypeAlias = GearContactParameters | RoughGearContactParameters
-"""Parameter set of a gear contact with either law."""
+@dataclass(frozen=True, kw_only=True)
+class TableGearContactParameters(TableLaw):
+    """Parameters of the gear contact with the law `table`."""
+
+    H: float = quantity_field(
+        "Pa", "hardness of the softer body; only the real contact area depends on it", gt=0.0
+    )
+
+    def real_area(self, pressure: Number) -> tuple[Number, Number]:
+        """Real area (...) [m2] at pressures (...) [Pa] and its elastic fraction [1].
+
+        A table does not contain the area: it is that of spots that all yield, load over hardness.
+        """
+        return self.A_0 * pressure / self.H, 0.0 * pressure
+
+    def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
+        """Contact quantities of the law `table`, with the real area of `real_area`."""
+        state = super().contact_quantities(largest_log_area)
+        A_r, elastic_fraction = self.real_area(state["F"] / self.A_0)
+        return state | {"A_r": A_r, "elastic_fraction": elastic_fraction}
+
+
+ContactParameters: TypeAlias = GearContactParameters | RoughGearContactParameters | TableGearContactParameters
+"""Parameter set of a gear contact with any law."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +64,7 @@ class GearContactSpring:
 
     @property
     def max_force(self) -> float:
-        """Force at the end of the table [N]: the hardness on the whole nominal area."""
+        """Force at the end of the table [N]: the largest pressure of the law on the whole nominal area."""
         return self.joint.A_0 * self.curve.end_point[1]
 
     def evaluate(self, normal_force: ArrayLike) -> dict[str, Array]:

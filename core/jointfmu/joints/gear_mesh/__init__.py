@@ -3,7 +3,12 @@
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ..kind import JointKind, RoughSurface
 from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable, VariableValues
-from .spring import GearMeshParameters, GearMeshSpring, RoughGearMeshParameters
+from .spring import (
+    GearMeshParameters,
+    GearMeshSpring,
+    RoughGearMeshParameters,
+    TableGearMeshParameters,
+)
 
 _ANGLE_INPUTS = ("phi1", "phi2")
 _RAMP_DEFLECTION_RATIO = 0.3
@@ -58,7 +63,7 @@ MODELS = (
             ("s_rel", "transmission_error", "K", "pairs", "E", *(name for name, _ in STABLE_STEP_OUTPUTS)),
             _ANGLE_INPUTS,
         ),
-        fixed_parameters=("mu", "traction_ratio"),
+        fixed_parameters=("mu", "traction_ratio", "table.ratio"),
     ),
 )
 
@@ -66,7 +71,11 @@ KIND = JointKind(
     name="gear_mesh",
     package=__name__,
     default_file_stem="beveloid_pair",
-    laws={"yu2022": GearMeshParameters, "roughness": RoughGearMeshParameters},
+    laws={
+        "yu2022": GearMeshParameters,
+        "roughness": RoughGearMeshParameters,
+        "table": TableGearMeshParameters,
+    },
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
 )

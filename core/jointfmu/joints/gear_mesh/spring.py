@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contact.laws.roughness import RoughnessLaw
+from ...contact.laws.table import TableLaw
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, assemble_curve, refine_curve, tabulate_approach
 from ...mechanics.stable_steps import largest_stable_steps, mobility
@@ -65,8 +66,13 @@ class RoughGearMeshParameters(GearWheelParameters, RoughnessLaw):
     """Parameters of the gear mesh with flanks by the law `roughness`."""
 
 
-MeshParameters: TypeAlias = GearMeshParameters | RoughGearMeshParameters
-"""Parameter set of a gear mesh with either law."""
+@dataclass(frozen=True, kw_only=True)
+class TableGearMeshParameters(GearWheelParameters, TableLaw):
+    """Parameters of the gear mesh with flanks by the law `table`."""
+
+
+MeshParameters: TypeAlias = GearMeshParameters | RoughGearMeshParameters | TableGearMeshParameters
+"""Parameter set of a gear mesh with any law."""
 
 
 def base_pitch(mesh: MeshParameters) -> Number:
