@@ -11,6 +11,6 @@ KIND = JointKind(
     laws={"zhao2018": BoltedJointParameters, "roughness": RoughBoltedJointParameters},
     models=MODELS,
     surfaces=(RoughSurface("surface"),),
-    working_point=("preload", "moment"),
+    working_point=("preload", "moment", "temperature"),
     find_contradictions=find_contradictions,
 )

@@ -192,6 +192,10 @@ class BoltedJointSpring:
         """Cached `Contact.preload_state`: function of preload [N] and moment [N.m]."""
         return lru_cache(maxsize=2)(partial(self.contact.preload_state, self.joint))
 
+    def preload_at_temperature(self, preload: float, temperature: float) -> float:
+        """Preload [N] of each bolt at a temperature [K], from that at tightening [N]."""
+        return float(preload_at_temperature(self.joint, preload, temperature))
+
     def preloaded_approach(self, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m]."""
         return self.contact.preloaded_approach(self.joint, preload, moment)
@@ -258,8 +262,8 @@ class BoltedJointSpring:
         """
         joint, assembly, points, q = self.joint, self.assembly, self.points, inputs.displacement
         before = self.history_layout.split(history)
-        warm_preload = preload_at_temperature(joint, inputs.preload, inputs.temperature)
-        preload = self._cached_preload_state(float(warm_preload), float(inputs.moment))
+        warm_preload = self.preload_at_temperature(inputs.preload, inputs.temperature)
+        preload = self._cached_preload_state(warm_preload, float(inputs.moment))
         bolt_force = self.bolts.preload_force(joint, warm_preload, inputs.moment)
         state, a = None, np.zeros(0)
         if joint.has_elastic_members:

@@ -169,10 +169,10 @@ class BoltParameters:
     )
     row_distance: float = quantity_field("m", "distance L_a between the two bolt rows", gt=0.0)
     bolt_stiffness: float = quantity_field("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
-    member_stiffness: float = quantity_field(
+    plate_stiffness: float = quantity_field(
         "N/m",
-        "stiffness of the members around each bolt, in series with bolt_stiffness; only for the effect of "
-        "temperature on the preload, 0: no effect",
+        "stiffness of the plates around each bolt, 1/delta_P of VDI 2230 without washers, for the change of "
+        "the preload with the temperature; 0: no change",
         ge=0.0,
         default=0.0,
     )
@@ -293,7 +293,7 @@ ROW_DISTANCE_TOLERANCE = 1e-3
 def find_contradictions(joint: AnyBoltedJoint) -> Iterator[str]:
     """Yield one line for each parameter that contradicts the bolts of a parameter file."""
     if any(side.alpha != joint.bolt.alpha for side in _sides(joint)):
-        needed = {"bolt_stiffness": joint.bolt_stiffness, "member_stiffness": joint.member_stiffness}
+        needed = {"bolt_stiffness": joint.bolt_stiffness, "plate_stiffness": joint.plate_stiffness}
         needed["side1.clamped_length"] = sum(side.clamped_length for side in _sides(joint))
         for name, value in needed.items():
             if not value > 0.0:
@@ -377,9 +377,9 @@ def preload_at_temperature(joint: AnyBoltedJoint, preload: Number, temperature: 
     The mismatch of the free lengths over the compliance of bolt and members, with constant moduli:
     F = F_V + sum (alpha_i - alpha_bolt) l_i dT/(delta_S + delta_P). May be negative, see `working_preload`.
     """
-    total = joint.bolt_stiffness + joint.member_stiffness
+    total = joint.bolt_stiffness + joint.plate_stiffness
     are_springs = total > 0.0
-    product = joint.bolt_stiffness * joint.member_stiffness
+    product = joint.bolt_stiffness * joint.plate_stiffness
     stiffness = select(are_springs, product / select(are_springs, total, 1.0), 0.0 * total)
     return preload + stiffness * thermal_mismatch(joint, temperature)
 
