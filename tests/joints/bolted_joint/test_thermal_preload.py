@@ -2,6 +2,7 @@
 
 import json
 
+import fmpy
 import numpy as np
 import pytest
 from clients import needs
@@ -9,6 +10,9 @@ from conftest import Fmu, here_alone
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.export import EXPORTS, TightenedState
+from jointfmu_tools.systems.fmu.assembly import assemble_system
+from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.system import load_system
 from natives import jacobian
 
 from jointfmu.joints import MODELS
@@ -257,3 +261,15 @@ def test_the_bolt_force_of_the_complete_joint_shows_the_gain(tmp_path):
     assert warm["f_z"] == 0.0
     lost, _ = advance(spring, STILL, 60.0, preload=5e3, moment=0.0)
     assert lost["F_bolt[1]"] == 0.0
+
+
+@pytest.mark.slow
+def test_a_system_wires_the_temperature_of_its_joint(tmp_path):
+    system = assemble_system(load_system("bolted_column").with_joint(thermal_file()))
+    fmi2, _ = build_system(system, tmp_path, platforms=(fmpy.platform_tuple,))
+    spring = BoltedJointSpring.for_joint(thermal_file().values)
+    for temperature in (TIGHTENED, WARM):
+        fmu = Fmu(fmi2).start({"joint.preload": PRELOAD, "joint.temperature": temperature})
+        expected = advance(spring, STILL, temperature, moment=0.0)[0]["p_mean"]
+        assert fmu.get("joint.p_mean")["joint.p_mean"] == pytest.approx(expected, rel=1e-9)
+        fmu.free_instance()

@@ -29,8 +29,7 @@ _MIN_RAMP_END_PRELOAD = 30e3
 """Smallest preload at the end of the ramp [N], if none is stated: bolts are tightened close to yield."""
 _MIN_LOOP_PRELOAD = 9e3
 """Smallest preload of the load cycle [N], if none is stated: preload of the published pressures."""
-_TIGHTENING_INPUTS = ("preload", "moment", "temperature")
-_NORMAL_INPUTS = (*_TIGHTENING_INPUTS, "s_rel_z", "theta_x", "theta_y")
+_NORMAL_INPUTS = ("preload", "moment", "temperature", "s_rel_z", "theta_x", "theta_y")
 _INTERFACE_OUTPUTS = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _UNDAMPED_STEP_ADVICE = (
     "; 0 at the defaults, because C_zz = 0: then use model exchange, a sequential master or one FMU of the "
@@ -60,7 +59,7 @@ def _find_ramp_range(spring: BoltedJointSpring, start_values: VariableValues) ->
     Raises ValueError if the stated preload is not larger than its loss by embedding and temperature.
     """
     preload, joint, temperature = start_values["preload"], spring.joint, start_values["temperature"]
-    loss = joint.embedding + preload - preload_at_temperature(joint, preload, temperature)
+    loss = joint.embedding - preload_at_temperature(joint, 0.0, temperature)
     if 0.0 < preload <= loss:
         warm = "" if temperature == TIGHTENING_TEMPERATURE else f" and temperature = {temperature:g} K"
         raise ValueError(
@@ -213,11 +212,6 @@ MODELS = (
                 lambda j, end, v: (-_max_row_moment(j, v), _max_row_moment(j, v)),
                 "a bolt force would be negative; the contact is open where its pressure would be negative",
             ),
-            ValidityLimit(
-                "temperature",
-                lambda j, end, v: PERMISSIBLE_TEMPERATURES,
-                "Young's moduli and expansion coefficients are those at 20 degrees C; the unit is kelvin",
-            ),
             ValidityLimit("p_max", lambda j, end, v: (-math.inf, end[1]), EXTRAPOLATION_WARNING),
             ValidityLimit(
                 "slip",
@@ -227,6 +221,11 @@ MODELS = (
                 ),
                 "the shear force exceeds the friction limit (zero if the joint is open); without memory "
                 "there is no slip",
+            ),
+            ValidityLimit(
+                "temperature",
+                lambda j, end, v: PERMISSIBLE_TEMPERATURES,
+                "Young's moduli and expansion coefficients are those at 20 degrees C; the unit is kelvin",
             ),
         ),
         ramp=LoadRamp("preload", _MIN_RAMP_END_PRELOAD, 100.0, find_range=_find_ramp_range),
