@@ -407,11 +407,21 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
             assert error <= allowed, (axis, t, found[f"joint.f[{i + 1}]"][k], exact[f"f_{axis}"])
 
 
-def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tmp_path: Path):
-    """Rows lift off one after the other, because the moment loads them unevenly. Stiff bolts keep the contact
-    closed."""
-    file = load_default("bolted_joint").with_values({"bolt_stiffness": 1e10}, "user", "test")
+@pytest.mark.parametrize("temperature", [293.15, 343.15])
+def test_bolts_of_the_component_lift_off_as_those_of_the_package(
+    rumoca: Any, tmp_path: Path, temperature: float
+):
+    """Rows lift off one after the other, as the moment loads them unevenly. Stiff bolts, so that the contact
+    is far from its end. Warm bolts have more preload: the members expand more."""
+    values = {
+        "bolt_stiffness": 1e10,
+        "plate_stiffness": 1e9,
+        "side1.alpha": 2e-6,
+        "side1.clamped_length": 0.02,
+    }
+    file = load_default("bolted_joint").with_values(values, "user", "test")
     params, stated = tmp_path / "stiff.toml", ["--preload", "15e3", "--moment", "4500"]
+    stated += ["--temperature", str(temperature)] if temperature != 293.15 else []
     params.write_text(format_parameter_file(file), encoding="utf-8")
     assert main(["modelica", "--params", str(params), *stated, "--out", str(tmp_path)]) == 0
     body = "JointStiffness.Components.BoltedJoint joint(memory=false, damping=false);"
@@ -419,12 +429,16 @@ def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tm
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 2e-2, written=tmp_path)
     spring = BoltedJointSpring.for_interface_nodes(replace(file.values, memory=False))
+    still = (0.0,) * 3
     exact = [
-        spring.evaluate(15e3, 4500.0, (0.0, 0.0, z), (0.0,) * 3)["f_z"] for z in 1e-6 - 4e-6 * found.time
+        spring.evaluate(15e3, 4500.0, (0.0, 0.0, z), still, temperature=temperature)["f_z"]
+        for z in 1e-6 - 4e-6 * found.time
     ]
     np.testing.assert_allclose(found["joint.f[3]"], exact, rtol=EXACT, atol=EXACT * 8 * 15e3)
     least = [found[f"joint.pull[{j + 1}]"].min() for j in range(8)]
-    np.testing.assert_allclose(least, [-20e3] * 3 + [-15e3] * 2 + [-10e3] * 3, rtol=1e-9)
+    gain = (temperature - 293.15) * 2e-6 * 0.02 / (1e-10 + 1e-9)
+    forces = np.array([20e3] * 3 + [15e3] * 2 + [10e3] * 3) + gain
+    np.testing.assert_allclose(least, -forces, rtol=1e-9)
 
 
 def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: Any, bolted: BoltedJointSpring):
@@ -501,7 +515,7 @@ def test_the_bolted_component_read_by_another_parser_holds_along_the_solution(ru
 
 def test_joints_with_the_law_roughness_give_the_forces_of_the_package(rumoca: Any, tmp_path: Path):
     bolted, gear = (load_default(joint, "roughness") for joint in ("bolted_joint", "gear_contact"))
-    library.write_library(tmp_path, bolted, {"bolted_joint": [(9e3, 0.0)]})
+    library.write_library(tmp_path, bolted, {"bolted_joint": [(9e3, 0.0, 293.15)]})
     record = make_identifier(f"{bolted.name} 9 kN")
     body = f"JointStiffness.Components.BoltedJoint joint(data=JointStiffness.Data.{record}(), memory=false);"
     at, rate = (0.0, 0.0, -1e-6), (2e-7, -1e-7, 1e-3)

@@ -57,11 +57,11 @@ def group_field(doc: str, **alternatives: type[Any]) -> Any:
 
     alternatives : {section name: class}; a parameter set has exactly one of these sections. Without
         alternatives the section has the name and the class of the field. The first alternative is the default
-        if it has no fields.
+        if all its fields have defaults.
     """
     first = next(iter(alternatives.values()), None)
     metadata = {"group": True, "doc": doc, "alternatives": alternatives}
-    if first is None or fields(first):
+    if first is None or any(item.default is MISSING for item in fields(first)):
         return field(metadata=metadata)
     return field(metadata=metadata, default_factory=first)
 

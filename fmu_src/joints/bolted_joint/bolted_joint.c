@@ -67,9 +67,12 @@ END_OPTIMIZE_FOR_SIZE
 static void preload(Joint *joint, const double *inputs)
 {
     JointModel *model = &joint->model;
-    if (!set_preload_state(&model->contact, inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT]))
+    double warm_preload;
+    preload_at_temperature((const double[]){inputs[INPUT_PRELOAD], inputs[INPUT_TEMPERATURE]}, joint->constants,
+                           &warm_preload);
+    if (!set_preload_state(&model->contact, warm_preload, inputs[INPUT_MOMENT]))
         return;
-    set_preload_force(&model->bolts, joint->constants, inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT]);
+    set_preload_force(&model->bolts, joint->constants, warm_preload, inputs[INPUT_MOMENT]);
     model->sums.points_are_current = false;
 }
 
@@ -225,13 +228,17 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
                       const double *seed, double *result)
 {
     JointModel *model = &joint->model;
-    const double preload[4] = {inputs[INPUT_PRELOAD], inputs[INPUT_MOMENT], seed[INPUT_PRELOAD], seed[INPUT_MOMENT]};
+    const double tightening[4] = {inputs[INPUT_PRELOAD], inputs[INPUT_TEMPERATURE], seed[INPUT_PRELOAD],
+                                  seed[INPUT_TEMPERATURE]};
+    double preload[4] = {0.0, inputs[INPUT_MOMENT], 0.0, seed[INPUT_MOMENT]};
     Seed along = {.seed = seed, .history = history, .after = after};
     double other[N_OUTPUTS];
     Text ignored;
     text_clear(&ignored);
     relative_displacement(inputs, along.q);
     relative_displacement(seed, along.q_rate);
+    preload_at_temperature(tightening, joint->constants, &preload[0]);
+    preload_at_temperature_seed(tightening, joint->constants, &preload[2]);
     bolt_pressures(preload, joint->constants, along.bolts);
     bolt_pressures_seed(preload, joint->constants, along.bolts + 2);
     set_preload_rate(&model->bolts, joint->constants, preload[0], preload[2], preload[3]);

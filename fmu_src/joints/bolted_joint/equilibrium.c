@@ -249,10 +249,10 @@ static double residual_norm(const double *r)
 /* Newton's method */
 
 /* What the predictor depends on: preload, moment, and a history. */
-static void predictor_key(const double *inputs, const double *history, double key[PREDICTOR_KEY])
+static void predictor_key(const PreloadState *preload, const double *history, double key[PREDICTOR_KEY])
 {
-    key[0] = inputs[INPUT_PRELOAD];
-    key[1] = inputs[INPUT_MOMENT];
+    key[0] = preload->preload;
+    key[1] = preload->moment;
     memcpy(key + 2, history + HISTORY_TANGENTIAL, 3 * sizeof *key);
     memcpy(key + 5, history + HISTORY_NORMAL, (PREDICTOR_KEY - 5) * sizeof *key);
 }
@@ -262,7 +262,7 @@ static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rat
 {
     const double *history = step->history;
     double key[PREDICTOR_KEY], first[N_DISPLACEMENTS];
-    predictor_key(step->inputs, history, key);
+    predictor_key(&e->assembly.contact->preload, history, key);
     displacement_at(step, 0.0, first);
     if (e->end.is_known && memcmp(key, e->end.key, sizeof key) == 0) {
         e->start = e->end;
@@ -365,13 +365,15 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fra
     return *left <= tolerance_factor * tolerance ? CONVERGED : NOT_CONVERGED;
 }
 
-/* Say that there is no equilibrium, with the inputs that are not zero. */
+/* Say that there is no equilibrium, with the inputs that are not zero, or not the temperature of tightening. */
 static void explain_failure(const double *inputs, double step_fraction, double left, Text *reason)
 {
     text_clear(reason);
-    for (int v = 0; v < 2 + N_DISPLACEMENTS; v++) {
-        const int at = v == 0 ? INPUT_PRELOAD : (v == 1 ? INPUT_MOMENT : input_of(v - 2));
-        if (inputs[at] == 0.0)
+    for (int v = 0; v < 3 + N_DISPLACEMENTS; v++) {
+        const bool is_last = v == 2 + N_DISPLACEMENTS;
+        const int at =
+            is_last ? INPUT_TEMPERATURE : (v == 0 ? INPUT_PRELOAD : (v == 1 ? INPUT_MOMENT : input_of(v - 2)));
+        if (inputs[at] == (is_last ? TIGHTENING_TEMPERATURE : 0.0))
             continue;
         text_append(reason, reason->length > 0 ? ", " : "");
         text_append(reason, variables[FIRST_INPUT + at].name);
@@ -438,7 +440,7 @@ bool solve_equilibrium(Equilibrium *e, const double *inputs, const double *histo
     for (int j = 0; j < n_patches(); j++)
         memcpy(after + HISTORY_TANGENT + 6 * j, e->assembly.friction->update[j].tangent, 6 * sizeof *after);
     condense_stiffness(e, after + HISTORY_TANGENT, &e->end);
-    predictor_key(inputs, after, e->end.key);
+    predictor_key(&e->assembly.contact->preload, after, e->end.key);
     return true;
 }
 

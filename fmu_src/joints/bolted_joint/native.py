@@ -49,7 +49,10 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
 def _add_preload_functions(function_graph: FunctionGraph) -> None:
     """Add the functions of the pressures under preload and moment."""
     equal, tilt, mean, by_moment = make_symbols("node", 4)
-    preload, moment = make_symbols("v", 2)
+    preload, moment, temperature = make_symbols("v", 3)
+    doc = "preload at tightening, temperature -> preload at this temperature"
+    warm = law.preload_at_temperature(function_graph.joint, preload, temperature)
+    function_graph.add_function_with_derivative("preload_at_temperature", doc, [preload, temperature], [warm])
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
     function_graph.add_function_with_derivative(
         "bolt_pressures", doc, [preload, moment], law.bolt_pressures(function_graph.joint, preload, moment)
@@ -146,6 +149,7 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
     )
     numbers = {name: float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
+    numbers["TIGHTENING_TEMPERATURE"] = law.TIGHTENING_TEMPERATURE
     counts |= {
         "N_BELOW": sliders.HEIGHTS_BELOW_REFERENCE,
         "N_ABOVE": sliders.SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE,

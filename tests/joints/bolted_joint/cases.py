@@ -11,6 +11,7 @@ RANGES = {
     "v_rel_x": (-1e-3, 1e-3), "v_rel_y": (-1e-3, 1e-3), "v_rel_z": (-1e-3, 1e-3),
     "theta_x": (-1e-5, 1e-5), "theta_y": (-1e-5, 1e-5), "theta_z": (-1e-5, 1e-5),
     "omega_x": (-1e-2, 1e-2), "omega_y": (-1e-2, 1e-2), "omega_z": (-1e-2, 1e-2),
+    "temperature": (263.15, 363.15),
 }  # fmt: skip
 
 
@@ -18,7 +19,10 @@ def outputs(spring: Any, v: Inputs) -> Any:
     """Outputs of the spring at a motion."""
     kinds = ("s_rel", "v_rel", "theta", "omega")
     return spring.evaluate(
-        v["preload"], v["moment"], *(tuple(v[f"{kind}_{axis}"] for axis in "xyz") for kind in kinds)
+        v["preload"],
+        v["moment"],
+        *(tuple(v[f"{kind}_{axis}"] for axis in "xyz") for kind in kinds),
+        temperature=v["temperature"],
     )
 
 
@@ -29,7 +33,7 @@ BOLTED = Case(
             "preload": "N", "moment": "N.m", "s_rel_x": "m", "s_rel_y": "m", "s_rel_z": "m",
             "v_rel_x": "m/s", "v_rel_y": "m/s", "v_rel_z": "m/s",
             "theta_x": "rad", "theta_y": "rad", "theta_z": "rad",
-            "omega_x": "rad/s", "omega_y": "rad/s", "omega_z": "rad/s",
+            "omega_x": "rad/s", "omega_y": "rad/s", "omega_z": "rad/s", "temperature": "K",
         },
         results={
             "f_x": "N", "f_y": "N", "f_z": "N", "m_x": "N.m", "m_y": "N.m", "m_z": "N.m",
@@ -43,7 +47,7 @@ BOLTED = Case(
             "surface.D": "1", "surface.G": "m", "surface.gamma": "1",
             "side1.E": "Pa", "side1.nu": "1", "side2.E": "Pa", "side2.nu": "1", "H": "Pa", "mu": "1",
             "traction_ratio": "1", "A_0": "m2", "mass": "kg", "n_bolts": "1", "row_distance": "m",
-            "bolt_stiffness": "N/m",
+            "bolt_stiffness": "N/m", "bolt.alpha": "1/K", "side1.alpha": "1/K", "side2.alpha": "1/K",
         },
         shown={"p_max": "MPa", "preload": "kN", "K_zz": "N/um", "s_rel_z": "um"},
         steps=300,
@@ -59,7 +63,7 @@ BOLTED = Case(
             "preload": 9e3, "moment": 800.0, "s_rel_x": 1e-6, "s_rel_y": -2e-6, "s_rel_z": 5e-7,
             "v_rel_x": 1e-3, "v_rel_y": 2e-3, "v_rel_z": -1e-3,
             "theta_x": 1e-6, "theta_y": -2e-6, "theta_z": 3e-6,
-            "omega_x": 1e-3, "omega_y": 2e-3, "omega_z": -1e-3,
+            "omega_x": 1e-3, "omega_y": 2e-3, "omega_z": -1e-3, "temperature": 310.0,
         },
         good={"preload": 9e3},
         rest={"preload": 1e4},
@@ -69,7 +73,11 @@ BOLTED = Case(
     ),
     tuning=Tuning(
         # off, they are zero
-        base={"plastic_damping": True, "bolt_stiffness": 1e8, "embedding": 500.0, "damping": True},
+        base={
+            "plastic_damping": True, "bolt_stiffness": 1e8, "embedding": 500.0, "damping": True,
+            "plate_stiffness": 3e8, "bolt.alpha": 1.2e-5, "side1.alpha": 1.1e-5, "side2.alpha": 2.3e-5,
+            "side1.clamped_length": 0.02, "side2.clamped_length": 0.03,
+        },
         also={"memory": False},  # then shear lifts
         moved={"n_bolts": 9.0, "row_bolts": 2.0},  # whole numbers
         counted={"n_bolts": (8, 12), "row_bolts": (1, 4)},

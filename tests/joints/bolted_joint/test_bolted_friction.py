@@ -17,7 +17,7 @@ JOINT = load_default("bolted_joint").values
 MODEL = MODELS["BoltedJoint"]
 MOTION = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 FORCE = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
-TIGHT = dict.fromkeys((v.name for v in MODEL.inputs), 0.0) | {"preload": 9e3}
+TIGHT = {v.name: v.start for v in MODEL.inputs} | {"preload": 9e3}
 SIZE = np.array([1e-6, 1e-6, 2e-6, 1e-5, 1e-5, 1e-5])
 """Size of random motions [m, rad]: shear to gross slip, tilt and tension that open some patches."""
 LOADS = [(9e3, 0.0), (15e3, 4500.0), (3e3, -900.0)]

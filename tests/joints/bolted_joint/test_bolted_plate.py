@@ -20,11 +20,15 @@ from jointfmu_tools.inputs.drawing import vdi2230
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
-from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import STIFFNESS_UNITS, Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
-from jointfmu.joints.bolted_joint.law import RoughBoltedJointParameters, find_contradictions, preload_pressure
+from jointfmu.joints.bolted_joint.law import (
+    ClampedSide,
+    RoughBoltedJointParameters,
+    find_contradictions,
+    preload_pressure,
+)
 from jointfmu.mechanics.footprint.plate import BoltedPlate, equivalent_bolt_rows, plate_cells, pressure_decay
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
@@ -52,7 +56,7 @@ def plate(x, y, **changes):
 
 def joint(pattern, **changes):
     row_bolts, row_distance = pattern.equivalent_bolt_rows
-    steel = ElasticConstants(E=210e9, nu=0.3)
+    steel = ClampedSide(E=210e9, nu=0.3)
     values = {
         "h": 1e-6, "gamma": 0.45, "longest_wave": 0.8e-3, "hurst": 0.8, "slope": 0.1, "side1": steel,
         "side2": steel, "H": 2e9, "mu": 0.15, "traction_ratio": 0.1, "A_0": pattern.area, "mass": 10.0,

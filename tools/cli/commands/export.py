@@ -103,8 +103,8 @@ def _working_point_meanings() -> dict[str, list[str]]:
     """Meanings of all working-point quantities: {name: [meaning for each joint that has the quantity]}."""
     texts: dict[str, list[str]] = {}
     for joint, kind in KINDS.items():
-        for i, (name, text) in enumerate(exports.load_exports(joint).working_point.items()):
-            texts.setdefault(name, []).append(f"{kind.title}: {text}{' (default: 0)' if i else ''}")
+        for name, text in exports.load_exports(joint).working_point.items():
+            texts.setdefault(name, []).append(f"{kind.title}: {text}")
     return texts
 
 
@@ -250,7 +250,7 @@ def _read_working_point(args: argparse.Namespace, joint_name: str) -> Any:
     values = {name: getattr(args, name) for name in available.working_point}
     if available.working_point_class is None or all(value is None for value in values.values()):
         return None
-    return available.working_point_class(**{name: value or 0.0 for name, value in values.items()})
+    return available.working_point_class(**{n: value for n, value in values.items() if value is not None})
 
 
 def _refuse_unused_options(args: argparse.Namespace, unused_options: Mapping[str, str]) -> None:

@@ -24,7 +24,7 @@ def add_command(command_parsers: SubParsers) -> None:
     for name, kinds in _working_point_inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
         text = "; ".join(f"{kind.title}: {_describe_input(kind, name)}" for kind in kinds)
-        text += "" if first else " (default: 0)"
+        text += "" if first else f" (default: {kinds[0].variables[name].start:g})"
         declare_argument(make, format_option_flag(name), float, text, nargs="+" if first else None)
     declare_output(make, "--out", OUTPUT_FOLDER, "folder to write", default=Path("dist"))
 
@@ -67,8 +67,8 @@ def _describe_input(joint_kind: JointKind, input_name: str) -> str:
 def _read_working_points(joint_kind: JointKind, args: argparse.Namespace) -> list[tuple[float, ...]]:
     """Read the working points of a joint: one for each value of its first input.
 
-    Each point has the same values of the other inputs; an input that is not set is zero. Raises ValueError
-    if another input is set but not the first.
+    Each point has the same values of the other inputs; an input that is not set has its start value. Raises
+    ValueError if another input is set but not the first.
     """
     first, *others = joint_kind.working_point
     stated = {name: getattr(args, name) for name in others if getattr(args, name) is not None}
@@ -76,4 +76,5 @@ def _read_working_points(joint_kind: JointKind, args: argparse.Namespace) -> lis
     if stated and not values:
         needed = f"{format_option_flag(first)}, the {_describe_input(joint_kind, first)}"
         raise ValueError(f"{format_option_flag(next(iter(stated)))} needs {needed}")
-    return [(value, *(stated.get(name, 0.0) for name in others)) for value in values]
+    defaults = joint_kind.variables
+    return [(value, *(stated.get(name, defaults[name].start) for name in others)) for value in values]

@@ -101,6 +101,7 @@ _MATERIAL_COLUMNS = {
     "E [GPa]": ("E", 1e-9),
     "nu": ("nu", 1.0),
     "density [kg/m3]": ("density", 1.0),
+    "alpha [1e-6/K]": ("alpha", 1e6),
     "H [MPa]": ("H", 1e-6),
 }
 _FINISH_COLUMNS = {

@@ -5,7 +5,7 @@ command line reads them.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from jointfmu.joints import KINDS
@@ -65,7 +65,7 @@ class Exports:
     """Exports that a joint offers. None: the joint does not offer this content.
 
     working_point_class : dataclass of declared quantities. The user must state the first quantity; the others
-                          are zero by default
+                          have defaults
     springs             : (parameters, working point, node pairs of the user or None, placement) -> springs,
                           and their description; the working point is None if the pairs state the pressure
     stiffness           : (parameters, working point) -> tangent stiffness (6, 6) [N/m, N, N.m/rad] of the
@@ -84,9 +84,13 @@ class Exports:
 
     @property
     def working_point(self) -> dict[str, str]:
-        """Quantities of the working point, the required one first: {name: meaning with unit}."""
+        """Quantities of the working point, the required one first: {name: meaning with unit and default}."""
         declared = flatten_fields(self.working_point_class) if self.working_point_class else ()
-        return {name: f"{item.metadata['doc']} [{item.metadata['unit']}]" for name, item in declared}
+        return {
+            name: f"{item.metadata['doc']} [{item.metadata['unit']}]"
+            + ("" if item.default is MISSING else f" (default: {item.default:g})")
+            for name, item in declared
+        }
 
 
 def load_exports(joint_name: str) -> Exports:

@@ -150,7 +150,7 @@ def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> Heigh
     """
     pair = read_materials(options)
     for prefix, material in zip(("side1", "side2"), pair, strict=True):
-        for name in ("E", "nu"):
+        for name in ("E", "nu", "alpha"):
             known = material.numbers[name]
             parameter_sheet.add_parameter(
                 f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}"

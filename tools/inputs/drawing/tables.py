@@ -18,6 +18,7 @@ MATERIAL_COLUMNS = {
     "E": quantity_field("Pa", "Young's modulus"),
     "nu": quantity_field("1", "Poisson's ratio"),
     "density": quantity_field("kg/m3", "density"),
+    "alpha": quantity_field("1/K", "thermal expansion coefficient"),
     "H": quantity_field("Pa", "hardness"),
 }
 FINISH_COLUMNS = {

@@ -15,7 +15,11 @@ from numpy.typing import NDArray
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.compliances import condense_stiffness
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
-from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure
+from jointfmu.joints.bolted_joint.law import (
+    TIGHTENING_TEMPERATURE,
+    AnyBoltedJoint,
+    preload_pressure,
+)
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.quantity import Array, quantity_field
@@ -251,13 +255,21 @@ def tabulate_normal_force(
 
 @dataclass(frozen=True, slots=True)
 class TightenedState:
-    """Tightened state of a bolted joint: preload of each bolt and bending moment."""
+    """Tightened state of a bolted joint: preload of each bolt, bending moment, and temperature."""
 
     preload: float = quantity_field("N", "the preload of each bolt")
-    moment: float = quantity_field("N.m", "the bending moment")
+    moment: float = quantity_field("N.m", "the bending moment", default=0.0)
+    temperature: float = quantity_field(
+        "K", "the temperature of bolts and members", default=TIGHTENING_TEMPERATURE
+    )
 
     def __str__(self) -> str:
-        return f"preload {self.preload:g} N per bolt, moment {self.moment:g} N.m"
+        warm = "" if self.temperature == TIGHTENING_TEMPERATURE else f", temperature {self.temperature:g} K"
+        return f"preload {self.preload:g} N per bolt, moment {self.moment:g} N.m{warm}"
+
+    def bolt_load(self, spring: BoltedJointSpring) -> tuple[float, float]:
+        """Preload [N] of each bolt of a joint at this temperature, and moment [N.m]."""
+        return spring.preload_at_temperature(self.preload, self.temperature), self.moment
 
 
 def _make_springs(
@@ -272,17 +284,17 @@ def _make_springs(
             raise ValueError("springs need a preload, or node pairs with their pressure")
         return springs_under_pressure(spring, node_pairs), f"pressures of {node_pairs.path.name}"
     if node_pairs is None:
-        return springs_of_joint(
-            spring, tightened_state.preload, tightened_state.moment, placement.first_free_number
-        ), str(tightened_state)
-    springs = springs_on_mesh(spring, node_pairs, tightened_state.preload, tightened_state.moment)
+        return springs_of_joint(spring, *tightened_state.bolt_load(spring), placement.first_free_number), str(
+            tightened_state
+        )
+    springs = springs_on_mesh(spring, node_pairs, *tightened_state.bolt_load(spring))
     return springs, f"{tightened_state}, on the nodes of {node_pairs.path.name}"
 
 
 def _joint_stiffness(joint: AnyBoltedJoint, tightened_state: TightenedState) -> Array:
     """Tangent stiffness (6, 6) of the tightened joint about the centroid of the contact, without slip."""
     spring = BoltedJointSpring.for_joint(joint)
-    preload, moment = tightened_state.preload, tightened_state.moment
+    preload, moment = tightened_state.bolt_load(spring)
     spring.checked_preloaded_approach(preload, moment)
     return condense_stiffness(spring.tangent_stiffness(preload, moment))
 
@@ -298,12 +310,8 @@ def _normal_force_table(
 ) -> "LoadTable":
     if tightened_state is None:
         raise ValueError("the curve of a bolted_joint needs a preload")
-    return tabulate_normal_force(
-        BoltedJointSpring.for_interface_nodes(joint),
-        tightened_state.preload,
-        tightened_state.moment,
-        max_error,
-    )
+    spring = BoltedJointSpring.for_interface_nodes(joint)
+    return tabulate_normal_force(spring, *tightened_state.bolt_load(spring), max_error)
 
 
 _JOINT_VARIABLES = KIND.variables

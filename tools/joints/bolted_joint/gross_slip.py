@@ -7,6 +7,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
+    preload_at_temperature,
     slip_force,
     superposed_pressure,
     with_rigid_members,
@@ -96,17 +97,18 @@ class PreloadResult(NamedTuple):
 def preload_results(parameter_file: ParameterFile) -> list[PreloadResult]:
     """Results at the start value of the preload, and at both ends of its range.
 
-    A preload that embedding takes completely is left out.
+    The temperature is its start value. A preload that embedding and temperature take completely is left out.
     """
     joint = parameter_file.values
     spring = BoltedJointSpring.for_joint(joint)
     rows = []
     preloads = (parameter_file.start_value("preload"), *parameter_file.ranges.get(PRELOAD_ENTRY, ()))
     for preload in preloads:
-        remaining_preload = float(working_preload(joint, preload))
+        warm_preload = preload_at_temperature(joint, preload, parameter_file.start_value("temperature"))
+        remaining_preload = float(working_preload(joint, warm_preload))
         if remaining_preload <= 0.0:
             continue
-        compliances = spring.compliances(preload)
+        compliances = spring.compliances(warm_preload)
         stiffness = 1.0 / compliances.total_compliance
         rows.append(
             PreloadResult(

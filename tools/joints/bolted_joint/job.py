@@ -11,6 +11,7 @@ from jointfmu_fmu_src.joint_parts import RampPanel
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.joints.bolted_joint.law import get_bolted_frame
+from jointfmu.joints.bolted_joint.variables import PERMISSIBLE_TEMPERATURES
 from jointfmu.parameters import load_default
 
 from ...pages.laboratory.joint_additions import ContactMap, LaboratoryModel, MeasuredCurve, PublishedQuantity
@@ -142,7 +143,15 @@ def _measured_curves() -> list[MeasuredCurve]:
 LABORATORY_MODELS = {
     _FMU_NAME: LaboratoryModel(
         panels=(RampPanel("preload", ("p_max", "p_mean")), RampPanel("p_mean", ("K_zz",))),
-        slider_spans={"moment": (-5e3, 5e3), "bolt_stiffness": (0.0, 2e9), "preload": (0.0, 30e3)},
+        slider_spans={
+            "moment": (-5e3, 5e3),
+            "bolt_stiffness": (0.0, 2e9),
+            "preload": (0.0, 30e3),
+            "temperature": PERMISSIBLE_TEMPERATURES,
+            "plate_stiffness": (0.0, 5e9),
+            **dict.fromkeys(("bolt.alpha", "side1.alpha", "side2.alpha"), (0.0, 3e-5)),
+            **dict.fromkeys(("side1.clamped_length", "side2.clamped_length"), (0.0, 0.1)),
+        },
         path_inputs=("s_rel_x", "s_rel_y"),
         published_points={"p_max": PublishedQuantity("p_max", {"preload": "preload"})},
         measured_curves=_measured_curves(),

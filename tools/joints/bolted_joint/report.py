@@ -9,6 +9,7 @@ from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
     ElasticBodies,
+    preload_at_temperature,
     slip_force,
     working_preload,
 )
@@ -113,9 +114,10 @@ def preload_figures(load_history: LoadHistory) -> list[Figure]:
 
 
 def _working_point(load_history: LoadHistory) -> tuple[float, float]:
-    """Preload [N] and moment [N.m] of the tightened joint."""
+    """Preload [N] at the start temperature and moment [N.m] of the tightened joint."""
     preload, moment = (float(load_history.loop_inputs.get(name, 0.0)) for name in ("preload", "moment"))
-    return preload, moment
+    temperature = load_history.start_values["temperature"]
+    return float(preload_at_temperature(load_history.file.values, preload, temperature)), moment
 
 
 def stiffness_figures(load_history: LoadHistory) -> list[Figure]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
-from jointfmu.joints.bolted_joint.law import slip_force
+from jointfmu.joints.bolted_joint.law import TIGHTENING_TEMPERATURE, slip_force
 from jointfmu.joints.model import Variable
 from jointfmu.quantity import Array
 
@@ -77,7 +77,7 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
 
 UNCERTAINTY_CURVES = LoadCurves(
     model="BoltedJoint",
-    load=replace(KIND.variables["preload"], doc="force of each bolt after embedding"),
+    load=replace(KIND.variables["preload"], doc="force of each bolt after embedding, at its temperature"),
     outputs=tuple(KIND.variables[name] for name in ("K_zz", "K_xx", "C_zz", "C_xx")),
     knot_count=17,
     derived_outputs=(
@@ -106,5 +106,6 @@ UNCERTAINTY_CURVES = LoadCurves(
     default_end=lambda joint: 30e3,
     max_load=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
     load_loss=lambda joint: joint.embedding,
+    other_inputs=lambda joint: {"temperature": TIGHTENING_TEMPERATURE},
     settings={"embedding": 0.0},
 )

@@ -20,6 +20,6 @@ KIND = JointKind(
     },
     models=MODELS,
     surfaces=(RoughSurface("surface"),),
-    working_point=("preload", "moment"),
+    working_point=("preload", "moment", "temperature"),
     find_contradictions=find_contradictions,
 )

@@ -30,7 +30,14 @@ from .friction import (
     history_layout,
 )
 from .kinematics import NORMAL_COMPONENTS, TANGENTIAL_COMPONENTS, point_displacement, tangential_displacement
-from .law import MAX_MODES, AnyBoltedJoint, ElasticBodies, with_rigid_members
+from .law import (
+    MAX_MODES,
+    TIGHTENING_TEMPERATURE,
+    AnyBoltedJoint,
+    ElasticBodies,
+    preload_at_temperature,
+    with_rigid_members,
+)
 from .outputs import (
     bolt_force_name,
     correct_sums_for_bolt_gaps,
@@ -74,22 +81,27 @@ def find_friction_patches(pressure_source: PressureSource) -> FrictionPatches:
 class JointInputs(NamedTuple):
     """Inputs of a bolted joint: preload, moment, relative motion and its rates.
 
-    preload, moment : [N] of each bolt, and [N.m]
+    preload, moment : [N] of each bolt at tightening, and [N.m]
     displacement    : q (6) of side 2 from the tightened state: s_x, s_y, s_z (positive apart) [m], and small
                       rotation theta_x, theta_y, theta_z [rad] about the centroid of the contact
     rates           : (6) [m/s, rad/s] of q
+    temperature     : [K] of bolts and members
     """
 
     preload: float
     moment: float
     displacement: Array
     rates: tuple[float, ...] = (0.0,) * 6
+    temperature: float = TIGHTENING_TEMPERATURE
 
     @property
     def input_summary(self) -> str:
-        """Inputs that are not zero, as text; without rates."""
+        """Inputs that are not zero, and a temperature that is not that of tightening, as text; without
+        rates."""
         names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
         values = dict(zip(names, (self.preload, self.moment, *self.displacement), strict=True))
+        if self.temperature != TIGHTENING_TEMPERATURE:
+            values["temperature"] = self.temperature
         return ", ".join(f"{name} = {value:g}" for name, value in values.items() if value)
 
 
@@ -180,6 +192,10 @@ class BoltedJointSpring:
         """Cached `Contact.preload_state`: function of preload [N] and moment [N.m]."""
         return lru_cache(maxsize=2)(partial(self.contact.preload_state, self.joint))
 
+    def preload_at_temperature(self, preload: float, temperature: float) -> float:
+        """Preload [N] of each bolt at a temperature [K], from that at tightening [N]."""
+        return float(preload_at_temperature(self.joint, preload, temperature))
+
     def preloaded_approach(self, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m]."""
         return self.contact.preloaded_approach(self.joint, preload, moment)
@@ -233,9 +249,10 @@ class BoltedJointSpring:
         v_rel: tuple[float, float, float],
         theta: tuple[float, float, float] = ZERO_MOTION,
         omega: tuple[float, float, float] = ZERO_MOTION,
+        temperature: float = TIGHTENING_TEMPERATURE,
     ) -> dict[str, Number]:
         """Outputs {name: value} of a joint that has not moved before; arguments as in `JointInputs`."""
-        inputs = JointInputs(preload, moment, np.array([*s_rel, *theta]), (*v_rel, *omega))
+        inputs = JointInputs(preload, moment, np.array([*s_rel, *theta]), (*v_rel, *omega), temperature)
         return self.advance(inputs, self.initial_history())[0]
 
     def advance(self, inputs: JointInputs, history: Array) -> tuple[dict[str, Number], Array]:
@@ -245,8 +262,9 @@ class BoltedJointSpring:
         """
         joint, assembly, points, q = self.joint, self.assembly, self.points, inputs.displacement
         before = self.history_layout.split(history)
-        preload = self._cached_preload_state(float(inputs.preload), float(inputs.moment))
-        bolt_force = self.bolts.preload_force(joint, inputs.preload, inputs.moment)
+        warm_preload = self.preload_at_temperature(inputs.preload, inputs.temperature)
+        preload = self._cached_preload_state(warm_preload, float(inputs.moment))
+        bolt_force = self.bolts.preload_force(joint, warm_preload, inputs.moment)
         state, a = None, np.zeros(0)
         if joint.has_elastic_members:
             state = solve_equilibrium(self._load_step(inputs, preload, bolt_force, before))

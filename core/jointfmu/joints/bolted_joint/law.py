@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from ...mechanics.footprint.distribution import MergedDistribution, NodalField, 
 from ...mechanics.footprint.plate import BoltedPlate
 from ...quantity import (
     Array,
+    CheckedParameters,
     Interval,
     Number,
     ParameterLimit,
@@ -36,6 +37,36 @@ ELASTIC_SIDE_REQUIREMENTS = {
     "memory": "elastic sides need friction with memory",
     "damping": "the dashpots act between rigid sides only",
 }
+TIGHTENING_TEMPERATURE = 293.15
+"""Temperature [K] of bolts and members at tightening: 20 degrees C."""
+MAX_EXPANSION_COEFFICIENT = 1e-3
+"""Largest magnitude of a thermal expansion coefficient [1/K]: several times that of any plastic."""
+
+
+def _expansion_field() -> Any:
+    """Dataclass field for a thermal expansion coefficient."""
+    bound = MAX_EXPANSION_COEFFICIENT
+    return quantity_field("1/K", "thermal expansion coefficient", ge=-bound, le=bound, default=0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClampedSide(ElasticConstants):
+    """Material of one side, and its share in the clamped length of the bolts."""
+
+    alpha: float = _expansion_field()
+    clamped_length: float = quantity_field(
+        "m",
+        "length of the side that each bolt clamps, without washers and engaged thread",
+        ge=0.0,
+        default=0.0,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoltMaterial(CheckedParameters):
+    """Material of the bolts and their washers."""
+
+    alpha: float = _expansion_field()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,14 +161,22 @@ class ElasticBodies:
 class BoltParameters:
     """Parameters of the bolts, of the pressure under them, and of the members."""
 
-    side1: ElasticConstants = group_field("first body")
-    side2: ElasticConstants = group_field("second body")
+    side1: ClampedSide = group_field("first body")
+    side2: ClampedSide = group_field("second body")
+    bolt: BoltMaterial = group_field("bolts", bolt=BoltMaterial)
     n_bolts: float = quantity_field("1", "number of bolts", ge=1.0, is_integer=True)
     row_bolts: float = quantity_field(
         "1", "bolts in each of the two rows that carry the moment", ge=1.0, is_integer=True
     )
     row_distance: float = quantity_field("m", "distance L_a between the two bolt rows", gt=0.0)
     bolt_stiffness: float = quantity_field("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
+    plate_stiffness: float = quantity_field(
+        "N/m",
+        "stiffness of the plates around each bolt, 1/delta_P of VDI 2230 without washers, for the change of "
+        "the preload with the temperature; 0: no change",
+        ge=0.0,
+        default=0.0,
+    )
     embedding: float = quantity_field(
         "N", "preload that each bolt loses by embedding (VDI 2230)", ge=0.0, default=0.0
     )
@@ -264,6 +303,15 @@ ROW_DISTANCE_TOLERANCE = 1e-3
 
 def find_contradictions(joint: AnyBoltedJoint) -> Iterator[str]:
     """Yield one line for each parameter that contradicts the bolts of a parameter file."""
+    if any(side.alpha != joint.bolt.alpha for side in _sides(joint)):
+        needed = {"bolt_stiffness": joint.bolt_stiffness, "plate_stiffness": joint.plate_stiffness}
+        needed["side1.clamped_length"] = sum(side.clamped_length for side in _sides(joint))
+        for name, value in needed.items():
+            if not value > 0.0:
+                yield (
+                    f"{name} = 0 beside different thermal expansion coefficients: temperature would have no "
+                    f"effect; state {name}, or equal bolt.alpha, side1.alpha and side2.alpha"
+                )
     if isinstance(joint.pattern, NodalField):
         return
     section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
@@ -316,8 +364,40 @@ def node_pressure(
 
 
 def working_preload(joint: AnyBoltedJoint, preload: Number) -> Number:
-    """Working force (...) [N] of a bolt: preload (...) [N] minus the loss by embedding, at least 0."""
+    """Working force (...) [N] of a bolt: preload (...) [N] minus the loss by embedding, at least 0.
+
+    preload : at the present temperature, see `preload_at_temperature`
+    """
     return select(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
+
+
+def thermal_mismatch(joint: AnyBoltedJoint, temperature: Number) -> Number:
+    """Free expansion (...) [m] of the clamped members minus that of a bolt, at temperatures (...) [K].
+
+    Washers expand as the bolt does.
+    """
+    per_kelvin = sum((side.alpha - joint.bolt.alpha) * side.clamped_length for side in _sides(joint))
+    return per_kelvin * (temperature - TIGHTENING_TEMPERATURE)
+
+
+def preload_at_temperature(joint: AnyBoltedJoint, preload: Number, temperature: Number) -> Number:
+    """Preload (...) [N] of a bolt at a temperature [K] of bolts and members: VDI 2230, section 5.4.2.
+
+    preload : (...) [N] at tightening, at TIGHTENING_TEMPERATURE
+
+    The mismatch of the free lengths over the compliance of bolt and members, with constant moduli:
+    F = F_V + sum (alpha_i - alpha_bolt) l_i dT/(delta_S + delta_P). May be negative, see `working_preload`.
+    """
+    total = joint.bolt_stiffness + joint.plate_stiffness
+    are_springs = total > 0.0
+    product = joint.bolt_stiffness * joint.plate_stiffness
+    stiffness = select(are_springs, product / select(are_springs, total, 1.0), 0.0 * total)
+    return preload + stiffness * thermal_mismatch(joint, temperature)
+
+
+def _sides(joint: AnyBoltedJoint) -> tuple[ClampedSide, ClampedSide]:
+    """Both sides of a joint."""
+    return joint.side1, joint.side2
 
 
 def slip_force(joint: AnyBoltedJoint, working_force: Number) -> Number:

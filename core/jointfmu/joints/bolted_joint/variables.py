@@ -11,16 +11,25 @@ from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .joint import BoltedJointSpring, JointInputs
-from .law import AnyBoltedJoint, BoltedJointParameters, working_preload
+from .law import (
+    TIGHTENING_TEMPERATURE,
+    AnyBoltedJoint,
+    BoltedJointParameters,
+    preload_at_temperature,
+    working_preload,
+)
 from .outputs import bolt_force_name
 
 MAX_FRICTION_UTILIZATION_WITHOUT_HISTORY = 0.5**0.5
 """Shear force over friction limit [1] at which, without history, a linear force would reach the limit."""
+PERMISSIBLE_TEMPERATURES = 223.15, 423.15
+"""Temperature range [K] without a warning, -50 to 150 degrees C: at 150 degrees C, Young's modulus is 7 %
+lower for aluminium (EN 1999-1-2), and less for steel."""
 _MIN_RAMP_END_PRELOAD = 30e3
 """Smallest preload at the end of the ramp [N], if none is stated: bolts are tightened close to yield."""
 _MIN_LOOP_PRELOAD = 9e3
 """Smallest preload of the load cycle [N], if none is stated: preload of the published pressures."""
-_NORMAL_INPUTS = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
+_NORMAL_INPUTS = ("preload", "moment", "temperature", "s_rel_z", "theta_x", "theta_y")
 _INTERFACE_OUTPUTS = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _UNDAMPED_STEP_ADVICE = (
     "; 0 at the defaults, because C_zz = 0: then use model exchange, a sequential master or one FMU of the "
@@ -39,25 +48,30 @@ def _advance_spring(
 ) -> tuple[Mapping[str, float], Any]:
     q = np.array([*_read_vector(inputs, "s_rel"), *_read_vector(inputs, "theta")])
     rates = (*_read_vector(inputs, "v_rel"), *_read_vector(inputs, "omega"))
-    return spring.advance(JointInputs(inputs["preload"], inputs["moment"], q, rates), history)
+    return spring.advance(
+        JointInputs(inputs["preload"], inputs["moment"], q, rates, inputs["temperature"]), history
+    )
 
 
 def _find_ramp_range(spring: BoltedJointSpring, start_values: VariableValues) -> tuple[float, float]:
     """Start and end of the ramp of the preload [N]; it ends at the stated preload.
 
-    Raises ValueError if the stated preload is not larger than its loss by embedding.
+    Raises ValueError if the stated preload is not larger than its loss by embedding and temperature.
     """
-    preload, embedding = start_values["preload"], spring.joint.embedding
-    if 0.0 < preload <= embedding:
+    preload, joint, temperature = start_values["preload"], spring.joint, start_values["temperature"]
+    loss = joint.embedding - preload_at_temperature(joint, 0.0, temperature)
+    if 0.0 < preload <= loss:
+        warm = "" if temperature == TIGHTENING_TEMPERATURE else f" and temperature = {temperature:g} K"
         raise ValueError(
-            f"preload = {preload:g} N is outside ({embedding:g}, inf) N: embedding takes all of it; "
+            f"preload = {preload:g} N is outside ({loss:g}, inf) N: embedding{warm} takes all of it; "
             "increase preload or reduce embedding"
         )
-    return 0.0, preload or max(_MIN_RAMP_END_PRELOAD, 2.0 * embedding)
+    return 0.0, preload or max(_MIN_RAMP_END_PRELOAD, 2.0 * loss)
 
 
-def _max_row_moment(joint: Any, preload: Number) -> Number:
+def _max_row_moment(joint: Any, inputs: VariableValues) -> Number:
     """Largest moment [N.m] at which no bolt force of the two rows is negative."""
+    preload = preload_at_temperature(joint, inputs["preload"], inputs["temperature"])
     return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
 
 
@@ -78,13 +92,13 @@ def _add_bolt_force_outputs(model: Model, joint: AnyBoltedJoint) -> Model:
     if not joint.has_elastic_members:
         return model
     meaning = (
-        "force of bolt {}: preload minus embedding, plus its shares of moment and load; "
+        "force of bolt {}: preload at this temperature minus embedding, plus its shares of moment and load; "
         "0 after its head lifts off"
     )
     forces = [
         Variable(bolt_force_name(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
     ]
-    inputs = ("preload", "moment", *_MOTION_INPUTS[2:])
+    inputs = _MOTION_INPUTS
     known = {
         name: (*inputs, *(v for v in given if v not in inputs)) for name, given in model.dependencies.items()
     }
@@ -131,6 +145,14 @@ MODELS = (
                 for a in "xyz"
             ),
             *(Variable(f"omega_{a}", "rad/s", f"rate of theta_{a}", 1e-2) for a in "xyz"),
+            Variable(
+                "temperature",
+                "K",
+                "temperature of bolts and members; tightened at 293.15 K",
+                TIGHTENING_TEMPERATURE,
+                minimum=0.0,
+                start=TIGHTENING_TEMPERATURE,
+            ),
         ),
         outputs=(
             Variable("f_x", "N", "restoring force on side 2 along x", 1e4),
@@ -187,7 +209,7 @@ MODELS = (
         validity_limits=(
             ValidityLimit(
                 "moment",
-                lambda j, end, v: (-_max_row_moment(j, v["preload"]), _max_row_moment(j, v["preload"])),
+                lambda j, end, v: (-_max_row_moment(j, v), _max_row_moment(j, v)),
                 "a bolt force would be negative; the contact is open where its pressure would be negative",
             ),
             ValidityLimit("p_max", lambda j, end, v: (-math.inf, end[1]), EXTRAPOLATION_WARNING),
@@ -199,6 +221,11 @@ MODELS = (
                 ),
                 "the shear force exceeds the friction limit (zero if the joint is open); without memory "
                 "there is no slip",
+            ),
+            ValidityLimit(
+                "temperature",
+                lambda j, end, v: PERMISSIBLE_TEMPERATURES,
+                "Young's moduli and expansion coefficients are those at 20 degrees C; the unit is kelvin",
             ),
         ),
         ramp=LoadRamp("preload", _MIN_RAMP_END_PRELOAD, 100.0, find_range=_find_ramp_range),

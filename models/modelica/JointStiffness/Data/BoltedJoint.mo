@@ -1,8 +1,9 @@
 within JointStiffness.Data;
-record BoltedJoint "A bolted joint at a fixed preload and moment"
+record BoltedJoint "A bolted joint at a fixed preload, moment and temperature"
   extends Modelica.Icons.Record;
   parameter Modelica.Units.SI.Force preload(min=0) "Preload of each bolt (bolt force at tightening)";
   parameter Modelica.Units.SI.Torque moment "Bending moment on the joint";
+  parameter Modelica.Units.SI.Temperature temperature=293.15 "Temperature of bolts and members; tightened at 293.15 K";
   parameter Modelica.Units.SI.Mass mass(min=0) "mass of the structure, used for the equivalent viscous damping";
   parameter Modelica.Units.SI.TranslationalSpringConstant bolts(min=0) "Stiffness of all bolts, parallel to the interface";
   parameter Modelica.Units.SI.Force bolt_forces[:](each min=0) "Force of each bolt at tightening; all bolts have an equal share of the stiffness";

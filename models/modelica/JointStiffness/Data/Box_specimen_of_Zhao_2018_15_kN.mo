@@ -3,6 +3,7 @@ record Box_specimen_of_Zhao_2018_15_kN "box specimen of Zhao 2018, 15 kN per bol
   extends BoltedJoint(
     final preload=15000,
     final moment=0,
+    final temperature=293.15,
     final mass=100,
     final bolts=0,
     final plastic_damping=false,

@@ -3,6 +3,7 @@ record Box_specimen_of_Zhao_2018_9_kN "box specimen of Zhao 2018, 9 kN per bolt"
   extends BoltedJoint(
     final preload=9000,
     final moment=0,
+    final temperature=293.15,
     final mass=100,
     final bolts=0,
     final plastic_damping=false,

@@ -2,6 +2,7 @@ within JointStiffness.Wrappers;
 model BoltedJoint "BoltedJoint as an imported FMU, between flanges"
   parameter Modelica.Units.SI.Force preload(min=0, start=0) "preload of each bolt (bolt force at tightening)";
   parameter Modelica.Units.SI.Torque moment=0 "bending moment on the joint";
+  parameter Modelica.Units.SI.ThermodynamicTemperature temperature=293.15 "temperature of bolts and members; tightened at 293.15 K";
   replaceable JointStiffness.Interfaces.BoltedJoint fmu "Redeclare as the imported FMU"
     annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
   Modelica.Mechanics.Translational.Interfaces.Flange_b flange_x "side 2 along x, side 1 fixed"
@@ -44,9 +45,9 @@ equation
   connect(flange_x, adaptor_flange_x.flange)
     annotation (Line(points={{100,75},{82,75}}, color={0,127,0}));
   connect(adaptor_flange_x.p, fmu.s_rel_x)
-    annotation (Line(points={{77,83},{26.5,83},{26.5,11.6},{-24,11.6}}, color={0,0,127}));
+    annotation (Line(points={{77,83},{26.5,83},{26.5,12},{-24,12}}, color={0,0,127}));
   connect(adaptor_flange_x.pder, fmu.v_rel_x)
-    annotation (Line(points={{77,80},{26.5,80},{26.5,3.8},{-24,3.8}}, color={0,0,127}));
+    annotation (Line(points={{77,80},{26.5,80},{26.5,4.8},{-24,4.8}}, color={0,0,127}));
   connect(fmu.f_x, reaction_flange_x.u)
     annotation (Line(points={{22,17.2},{30.5,17.2},{30.5,50},{39,50}}, color={0,0,127}));
   connect(reaction_flange_x.y, adaptor_flange_x.f)
@@ -54,9 +55,9 @@ equation
   connect(flange_y, adaptor_flange_y.flange)
     annotation (Line(points={{100,45},{82,45}}, color={0,127,0}));
   connect(adaptor_flange_y.p, fmu.s_rel_y)
-    annotation (Line(points={{77,53},{26.5,53},{26.5,9},{-24,9}}, color={0,0,127}));
+    annotation (Line(points={{77,53},{26.5,53},{26.5,9.6},{-24,9.6}}, color={0,0,127}));
   connect(adaptor_flange_y.pder, fmu.v_rel_y)
-    annotation (Line(points={{77,50},{26.5,50},{26.5,1.2},{-24,1.2}}, color={0,0,127}));
+    annotation (Line(points={{77,50},{26.5,50},{26.5,2.4},{-24,2.4}}, color={0,0,127}));
   connect(fmu.f_y, reaction_flange_y.u)
     annotation (Line(points={{22,15.8},{30.5,15.8},{30.5,20},{39,20}}, color={0,0,127}));
   connect(reaction_flange_y.y, adaptor_flange_y.f)
@@ -64,9 +65,9 @@ equation
   connect(flange_z, adaptor_flange_z.flange)
     annotation (Line(points={{100,15},{82,15}}, color={0,127,0}));
   connect(adaptor_flange_z.p, fmu.s_rel_z)
-    annotation (Line(points={{77,23},{26.5,23},{26.5,6.4},{-24,6.4}}, color={0,0,127}));
+    annotation (Line(points={{77,23},{26.5,23},{26.5,7.2},{-24,7.2}}, color={0,0,127}));
   connect(adaptor_flange_z.pder, fmu.v_rel_z)
-    annotation (Line(points={{77,20},{26.5,20},{26.5,-1.2},{-24,-1.2}}, color={0,0,127}));
+    annotation (Line(points={{77,20},{26.5,20},{26.5,0},{-24,0}}, color={0,0,127}));
   connect(fmu.f_z, reaction_flange_z.u)
     annotation (Line(points={{22,14.4},{30.5,14.4},{30.5,-10},{39,-10}}, color={0,0,127}));
   connect(reaction_flange_z.y, adaptor_flange_z.f)
@@ -74,9 +75,9 @@ equation
   connect(flange_turn_x, adaptor_flange_turn_x.flange)
     annotation (Line(points={{100,-15},{82,-15}}, color={0,0,0}));
   connect(adaptor_flange_turn_x.p, fmu.theta_x)
-    annotation (Line(points={{77,-7},{26.5,-7},{26.5,-3.8},{-24,-3.8}}, color={0,0,127}));
+    annotation (Line(points={{77,-7},{26.5,-7},{26.5,-2.4},{-24,-2.4}}, color={0,0,127}));
   connect(adaptor_flange_turn_x.pder, fmu.omega_x)
-    annotation (Line(points={{77,-10},{26.5,-10},{26.5,-11.6},{-24,-11.6}}, color={0,0,127}));
+    annotation (Line(points={{77,-10},{26.5,-10},{26.5,-9.6},{-24,-9.6}}, color={0,0,127}));
   connect(fmu.m_x, reaction_flange_turn_x.u)
     annotation (Line(points={{22,13},{30.5,13},{30.5,-40},{39,-40}}, color={0,0,127}));
   connect(reaction_flange_turn_x.y, adaptor_flange_turn_x.f)
@@ -84,9 +85,9 @@ equation
   connect(flange_turn_y, adaptor_flange_turn_y.flange)
     annotation (Line(points={{100,-45},{82,-45}}, color={0,0,0}));
   connect(adaptor_flange_turn_y.p, fmu.theta_y)
-    annotation (Line(points={{77,-37},{26.5,-37},{26.5,-6.4},{-24,-6.4}}, color={0,0,127}));
+    annotation (Line(points={{77,-37},{26.5,-37},{26.5,-4.8},{-24,-4.8}}, color={0,0,127}));
   connect(adaptor_flange_turn_y.pder, fmu.omega_y)
-    annotation (Line(points={{77,-40},{26.5,-40},{26.5,-14.2},{-24,-14.2}}, color={0,0,127}));
+    annotation (Line(points={{77,-40},{26.5,-40},{26.5,-12},{-24,-12}}, color={0,0,127}));
   connect(fmu.m_y, reaction_flange_turn_y.u)
     annotation (Line(points={{22,11.6},{30.5,11.6},{30.5,-70},{39,-70}}, color={0,0,127}));
   connect(reaction_flange_turn_y.y, adaptor_flange_turn_y.f)
@@ -94,15 +95,16 @@ equation
   connect(flange_turn_z, adaptor_flange_turn_z.flange)
     annotation (Line(points={{100,-75},{82,-75}}, color={0,0,0}));
   connect(adaptor_flange_turn_z.p, fmu.theta_z)
-    annotation (Line(points={{77,-67},{26.5,-67},{26.5,-9},{-24,-9}}, color={0,0,127}));
+    annotation (Line(points={{77,-67},{26.5,-67},{26.5,-7.2},{-24,-7.2}}, color={0,0,127}));
   connect(adaptor_flange_turn_z.pder, fmu.omega_z)
-    annotation (Line(points={{77,-70},{26.5,-70},{26.5,-16.8},{-24,-16.8}}, color={0,0,127}));
+    annotation (Line(points={{77,-70},{26.5,-70},{26.5,-14.4},{-24,-14.4}}, color={0,0,127}));
   connect(fmu.m_z, reaction_flange_turn_z.u)
     annotation (Line(points={{22,10},{30.5,10},{30.5,-100},{39,-100}}, color={0,0,127}));
   connect(reaction_flange_turn_z.y, adaptor_flange_turn_z.f)
     annotation (Line(points={{50.5,-100},{63.75,-100},{63.75,-83},{77,-83}}, color={0,0,127}));
   fmu.preload = preload;
   fmu.moment = moment;
+  fmu.temperature = temperature;
   annotation (
     Icon(graphics={
       Rectangle(extent={{-90,80},{90,-80}}, lineColor={43,58,74}, fillColor={255,255,255}, fillPattern=FillPattern.Solid, radius=10),

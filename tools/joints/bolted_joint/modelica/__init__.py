@@ -1,4 +1,4 @@
-"""Bolted joint in the Modelica library: one record for each working point (preload, moment)."""
+"""Bolted joint in the Modelica library: one record for each working point (preload, moment, temperature)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.law import TIGHTENING_TEMPERATURE
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.reproducible import ROUND_OFF_RATIO
 from jointfmu.mechanics.sliders import UNIFORM_DEVIATION, Foundation
@@ -140,8 +141,9 @@ def _dissipation_factor(spring: BoltedJointSpring, approach: Array) -> Array:
     return np.asarray((plastic @ spring.points.area_share) / (elastic @ spring.points.area_share))
 
 
-WORKING_POINTS = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
-"""Working points of the default records: preload [N] per bolt and moment [N.m], from Zhao 2018, Table 3."""
+WORKING_POINTS = tuple((*load, TIGHTENING_TEMPERATURE) for load in ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0)))
+"""Working points of the default records: preload [N] per bolt and moment [N.m] from Zhao 2018, Table 3, and
+temperature [K]."""
 
 
 def _make_records(
@@ -152,14 +154,15 @@ def _make_records(
 
 
 def _make_record(
-    record_name: str, spring: BoltedJointSpring, preload: float, moment: float
+    record_name: str, spring: BoltedJointSpring, preload: float, moment: float, temperature: float
 ) -> ModelicaRecord:
-    tight = combine_nodes(spring, preload, moment)
-    rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    tight = combine_nodes(spring, spring.preload_at_temperature(preload, temperature), moment)
+    rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), temperature=temperature)
     values = format_parameter_values(
         {
             "preload": preload,
             "moment": moment,
+            "temperature": temperature,
             "mass": spring.joint.mass,
             "bolts": float(spring.joint.n_bolts * spring.joint.bolt_stiffness),
             "plastic_damping": spring.joint.plastic_damping,
@@ -175,9 +178,12 @@ def _make_record(
         }
     )
     force = f"{preload / 1e3:g} kN"
+    warm = "" if temperature == TIGHTENING_TEMPERATURE else f" {temperature:g} K"
     return ModelicaRecord(
-        name=make_identifier(f"{record_name} {force}" + (f" {moment:g} Nm" if moment else "")),
-        title=f"{record_name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
+        name=make_identifier(f"{record_name} {force}" + (f" {moment:g} Nm" if moment else "") + warm),
+        title=f"{record_name}, {force} per bolt"
+        + (f" and {moment:g} N m" if moment else "")
+        + (f" at{warm}" if warm else ""),
         table=tight.force_table,
         values=values
         | {

@@ -6,6 +6,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.law import TIGHTENING_TEMPERATURE, preload_at_temperature
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
@@ -13,7 +14,7 @@ from jointfmu.quantity import Array
 from ....inputs.drawing import faces, vdi2230
 from ....inputs.drawing.part import DrawingOptions, NewJoint, ParameterSheet
 from ....inputs.drawing.quantities import parse_quantity, parse_value, parse_values
-from ....inputs.drawing.tables import Thread, thread_source
+from ....inputs.drawing.tables import Thread, find_row, thread_source
 from ..gross_slip import PRELOAD_ENTRY, friction_results, preload_results
 from . import ATTACHMENTS, layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
@@ -325,6 +326,21 @@ def _add_bolts(
             f"{washers.length * 1e3:g} mm of washers, in series with {washers.describe()}"
         )
     parameter_sheet.add_parameter("bolt_stiffness", clamped_bolt.spring_stiffness, "derived", text)
+    _add_thermal_parameters(parameter_sheet, clamped_bolt)
+
+
+def _add_thermal_parameters(parameter_sheet: ParameterSheet, clamped_bolt: ClampedBolt) -> None:
+    """Add what the effect of temperature on the preload needs, apart from the materials of the sides."""
+    steel = find_row("materials", "steel")
+    alpha, text = steel.numbers["alpha"], "bolts of steel" + (" with washers" if clamped_bolt.washers else "")
+    parameter_sheet.add_parameter("bolt.alpha", alpha.value, alpha.kind, f"{text}: {alpha.source}")
+    plates = 1.0 / (1.0 / clamped_bolt.member_stiffness - clamped_bolt.washer_compliance)
+    text = "VDI 2230, 1/delta_P" + (" without the washers" if clamped_bolt.washers else "")
+    parameter_sheet.add_parameter("plate_stiffness", plates, "derived", text)
+    lengths = [part.thickness for part in clamped_bolt.clamped_parts]
+    for name, length in zip(("side1", "side2"), [*lengths, 0.0], strict=False):
+        text = "thickness of the plate" if length else "the thread is tapped in this side"
+        parameter_sheet.add_parameter(f"{name}.clamped_length", length, "user", text)
 
 
 def _add_embedding_loss(
@@ -478,6 +494,12 @@ def _design_facts(
     }
     if clamped_bolt.washers:
         facts |= _washer_facts(clamped_bolt)
+    if per_kelvin := preload_at_temperature(values, 0.0, TIGHTENING_TEMPERATURE + 1.0):
+        facts["preload_per_kelvin"] = (
+            per_kelvin,
+            "N/K",
+            "change of the preload of each bolt with the temperature of bolts and members, VDI 2230",
+        )
     facts |= _friction_facts(parameter_file, preload)
     if height_range and height_range.h_max > height_range.h_min and parameter_file.law == "roughness":
         h = float(parameter_file.values_by_name["h"])

@@ -1,5 +1,5 @@
 within JointStiffness.Components;
-model BoltedJoint "Bolted joint at a fixed preload: translation along three axes, side 1 fixed"
+model BoltedJoint "Bolted joint at a fixed preload and temperature: translation along three axes, side 1 fixed"
   parameter JointStiffness.Data.BoltedJoint data = JointStiffness.Data.<< record >>() "The tightened joint"
     annotation (choicesAllMatching=true);
   parameter Modelica.Units.SI.Mass mass(min=0) = data.mass "<< meta.mass >>";
@@ -146,7 +146,7 @@ equation
 <p>With <code>memory=false</code> shear is elastic, approaches &mu; g(0) and changes the normal force, with the FMU's law for the sum of its nodes: R = (1 + (&rho; g'(c) u/(&mu; g(0)))<sup>2</sup>)<sup>&frac12;</sup> at the displacement u, f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>/R, f<sub>z</sub> as above and &rho; g''(c) u<sup>2</sup>/(R (1 + R)).</p>
 <h4>Not in this table</h4>
 <ul>
-<li>Preload and moment are those of the record <code>data</code> and cannot change during a simulation. The FMU takes both as inputs.</li>
+<li>Preload, moment and temperature are those of the record <code>data</code> and cannot change during a simulation. The FMU takes all three as inputs.</li>
 <li>Side 2 does not rotate: only the FMU has rotations, moments and contact pressures.</li>
 <li>The FMU has separate sliders on each friction patch. At a small fraction of the friction limit, where few of them slip, the energy losses of component and FMU differ.</li>
 <li>The normal dissipation factor is interpolated linearly, within << damping_tolerance >>.</li>
