@@ -29,7 +29,7 @@ SLOPE = 1e-5
 
 
 def file_of(name: str, law_name: str) -> ParameterFile:
-    """Parameter file with a law. `roughness`: so flat that part of the real area is elastic at the usual load."""
+    """Parameter file of a law. `roughness`: so flat that part of the real area is elastic at usual loads."""
     file = load_default(MODELS[name].joint, law_name)
     if law_name == "table":
         return file
