@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.laws.roughness import FEW_SPOTS_STIFFNESS_FACTOR
+from jointfmu.contact.laws.table import StiffnessTable
 from jointfmu.parameters import ParameterFile
 
 PAGE_FOLDER = Path(__file__).with_name("native")
@@ -65,9 +66,18 @@ def _format_number(value: float | str) -> str:
 
 
 def law_variables(parameters: ParameterFile) -> dict[str, object]:
-    """Template variables of the contact law: its name, whether it is `roughness`, and FEW_SPOTS_FACTOR."""
+    """Template variables of the contact law.
+
+    Its name; whether it is `roughness` or `table`, and their template; numbers.
+    """
+    table = getattr(parameters.values, "table", None)
+    is_rough, is_table = parameters.law == ROUGHNESS_LAW, isinstance(table, StiffnessTable)
     return {
         "law": parameters.law,
-        "rough": parameters.law == ROUGHNESS_LAW,
+        "rough": is_rough,
+        "tabular": is_table,
+        "has_law_page": is_rough or is_table,
+        "law_page": "table.html" if is_table else "roughness.html",
         "few_spots": FEW_SPOTS_STIFFNESS_FACTOR,
+        "point_pressures": table.pressure if is_table else (),
     }

@@ -269,7 +269,7 @@ def add_law_functions(
     ]
     function_graph.add_function(
         "law_distribution",
-        "-> A_0 [m2], largest pressure [Pa], reference area [m2], exponent m, log-area of the stiffness onset",
+        "-> A_0 [m2], largest pressure [Pa], reference area [m2], exponent m, onset of the stiffness",
         [],
         head,
     )

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.contact.interface import HardnessLimitedLaw
 from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
 from jointfmu.contact.roughness import HEIGHT_FIELDS, check_heights, combined_height
 from jointfmu.joints import KINDS
@@ -51,7 +52,7 @@ def build_law_parameters(law: str, parameter_file: ParameterFile | None, setting
         known = (
             flatten_parameters(law_of(load_default(parameter_file.joint, law).values))
             | known
-            | {"H": float(file_law.hardness)}
+            | ({"H": float(file_law.hardness)} if isinstance(file_law, HardnessLimitedLaw) else {})
         )
     if law == ROUGHNESS_LAW:
         fractal, stated = (
@@ -131,8 +132,10 @@ def fractal_surfaces(law_values: dict[str, Any]) -> list[tuple[Number, Number, b
 
 
 def joints_with_law(law: str) -> list[str]:
-    """Names of the joints that have a law."""
-    return [name for name, kind in KINDS.items() if law in kind.laws]
+    """Names of the joints that have an interface law."""
+    return [
+        name for name, kind in KINDS.items() if law in kind.laws and law not in kind.laws_without_interface
+    ]
 
 
 def default_joint(law: str) -> str:
@@ -151,7 +154,7 @@ def load_law_file(path: Path, law: str) -> ParameterFile:
     Raises ValueError for a file of another joint, or if the law of the file is not an interface law.
     """
     file = load_parameter_file(path)
-    if law not in KINDS[file.joint].laws:
+    if file.joint not in joints_with_law(law):
         expected = " or ".join(repr(name) for name in joints_with_law(law))
         raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {expected}")
     if KINDS[file.joint].extract_law(file.values) is None:

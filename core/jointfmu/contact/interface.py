@@ -259,8 +259,8 @@ def find_validity_violations(
     messages = []
     if isinstance(law, HardnessLimitedLaw) and pressure > float(law.hardness):
         messages.append(
-            f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {law.hardness:.4g} Pa, "
-            "where the interface law ends: above it the whole contact yields, and the numbers are an "
+            f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {law.hardness:.4g} "
+            "Pa, where the interface law ends: above it the whole contact yields, and the numbers are an "
             "extrapolation"
         )
     limit = _full_contact_pressure(law, pressure)

@@ -40,8 +40,9 @@ class JointKind:
     package       : import name of its subpackage
     default_stem  : stem of the file name of its default parameter file
     laws          : {name of a law: class of the joint's parameter set with this law}, the default law first.
-                    Interface laws have their name in contact.laws.LAWS, other laws any name.
+                    Interface laws have their name in contact.laws.LAWS
     extract_law   : function, parameter set of the joint -> that of its interface law; None if it has none
+    laws_without_interface : names of the laws that are not the law of an interface; `extract_law` gives None
     models        : exported models; the first is the component of the joint in a system model
     surfaces      : rough surfaces whose parameters can be measured
     working_point : names of the inputs that fix the point of linearisation (preload, ...); the first one is
@@ -55,6 +56,7 @@ class JointKind:
     default_file_stem: str
     laws: Mapping[str, type[object]]
     extract_law: Callable[[Any], Any] = use_parameters_as_law
+    laws_without_interface: Sequence[str] = ()
     models: Sequence[Model]
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()

@@ -310,8 +310,8 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
     if not last > first:
         p = float(spots.sum_over_spots("load", first)) / area
         raise ValueError(
-            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.max_pressure):.3g} Pa: "
-            "the surface (D, G) leaves only plastic spots"
+            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.max_pressure):.3g} "
+            "Pa: the surface (D, G) leaves only plastic spots"
         )
     return refine_curve(
         lambda steps: _tabulate_between_log_areas(spots, area, first, last, steps), MIN_STEPS_PER_LOG_AREA

@@ -9,13 +9,18 @@ from typing import NamedTuple
 import numpy as np
 
 from jointfmu.contact import roughness
+from jointfmu.contact.laws import ROUGHNESS_LAW, TABLE_LAW
+from jointfmu.contact.surface import ElasticConstants, contact_modulus, contact_shear_modulus
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
+from ...common.judgement import find_rms_height
 from ...common.options import Option, format_option_flag
 from .. import fractal
 from ..catalogue import SourcedNumber
 from ..surfaces import form, reading
 from ..surfaces.scan_text import parse_spacing
+from .interface_table import add_interface_table
 from .part import DrawingOptions, ParameterSheet
 from .quantities import StatedNumber, parse_quantity
 from .reading import expand_to_sides, parse_number
@@ -53,11 +58,19 @@ FACE_OPTIONS = (
         is_list=True,
     ),
     Option("missing", "number that marks a missing point of scans, in the unit of their heights"),
+    Option(
+        "interface_table",
+        "file with measured or published points of the interface: columns pressure and stiffness (per area), "
+        "with units in the heading; in place of the roughness",
+        "FILE",
+    ),
     Option("longest_wave", "longest wavelength of the roughness [mm] (default: the cut-off of its Ra)"),
     Option("hardness", "hardness of the softer side [MPa], or as in 160HB, 180HV (default: of the material)"),
     Option("mu", "coefficient of friction [1], or its range as in 0.1..0.3 (default: 0.15, 0.1 to 0.3)"),
 )
 """Options of every joint with rough faces."""
+_ROUGHNESS_OPTIONS = ("finish", "Ra", "Rq", "Rz", "surface")
+"""Options that state the roughness."""
 DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
 """Coefficient of friction if the drawing states none, and its range [1]."""
 DEFAULT_MU_SOURCE = "usual value of dry machined metal, not measured; VDI 2230, Table A6: 0.1 to 0.3"
@@ -119,10 +132,21 @@ class HeightRange(NamedTuple):
     Rz: float
 
 
-def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> HeightRange:
+def find_law(options: DrawingOptions) -> str:
+    """Name of the interface law. Raises ValueError if --law contradicts --interface-table."""
+    stated = options.get("law")
+    if options["interface_table"] and stated:
+        raise ValueError(f"--law {stated} beside --interface-table; state one of them")
+    return TABLE_LAW if options["interface_table"] else stated or ROUGHNESS_LAW
+
+
+def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> HeightRange | None:
     """Add the parameters of materials, friction and roughness of the two faces to a parameter sheet.
 
-    Raises ValueError, one line: unknown names, roughness not stated or stated twice, a bad number or scan.
+    Returns the range of the heights; None if the stiffness is a table and no roughness is stated.
+
+    Raises ValueError, one line: unknown names, roughness not stated or stated twice, a bad number, scan or
+    table.
     """
     pair = read_materials(options)
     for prefix, material in zip(("side1", "side2"), pair, strict=True):
@@ -143,6 +167,12 @@ def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> Heigh
     else:
         parameter_sheet.add_drawing_number("mu", parse_quantity("mu", options["mu"]))
     parameter_sheet.add_parameter("traction_ratio", 0.1, "estimate", "vibration far below slip")
+    if options["interface_table"]:
+        sides = [ElasticConstants(**{n: m.numbers[n].value for n in ("E", "nu")}) for m in pair]
+        ratio = 4.0 * contact_shear_modulus(*sides) / contact_modulus(*sides)
+        add_interface_table(parameter_sheet, Path(options["interface_table"]), float(ratio))
+        if not any(options[name] for name in _ROUGHNESS_OPTIONS):
+            return None
     return _add_roughness(parameter_sheet, read_faces(options), options["longest_wave"])
 
 
@@ -222,7 +252,10 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
         raise ValueError("--surface and --finish are both given; state one of them: a scan has its own slope")
     if not heights:
         if finishes is None:
-            raise ValueError("the roughness is missing; expected --finish, --Ra, --Rq, --Rz or --surface")
+            raise ValueError(
+                "the roughness is missing; expected --finish, --Ra, --Rq, --Rz, --surface or "
+                "--interface-table"
+            )
         return _face_from_finish(finishes[0]), _face_from_finish(finishes[1])
     name = heights[0]
     texts = expand_to_sides(name, options[name])
@@ -304,6 +337,12 @@ def _face_from_scan(path: str, options: DrawingOptions) -> Face:
         f"{source}, waves up to {longest:.3g} m",
         {"Rq": scan.h},
     )
+
+
+def height_fact(parameter_file: ParameterFile) -> dict[str, tuple[float, str, str]]:
+    """Fact about the combined rms height of both faces; empty if it is not known."""
+    h = find_rms_height(parameter_file)
+    return {} if h is None else {"h": (float(h), "m", "combined rms height of both faces")}
 
 
 def warn_hardness(peak_pressure: float, hardness: float) -> list[str]:

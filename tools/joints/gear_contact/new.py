@@ -15,7 +15,7 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     from ...inputs.drawing.part import ParameterSheet
     from ...inputs.drawing.quantities import parse_value
 
-    sheet = ParameterSheet(KIND.name, "roughness")
+    sheet = ParameterSheet(KIND.name, faces.find_law(options))
     faces.add_faces(sheet, options)
     load = parse_value("load", options["load"])
     width = parse_value("width", options["width"])
@@ -39,11 +39,11 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
         "load": (load, "N", "normal load"),
         "half_width": (float(hertz.half_width), "m", "half width of the patch (Hertz)"),
         "p_hertz": (float(hertz.peak_pressure), "Pa", "largest pressure of smooth flanks (Hertz)"),
-        "h": (file.values_by_name["h"], "m", "combined rms height of both flanks"),
+        **faces.height_fact(file),
         "K_N": (float(state["K_N"]), "N/m", "stiffness of the rough interface at this load"),
         "s_rel": (float(state["s_rel"]), "m", "approach of the rough interface at this load"),
     }
-    return NewJoint(file, facts, faces.warn_hardness(float(hertz.peak_pressure), file.values_by_name["H"]))
+    return NewJoint(file, facts, faces.warn_hardness(float(hertz.peak_pressure), sheet.get_value("H")))
 
 
 def _parse_curvature(radius_text: str) -> float:

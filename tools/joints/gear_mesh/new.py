@@ -23,7 +23,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     """
     wheels, torque = _parse_wheels(options), parse_value("torque", options["torque"])
     wheels.check_geometry()
-    sheet = ParameterSheet(KIND.name, "roughness")
+    sheet = ParameterSheet(KIND.name, faces.find_law(options))
     faces.add_faces(sheet, options)
     moduli = (sheet.get_value("side1.E"), sheet.get_value("side2.E"))
     load = torque / wheels.base_radii[0]
@@ -52,7 +52,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.values_by_name["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
-        "h": (file.values_by_name["h"], "m", "combined rms height of both flanks"),
+        **faces.height_fact(file),
         "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
         "c_gamma": (
             wheels.mesh_stiffness(file.values_by_name["K_tooth"]),
@@ -75,7 +75,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         "tip_diameter2": (2.0 * wheels.tip_radii[1], "m", "tip diameter of wheel 2"),
         "deflection": (deflection, "m", "deflection of a tooth pair at this load"),
     }
-    hardness_warnings = faces.warn_hardness(float(hertz.peak_pressure), file.values_by_name["H"])
+    hardness_warnings = faces.warn_hardness(float(hertz.peak_pressure), sheet.get_value("H"))
     return NewJoint(file, facts, [*wheels.find_warnings(), *hardness_warnings])
 
 

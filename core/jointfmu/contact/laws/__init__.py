@@ -17,4 +17,4 @@ LAWS = {
     ROUGHNESS_LAW: RoughnessLaw,
     TABLE_LAW: TableLaw,
 }
-"""{name of the law: its parameter set class}; names are author and year of the paper, `roughness`, `table`."""
+"""{name of the law: its parameter set class}; author and year of a paper, or what is known."""

@@ -1,13 +1,13 @@
 r"""Interface law `table`: measured or published normal stiffness at some contact pressures.
 
-Between the points (p_i, K_i) ln K is a monotone cubic spline of ln p (Fritsch and Butland 1984, PCHIP), so K is
-positive, never falls, and has a continuous derivative. At the first and at the last point the spline has the
-slope of the chord to its neighbour. Below the first point
+Between the points (p_i, K_i) ln K is a monotone cubic spline of ln p (Fritsch and Butland 1984, PCHIP), so K
+is positive, never falls, and has a continuous derivative. At the first and at the last point the spline has
+the slope of the chord to its neighbour. Below the first point
 
 .. math::  K = K_1 (p/p_1)^n, \quad n = \min(\ln(K_2/K_1)/\ln(p_2/p_1), 1)
 
-and above the last point K is constant: an extrapolation, as above the hardness in the other laws. The approach
-is the integral of dp/K. Points of a power law K ~ p^n with n <= 1 give this power law.
+and above the last point K is constant: an extrapolation, as above the hardness in the other laws. The
+approach is the integral of dp/K. Points of a power law K ~ p^n with n <= 1 give this power law.
 """
 
 from collections.abc import Sequence
@@ -105,20 +105,20 @@ class StiffnessTable:
         count = len(self.pressure)
         if len(self.stiffness) != count or not 2 <= count <= MAX_TABLE_POINTS:
             raise ValueError(
-                f"table.pressure has {count} numbers and table.stiffness {len(self.stiffness)}; expected the "
-                f"same number, from 2 to {MAX_TABLE_POINTS}"
+                f"table.pressure has {count} numbers and table.stiffness {len(self.stiffness)}; expected "
+                f"the same number, from 2 to {MAX_TABLE_POINTS}"
             )
         for i in range(1, count):
             (p, q), (K, L) = self.pressure[i - 1 : i + 1], self.stiffness[i - 1 : i + 1]
             if not q >= MIN_PRESSURE_STEP * p:
                 raise ValueError(
-                    f"table.pressure[{i}] = {q:g} Pa follows {p:g} Pa; expected increasing pressures, each at "
-                    f"least {MIN_PRESSURE_STEP - 1.0:.1%} above the one before it"
+                    f"table.pressure[{i}] = {q:g} Pa follows {p:g} Pa; expected increasing pressures, each "
+                    f"at least {MIN_PRESSURE_STEP - 1.0:.1%} above the one before it"
                 )
             if not L >= K:
                 raise ValueError(
-                    f"table.stiffness[{i}] = {L:g} Pa/m is below the one before it, {K:g} Pa/m: the stiffness "
-                    "must not fall as the pressure rises"
+                    f"table.stiffness[{i}] = {L:g} Pa/m is below the one before it, {K:g} Pa/m: the "
+                    "stiffness must not fall as the pressure rises"
                 )
 
     @property
@@ -176,7 +176,7 @@ class TableLaw(CheckedParameters):
         return self.table.last_pressure
 
     def spot_distribution(self) -> SpotDistribution:
-        """Load and stiffness of the area A_0 as functions of u = ln(p/p_1), p_1 the pressure of the first point.
+        """Load and stiffness of the area A_0 over u = ln(p/p_1), with p_1 the pressure of the first point.
 
         load         : [N] p A_0
         normal       : [N/m] factor K(p) A_0
@@ -212,13 +212,13 @@ class TableLaw(CheckedParameters):
         messages = []
         if lowest_pressure < first:
             messages.append(
-                f"a pressure of {lowest_pressure:.4g} Pa is below the first point of the law table, {first:.4g} "
-                "Pa: the stiffness there is a power law through the first two points"
+                f"a pressure of {lowest_pressure:.4g} Pa is below the first point of the law table, "
+                f"{first:.4g} Pa: the stiffness there is a power law through the first two points"
             )
         if highest_pressure > last:
             messages.append(
-                f"a pressure of {highest_pressure:.4g} Pa is above the last point of the law table, {last:.4g} "
-                "Pa: the stiffness there is that of the last point"
+                f"a pressure of {highest_pressure:.4g} Pa is above the last point of the law table, "
+                f"{last:.4g} Pa: the stiffness there is that of the last point"
             )
         return messages
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.table import TableLaw
 from ...contact.laws.zhao2018 import Zhao2018
+from ...contact.surface import ElasticConstants
 from ...mechanics.footprint.bolts import BoltedFrame, PressureSource
 from ...mechanics.footprint.distribution import MergedDistribution, NodalField, PressureDistribution
 from ...mechanics.footprint.plate import BoltedPlate
@@ -129,6 +130,8 @@ class ElasticBodies:
 class BoltParameters:
     """Parameters of the bolts, of the pressure under them, and of the members."""
 
+    side1: ElasticConstants = group_field("first body")
+    side2: ElasticConstants = group_field("second body")
     n_bolts: float = quantity_field("1", "number of bolts", ge=1.0, is_integer=True)
     row_bolts: float = quantity_field(
         "1", "bolts in each of the two rows that carry the moment", ge=1.0, is_integer=True

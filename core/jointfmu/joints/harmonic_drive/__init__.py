@@ -16,6 +16,7 @@ KIND = JointKind(
         "table": TableDriveParameters,
     },
     extract_law=lambda drive: drive.law,
+    laws_without_interface=("catalogue", "table"),
     models=MODELS,
     surfaces=(RoughSurface("surface", is_areal=True),),
 )

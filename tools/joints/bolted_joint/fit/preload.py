@@ -9,8 +9,9 @@ K_joint is nearly a power of the preload P, `K_N ~ P^(D/(3-D))` for D below 1.5 
 of two preloads or more determines two parameters: the exponent (D, below about 1.5) and the level, the factor
 of the power. The level depends on G, on the moduli and weakly on H: G is fitted, the others keep their start
 values. A_0 has no effect, because the law depends on loads, not on pressures. In the law `roughness` h sets
-the level, and the exponent is fixed. One preload determines the level alone. A resonance frequency determines
-only K/mass: without a stated mass the fit adjusts `mass` and keeps G or h.
+the level, in the law `table` table.factor; the exponent of both is fixed. One preload determines the level
+alone. A resonance frequency determines only K/mass: without a stated mass the fit adjusts `mass` and keeps G,
+h or table.factor.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -57,12 +58,14 @@ ASSUMED_NOISE = 0.05
 FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "zhao2018": ("surface.G", "surface.D"),
     "roughness": ("h",),
+    "table": ("table.factor",),
 }
 """{law: parameters to fit}: that of the stiffness level, and that of the exponent if the law has one."""
 START_VALUES: Mapping[str, tuple[float, ...]] = {
     "surface.D": (1.25, 1.42, 1.6),
     "surface.G": tuple(1.21e-8 * np.logspace(-3.0, 3.0, 7)),
     "h": (1e-7, 1e-6, 1e-5),
+    "table.factor": (0.1, 1.0, 10.0),
 }
 """{parameter: further start values of the search}, in addition to the values of the start file."""
 

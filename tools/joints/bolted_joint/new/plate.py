@@ -34,6 +34,8 @@ MAX_GRIP_RATIO = 50
 """Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
 MAX_HOLE_RATIO = 3.0
 """Largest diameter of the hole over that of the thread [1]."""
+UNSTATED_RZ = 10e-6
+"""Maximum height Rz [m] of faces whose roughness is not stated, for embedding: the usual one of Ra 1.6 um."""
 THREAD_DEPTH_RATIO = 1.0
 """Depth of a tapped thread over its diameter [1]: a usual value in steel."""
 
@@ -85,8 +87,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     length, width = parse_values("plate", options["plate"], separator="x", count=2)
     count, thread = layout.parse_bolts(options["bolts"])
     positions = layout.bolt_positions(options, count)
-    law = options["law"] or "roughness"
-    sheet = ParameterSheet(KIND.name, law)
+    sheet = ParameterSheet(KIND.name, faces.find_law(options))
     heights = faces.add_faces(sheet, options)
     hole, hole_source = _hole_diameter(options, thread)
     moduli = (sheet.get_value("side1.E"), sheet.get_value("side2.E"))
@@ -330,7 +331,7 @@ def _add_embedding_loss(
     parameter_sheet: ParameterSheet,
     options: DrawingOptions,
     clamped_bolt: ClampedBolt,
-    rms_height_range: faces.HeightRange,
+    height_range: faces.HeightRange | None,
 ) -> float:
     """Add the preload loss [N] by embedding to the sheet, and return it."""
     if options["embedding"] is not None:
@@ -338,7 +339,8 @@ def _add_embedding_loss(
         parameter_sheet.add_drawing_number("embedding", stated)
         return stated.value
     interfaces = 1 + (clamped_bolt.washers.count if clamped_bolt.washers else 0)
-    depth = vdi2230.embedding_depth(rms_height_range.Rz, interfaces, bool(options["tapped"]))
+    Rz = height_range.Rz if height_range else UNSTATED_RZ
+    depth = vdi2230.embedding_depth(Rz, interfaces, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
     interface_text = {
         1: "one interface",
@@ -348,8 +350,8 @@ def _add_embedding_loss(
     text = (
         f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, "
         f"{'head' if options['tapped'] else 'head and nut'}, "
-        f"{interface_text}, Rz {rms_height_range.Rz * 1e6:.2g} um, load along the bolt) "
-        "over delta_S + delta_P"
+        f"{interface_text}, Rz {Rz * 1e6:.2g} um{'' if height_range else ', not stated'}, load along the "
+        "bolt) over delta_S + delta_P"
     )
     parameter_sheet.add_parameter("embedding", loss, "estimate", text)
     return loss
@@ -433,7 +435,7 @@ def _washer_facts(clamped_bolt: ClampedBolt) -> dict[str, tuple[float, str, str]
 def _design_facts(
     parameter_file: ParameterFile,
     clamped_bolt: ClampedBolt,
-    rms_height_range: faces.HeightRange,
+    height_range: faces.HeightRange | None,
     preload: float,
 ) -> dict[str, tuple[float, str, str]]:
     """Facts for the designer: preload, pressures, stiffnesses, load factor, friction."""
@@ -451,11 +453,7 @@ def _design_facts(
         ),
         "p_mean": (float(state["p_mean"]), "Pa", "mean contact pressure"),
         "p_max": (float(state["p_max"]), "Pa", "largest contact pressure, near a bolt"),
-        "h": (
-            float(parameter_file.values_by_name.get("h", np.nan)),
-            "m",
-            "combined rms height of both faces",
-        ),
+        **faces.height_fact(parameter_file),
         "interface_K_zz": (
             K,
             "N/m",
@@ -481,15 +479,15 @@ def _design_facts(
     if clamped_bolt.washers:
         facts |= _washer_facts(clamped_bolt)
     facts |= _friction_facts(parameter_file, preload)
-    if rms_height_range.h_max > rms_height_range.h_min and parameter_file.law == "roughness":
+    if height_range and height_range.h_max > height_range.h_min and parameter_file.law == "roughness":
         h = float(parameter_file.values_by_name["h"])
         facts["interface_K_zz_low"] = (
-            K * h / rms_height_range.h_max,
+            K * h / height_range.h_max,
             "N/m",
             "with the largest of the heights",
         )
         facts["interface_K_zz_high"] = (
-            K * h / rms_height_range.h_min,
+            K * h / height_range.h_min,
             "N/m",
             "with the smallest of the heights",
         )
