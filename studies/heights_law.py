@@ -28,7 +28,7 @@ LIMITS = (0.45, 0.48, 0.5, 0.55)
 
 @cache
 def solved(kind, seed, points, scale=1):
-    """Bearing curve, skewness, pressures [E*] and stiffness [E* over side] by boundary elements of a surface."""
+    """Bearing curve, skewness, pressures [E*], stiffness [E* over side] of a surface by boundary elements."""
     kinds = KINDS | FEW_HILLS
     number = 1000 * list(kinds).index(kind)
     z = kinds[kind](seed + number, points, *([scale] if scale > 1 else []))

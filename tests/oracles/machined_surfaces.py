@@ -23,7 +23,7 @@ def standard(z):
 
 
 def turned(seed, points, grooves, roughness, scale=1):
-    """Parabolic feed grooves with Gaussian roughness across and along; `scale` times as many grooves and hills."""
+    """Parabolic feed grooves with isotropic Gaussian roughness; `scale` times as many grooves and hills."""
     x = np.arange(points) * grooves * scale / points % 1.0 - 0.5
     groove = standard(np.broadcast_to(x[:, None] ** 2, (points, points)))
     return standard(groove + roughness * gaussian(seed, points, 8 * scale))

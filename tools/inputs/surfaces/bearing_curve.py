@@ -1,10 +1,10 @@
 """Contact stiffness from the bearing curve: pressure over the decay length of the upper tail of the heights.
 
-In elastic contact of many hills the pressure grows with the approach as exp(approach/l), so the stiffness per
-area is k = p/l. For Gaussian heights l = gamma h (Persson 2007). For other heights l follows from the part of the
-surface that carries the load: a plane cuts the heights in a section of the area share a, and l is the mean excess
-of the heights above this plane. Two constants are fitted to boundary elements (studies/validity_stiffness.py
-heights); docs/validity_stiffness.md has the range of validity.
+In elastic contact of many hills the pressure grows with the approach as exp(approach/l), so the stiffness
+per area is k = p/l. For Gaussian heights l = gamma h (Persson 2007). For other heights l follows from the
+part of the surface that carries the load: a plane cuts the heights in a section of the area share a, and l is
+the mean excess of the heights above this plane. Two constants are fitted to boundary elements
+(studies/validity_stiffness.py heights); docs/validity_stiffness.md has the range of validity.
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,22 @@ import numpy as np
 from jointfmu.quantity import Array
 
 SECTION_AREA_FACTOR = 4.0
-"""Area share of the section over p/(E* h'_c) [1] at light load, with the rms slope h'_c of the section. The real
-contact area is half of the section, as in Hertz contact."""
+"""Area share of the section over p/(E* h'_c) [1] at light load, with the rms slope h'_c of the section. The
+real contact area is half of the section, as in Hertz contact."""
 GAUSSIAN_DECAY_LIMIT = 0.48
-"""Decay length over the rms height of Gaussian heights [1] at heavy load (Akarapu, Sharp and Robbins 2011)."""
+"""Decay length over the rms height of Gaussian heights [1] at heavy load (Akarapu, Sharp, Robbins 2011)."""
 MIN_SECTION_POINTS = 100
-"""Smallest number of points of a section [1]: fewer belong to a few summits."""
+"""Smallest number of points of a section [1]: fewer belong to a few summits. A profile of few points has at
+least an eighth of its points in a section."""
 MIN_SHARE, MAX_SHARE = 1e-3, 0.38
 """Smallest and largest area share of the section [1] that was compared with boundary elements: pressures of
 0.0003 to 0.1 E* h' on Gaussian heights."""
 TYPICAL_SHARE = 0.03
 """Area share of the section [1] at which the tail is compared with Gaussian heights."""
+MAX_GAUSSIAN_RATIO = 1.3
+"""Largest ratio [1] of h and the height of the tail, either way, of heights that count as Gaussian."""
+TABLE_FACTOR_RANGE = (1.0 / 1.5, 1.5)
+"""Range of the stiffness of single surfaces over the law [1]."""
 RANDOM_PAIRS = 2**18
 """Number of random pairs of points of two surfaces [1]."""
 
@@ -56,7 +61,7 @@ def add_surfaces(first: HeightSample, second: HeightSample) -> HeightSample:
 
 
 def gaussian_mean_excess(share: Array) -> Array:
-    """Mean excess of Gaussian heights above the plane that cuts an area share a (n) [1], over their rms height."""
+    """Mean excess of Gaussian heights above the plane that cuts a share a (n) [1], over their rms height."""
     from scipy.special import ndtri
 
     plane = -ndtri(share)
@@ -78,10 +83,11 @@ class BearingCurve:
 
     @classmethod
     def of_sample(cls, sample: HeightSample, points: int = 200) -> "BearingCurve":
-        """Bearing curve from MIN_SECTION_POINTS highest points to three quarters of the surface."""
+        """Bearing curve from the MIN_SECTION_POINTS highest points to three quarters of the surface."""
         order = np.argsort(sample.heights)[::-1]
         z = sample.heights[order]
-        count = np.unique(np.geomspace(MIN_SECTION_POINTS, 0.75 * z.size, points).astype(int))
+        first = min(MIN_SECTION_POINTS, z.size // 8)
+        count = np.unique(np.geomspace(first, 0.75 * z.size, points).astype(int))
         mean, slope = (np.cumsum(v)[count - 1] / count for v in (z, sample.squared_slopes[order]))
         return cls(count / z.size, mean - z[count - 1], np.sqrt(slope))
 
@@ -89,15 +95,15 @@ class BearingCurve:
     def decay_length(self) -> Array:
         """Decay length l [m] at each section: p ~ exp(approach/l).
 
-        The mean excess; on sections whose mean excess would be above GAUSSIAN_DECAY_LIMIT h on Gaussian heights,
-        lowered in this proportion: there the hills interact.
+        It is the mean excess. At heavy load the hills interact: where the mean excess of Gaussian heights
+        would be above GAUSSIAN_DECAY_LIMIT h, the mean excess is lowered by the same factor.
         """
         limit = GAUSSIAN_DECAY_LIMIT / gaussian_mean_excess(self.share)
         return np.asarray(self.mean_excess * np.minimum(limit, 1.0))
 
     @property
     def tail_height(self) -> float:
-        """Rms height [m] of the Gaussian heights with the same mean excess at the section of TYPICAL_SHARE."""
+        """Rms height [m] of Gaussian heights with the same mean excess at the section of TYPICAL_SHARE."""
         excess = np.interp(TYPICAL_SHARE, self.share, self.mean_excess)
         return float(excess / gaussian_mean_excess(np.array(TYPICAL_SHARE)))
 
@@ -118,6 +124,6 @@ class BearingCurve:
         return float(low), float(high)
 
     def stiffness_table(self, modulus: float, points: int = 16) -> tuple[Array, Array]:
-        """Pressures [Pa] and non-decreasing stiffness [Pa/m] of the law `table`, from the sections up to MAX_SHARE."""
+        """Pressures [Pa] and stiffness [Pa/m] of the law `table`, which must not fall; up to MAX_SHARE."""
         p = np.geomspace(self.pressure(modulus)[0], self.checked_pressures(modulus)[1], points)
         return p, np.maximum.accumulate(self.stiffness(p, modulus))
