@@ -28,6 +28,8 @@ TYPICAL_SHARE = 0.03
 """Area share of the section [1] at which the tail is compared with Gaussian heights."""
 MAX_GAUSSIAN_RATIO = 1.3
 """Largest ratio [1] of h and the height of the tail, either way, of heights that count as Gaussian."""
+MIN_SKEWNESS = 1e-3
+"""Skewness [1] below which heights are Gaussian."""
 TABLE_FACTOR_RANGE = (1.0 / 1.5, 1.5)
 """Range of the stiffness of single surfaces over the law [1]."""
 RANDOM_PAIRS = 2**18
@@ -66,6 +68,27 @@ def gaussian_mean_excess(share: Array) -> Array:
 
     plane = -ndtri(share)
     return np.asarray(np.exp(-0.5 * plane**2) / (np.sqrt(2.0 * np.pi) * share) - plane)
+
+
+def skewed_tail_ratio(skewness: float) -> float:
+    """Height of the tail over the rms height [1] of lognormal heights with a skewness; Gaussian: 1.
+
+    With a negative skewness the heights are mirrored: pits below a flat top.
+    """
+    from scipy.optimize import brentq
+    from scipy.special import ndtr, ndtri
+
+    if abs(skewness) < MIN_SKEWNESS:
+        return 1.0
+
+    def excess_skewness(s: float) -> float:
+        return float((np.exp(s**2) + 2.0) * np.sqrt(np.expm1(s**2)) - abs(skewness))
+
+    s = brentq(excess_skewness, 1e-6, 2.0) * np.sign(skewness)
+    plane, share = -ndtri(TYPICAL_SHARE), np.array(TYPICAL_SHARE)
+    excess = np.exp(0.5 * s**2) * ndtr(s - plane) / share - np.exp(s * plane)
+    rms = np.exp(0.5 * s**2) * np.sqrt(np.expm1(s**2)) * np.sign(s)
+    return float(excess / rms / gaussian_mean_excess(share))
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,11 +14,15 @@ import numpy as np
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from .heights import ArealMap
+from .heights import MIN_AREAL_POINTS, ArealMap
 
 MAX_SIDE_POINTS = 256
 """Largest number of points along a side that is solved. Most scans are finer, but the stiffness hardly
 depends on the short waves (docs/validity_stiffness.md)."""
+MIN_SIDE_POINTS = 2 * MIN_AREAL_POINTS
+"""Smallest number of points along a side, for the sub-areas."""
+MAX_ASPECT_RATIO = 4
+"""Largest ratio of the sides that is solved [1]."""
 SUB_AREAS = 2
 """Number of sub-areas along a side, whose scatter gives the range."""
 MIN_CONTACT_POINTS = 16
@@ -68,11 +72,20 @@ def gap_of_scans(scans: Sequence[ArealMap]) -> ArealMap:
     return first.with_heights(first.z[:rows, :columns] + second.z[:rows, :columns][:, ::-1])
 
 
-def coarsen(heights: ArealMap, max_points: int) -> ArealMap:
-    """Mean heights of square blocks of points, so that no side has more than max_points."""
-    block = -(-max(heights.z.shape) // max_points)
-    rows, columns = (n // block * block for n in heights.z.shape)
-    z = heights.z[:rows, :columns].reshape(rows // block, block, columns // block, block).mean(axis=(1, 3))
+def coarsen(heights: ArealMap) -> ArealMap:
+    """Mean heights of square blocks of points, so that the grid has about MAX_SIDE_POINTS^2 points.
+
+    A long scan is cut to MAX_ASPECT_RATIO. Raises ValueError for fewer than MIN_SIDE_POINTS along a side.
+    """
+    short = min(heights.z.shape)
+    if short < MIN_SIDE_POINTS:
+        raise ValueError(
+            f"{heights.name}: {short} points along a side; boundary elements need at least {MIN_SIDE_POINTS}"
+        )
+    z = heights.z[: MAX_ASPECT_RATIO * short, : MAX_ASPECT_RATIO * short]
+    block = max(1, min(int(np.ceil(np.sqrt(z.size) / MAX_SIDE_POINTS)), short // MIN_SIDE_POINTS))
+    rows, columns = (n // block * block for n in z.shape)
+    z = z[:rows, :columns].reshape(rows // block, block, columns // block, block).mean(axis=(1, 3))
     return ArealMap(z=z, dx=block * heights.dx, dy=block * heights.dy, name=heights.name)
 
 
@@ -83,7 +96,7 @@ def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedSti
 
     The sub-areas are elastic. Raises ValueError if too few points touch.
     """
-    grid = coarsen(gap, MAX_SIDE_POINTS)
+    grid = coarsen(gap)
     pressure = np.array(LOADS) * modulus * _rms_slope(grid)
     pressure = pressure[pressure < 0.5 * hardness]
     parts = [grid, *_sub_areas(grid)]
@@ -132,8 +145,14 @@ def _press(
     grid: ArealMap, pressures: Array, modulus: float, hardness: float, steps: Iterator[int]
 ) -> Iterator[tuple[float, float, int]]:
     """Per pressure: stiffness per area [Pa/m], share of the contact at the hardness, points in contact."""
-    from ContactMechanics import PeriodicFFTElasticHalfSpace
-    from ContactMechanics.Optimization import constrained_conjugate_gradients
+    try:
+        from ContactMechanics import PeriodicFFTElasticHalfSpace
+        from ContactMechanics.Optimization import constrained_conjugate_gradients
+    except ImportError:
+        raise ValueError(
+            "the package ContactMechanics is missing, needed to solve the contact of a scan: "
+            "pip install 'jointfmu[surface]'"
+        ) from None
 
     sides = (grid.z.shape[0] * grid.dy, grid.z.shape[1] * grid.dx)
     area, point = sides[0] * sides[1], grid.dx * grid.dy

@@ -134,7 +134,7 @@ def _run_identify(args: argparse.Namespace) -> CommandResult:
     if args.solve or base or args.table:
         points = _find_points(identified, heights, args)
     if args.joint and _needs_table(identified, args) and has_table_law(args.joint):
-        base = replace(load_default(args.joint, TABLE_LAW), roughness={})
+        base = _load_table_default(args.joint, args.files)
     file = with_surface(base, identified, args.method, args.force) if base else None
     if file and points and file.law == TABLE_LAW and has_table_law(file.joint):
         file = with_points(file, points)
@@ -147,6 +147,12 @@ def _run_identify(args: argparse.Namespace) -> CommandResult:
 
         draw_identification(identified, args.plot)
     return results.build_result(identified, heights, file, points, args)
+
+
+def _load_table_default(joint: str, scans: list[Path]) -> ParameterFile:
+    """Default file of a joint with the law `table`, named after the scans."""
+    name = f"{load_default(joint).name}, interface of {' and '.join(path.name for path in scans)}"
+    return replace(load_default(joint, TABLE_LAW), roughness={}, name=name)
 
 
 def _needs_table(identification: "Identification", args: argparse.Namespace) -> bool:

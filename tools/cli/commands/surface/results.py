@@ -232,7 +232,7 @@ def build_result(
         )
     judgement = (
         judge_joint_stiffness(parameter_file)
-        if parameter_file and parameter_file.law != ROUGHNESS_LAW
+        if parameter_file and parameter_file.law not in (ROUGHNESS_LAW, TABLE_LAW)
         else Plausibility(None, ())
     )
     prefix = f"law {parameter_file.law}: " if parameter_file else ""
@@ -261,11 +261,11 @@ def _format_tail(identification: Identification) -> str:
     """Text on what the shape of the heights does to the stiffness."""
     ratio = 1.0 / identification.tail_ratio
     if identification.is_gaussian:
-        return f"highest points: as of Gaussian heights, stiffness {ratio:.2f} times that of p/(gamma h)"
-    why = "flatter, as of a plateau" if ratio > 1.0 else "more peaked"
+        return f"highest points: as of Gaussian heights, stiffness {ratio:.2f} times p/(gamma h)"
+    shape = "closer together (plateau)" if ratio > 1.0 else "farther apart (peaks)"
     return (
-        f"highest points: {why} than Gaussian heights, stiffness about {ratio:.2g} times that of "
-        "p/(gamma h); the law table takes it into account"
+        f"highest points: {shape} than those of Gaussian heights, stiffness about {ratio:.2g} times "
+        f"p/(gamma h): law {TABLE_LAW}"
     )
 
 
