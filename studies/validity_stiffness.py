@@ -11,12 +11,14 @@ elastic         : elastic stiffness and real area without units
 own-surfaces    : each law on its own surface
 grids           : influence of band and grid
 roughness       : the law `roughness`, see roughness_law.py
+heights         : the law of heights that are not Gaussian, see heights_law.py
 
 `--images` draws the pictures of the sections into docs/images.
 """
 
 from dataclasses import replace
 
+import heights_law
 import numpy as np
 import roughness_law
 from common import IMAGES, format_mean_and_deviation, heading, row, run_study
@@ -391,6 +393,7 @@ if __name__ == "__main__":
             "own-surfaces": own_surfaces_section,
             "grids": lambda _: print_grids(),
             "roughness": roughness_section,
+            "heights": lambda _: heights_law.print_heights(),
         },
         options={"--images": {"action": "store_true", "help": "draw the pictures into docs/images"}},
     )

@@ -16,6 +16,7 @@ from jointfmu.parameters import load_parameter_file as load_file
 
 from ..common import plots
 from ..common.options import Option
+from ..inputs.drawing.faces import warn_unknown_shape
 from ..inputs.drawing.part import NewJoint, NewJointCommand
 from ..inputs.drawing.reading import parse_number
 from ..inputs.fitting.outcome import FitResult, draw_fit, figure_size, format_deviation
@@ -93,10 +94,9 @@ def make_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str
         o.name for o in joint_command.options if o.is_required and option_values.get(o.name) is None
     ]:
         raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].help_text}")
-    new: NewJoint = joint_command.make_joint(
-        {name: _to_command_line_value(o, option_values.get(name)) for name, o in options.items()}
-    )
-    return create_joint(new.file, new.facts, new.warnings)
+    texts = {name: _to_command_line_value(o, option_values.get(name)) for name, o in options.items()}
+    new: NewJoint = joint_command.make_joint(texts)
+    return create_joint(new.file, new.facts, [*new.warnings, *warn_unknown_shape(texts)])
 
 
 @contextmanager

@@ -19,6 +19,7 @@ from ...common.options import Option, format_option_flag
 from .. import fractal
 from ..catalogue import SourcedNumber
 from ..surfaces import form, reading
+from ..surfaces.bearing_curve import skewed_tail_ratio
 from ..surfaces.scan_text import parse_spacing
 from .interface_table import add_interface_table
 from .part import DrawingOptions, ParameterSheet
@@ -37,7 +38,7 @@ FACE_OPTIONS = (
     Option(
         "finish",
         "finish of both sides, or of each side (jointfmu new finishes); with --Ra, --Rq or --Rz it gives the "
-        "slope only",
+        "slope and the range of the shape of the heights only",
         "NAME",
         is_list=True,
     ),
@@ -99,6 +100,7 @@ class Face(NamedTuple):
     height_source             : source of the height
     stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
     is_from_finish            : whether a finish alone gives the height
+    skewness                  : smallest and largest skewness of the finish [1]; None: no finish
     """
 
     Rq: float
@@ -111,6 +113,7 @@ class Face(NamedTuple):
     height_source: str
     stated_heights: dict[str, float]
     is_from_finish: bool = False
+    skewness: tuple[float, float] | None = None
 
 
 def read_materials(options: DrawingOptions) -> tuple[TableRow, TableRow]:
@@ -191,9 +194,7 @@ def _add_roughness(
     )
     if high > low and not any(face.is_from_finish for face in faces):
         parameter_sheet.set_parameter_range("h", low, high)
-    parameter_sheet.add_parameter(
-        "gamma", roughness.PERSSON_GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)"
-    )
+    _add_gamma(parameter_sheet, faces, h)
     longest = max((face.longest_wave for face in faces), key=lambda known: known.value)
     if longest_wave is None:
         parameter_sheet.add_sourced_number("longest_wave", longest)
@@ -213,6 +214,33 @@ def _add_roughness(
             f"{name}{i + 1}": (v, kind, face.height_source) for name, v in face.stated_heights.items()
         }
     return HeightRange(low, high, max(face.Rz for face in faces))
+
+
+def _add_gamma(parameter_sheet: ParameterSheet, faces: tuple[Face, Face], h: float) -> None:
+    """Add gamma of Gaussian heights, with the range that the skewness of the finishes gives."""
+    text = "boundary elements: 0.40 to 0.48 (docs/validity.md)"
+    ends = [face.skewness for face in faces if face.skewness]
+    if len(ends) < len(faces):
+        parameter_sheet.add_parameter("gamma", roughness.PERSSON_GAMMA, "derived", text)
+        return
+    low, high = (
+        sum(end[i] * face.Rq**3 for end, face in zip(ends, faces, strict=True)) / h**3 for i in (0, 1)
+    )
+    text += f"; range: skewness {low:.2g} to {high:.2g} of both sides together (docs/surfaces_explanation.md)"
+    parameter_sheet.add_parameter("gamma", roughness.PERSSON_GAMMA, "estimate", text)
+    limits = (roughness.PERSSON_GAMMA * skewed_tail_ratio(skewness) for skewness in (low, high))
+    parameter_sheet.set_parameter_range("gamma", *limits)
+
+
+def warn_unknown_shape(options: DrawingOptions) -> list[str]:
+    """Warning if a height alone is stated for the law `roughness`: the shape of the heights is unknown."""
+    stated = [name for name in ("Ra", "Rq", "Rz") if options.get(name)]
+    if not stated or options.get("finish") or find_law(options) != ROUGHNESS_LAW:
+        return []
+    return [
+        f"{stated[0]} alone does not tell the shape of the heights: of plateaus (ground, honed, lapped) the "
+        "interface is up to several times stiffer; --finish gives the range, jointfmu surface the heights"
+    ]
 
 
 def _add_fractal_parameters(parameter_sheet: ParameterSheet) -> None:
@@ -288,8 +316,23 @@ def _face_from_finish(finish_name: str) -> Face:
     slope, hurst = known.numbers["slope"], known.numbers["hurst"]
     wave = _cut_off_wavelength(Ra)
     return Face(
-        Rq, Rq_low, Rq_high, RZ_OVER_RA * Ra, slope, hurst, wave, text, {"Ra": Ra}, is_from_finish=True
+        Rq,
+        Rq_low,
+        Rq_high,
+        RZ_OVER_RA * Ra,
+        slope,
+        hurst,
+        wave,
+        text,
+        {"Ra": Ra},
+        is_from_finish=True,
+        skewness=_skewness_limits(known),
     )
+
+
+def _skewness_limits(finish: TableRow) -> tuple[float, float]:
+    """Smallest and largest skewness of a finish [1]."""
+    return finish.numbers["skewness_low"].value, finish.numbers["skewness_high"].value
 
 
 def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | None) -> Face:
@@ -310,7 +353,9 @@ def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | 
         slope, hurst = finish.numbers["slope"], finish.numbers["hurst"]
     Ra = Rq / roughness.RQ_OVER_RA
     Rz = stated.value if roughness_name == "Rz" else RZ_OVER_RA * Ra
-    return Face(Rq, Rq_low, Rq_high, Rz, slope, hurst, _cut_off_wavelength(Ra), text, {key: height.value})
+    wave = _cut_off_wavelength(Ra)
+    shape = _skewness_limits(finish) if finish else None
+    return Face(Rq, Rq_low, Rq_high, Rz, slope, hurst, wave, text, {key: height.value}, skewness=shape)
 
 
 def _face_from_scan(path: str, options: DrawingOptions) -> Face:
@@ -334,7 +379,7 @@ def _face_from_scan(path: str, options: DrawingOptions) -> Face:
         SourcedNumber(scan.slope, "measured", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
         SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9"),
         SourcedNumber(longest, "measured", f"length of the {source}"),
-        f"{source}, waves up to {longest:.3g} m",
+        f"{source}, waves up to {longest:.3g} m, skewness {scan.sample.moment(3):.2f}",
         {"Rq": scan.h},
     )
 

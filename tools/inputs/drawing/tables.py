@@ -27,6 +27,9 @@ FINISH_COLUMNS = {
     "Ra_high": quantity_field("m", "greatest Ra"),
     "slope": quantity_field("1", "rms slope of one surface"),
     "hurst": quantity_field("1", "Hurst exponent"),
+    "skewness": quantity_field("1", "usual skewness of the heights"),
+    "skewness_low": quantity_field("1", "least skewness"),
+    "skewness_high": quantity_field("1", "greatest skewness"),
 }
 
 

@@ -4,13 +4,14 @@ h and slope are those of an isotropic surface, as the contact laws need them. A 
 its surface if the surface has no longer waves, and its slope over sqrt(2).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
+from .bearing_curve import HeightSample
 from .heights import FORM_NAMES, RELATIVE_ROUND_OFF, ArealMap, Heights
 
 Mask = NDArray[np.bool_]
@@ -191,6 +192,7 @@ class ScanRoughness:
     h             : [m] rms height of waves up to longest_wave
     slope         : [1] rms slope of the isotropic surface, of waves from longest_wave down to shortest_wave
     longest_wave, shortest_wave : wavelengths [m]
+    sample        : heights of waves from longest_wave down to shortest_wave, with their slopes
     """
 
     is_areal: bool
@@ -200,6 +202,7 @@ class ScanRoughness:
     slope: float
     longest_wave: float
     shortest_wave: float
+    sample: HeightSample = field(repr=False, compare=False)
 
 
 def default_longest_wave(heights: Heights) -> float:
@@ -227,7 +230,7 @@ def scan_roughness(heights_with_gaps: Heights, filled_heights: Heights, longest_
     transform). This needs no window and has no jump at the ends; the squared amplitudes add up to the mean
     square height. Only waves up to the longest wavelength count.
     """
-    from scipy.fft import dctn
+    from scipy.fft import dctn, idctn
 
     check_longest_wave(filled_heights, longest_wave)
     valid = heights_with_gaps.z[np.isfinite(heights_with_gaps.z)] - float(np.nanmean(heights_with_gaps.z))
@@ -238,7 +241,8 @@ def scan_roughness(heights_with_gaps: Heights, filled_heights: Heights, longest_
     )
     axes = [np.arange(n) / (2.0 * n * d) for n, d in zip(filled_heights.z.shape, spacings, strict=True)]
     squared = sum(f**2 for f in np.meshgrid(*axes, indexing="ij", sparse=True))
-    power = dctn(filled_heights.z, norm="ortho") ** 2 / filled_heights.z.size
+    waves = dctn(filled_heights.z, norm="ortho")
+    power = waves**2 / filled_heights.z.size
     shortest = _shortest_wave(filled_heights)
     inside = squared >= (1.0 - 1e-9) / longest_wave**2
     resolved = inside & (squared <= (1.0 + 1e-9) / shortest**2)
@@ -252,7 +256,19 @@ def scan_roughness(heights_with_gaps: Heights, filled_heights: Heights, longest_
         slope=float(slope),
         longest_wave=longest_wave,
         shortest_wave=shortest,
+        sample=_sample_heights(idctn(np.where(resolved, waves, 0.0), norm="ortho"), spacings, float(slope)),
     )
+
+
+def _sample_heights(z: Array, spacings: tuple[float, ...], slope: float) -> HeightSample:
+    """Sample of heights z on a grid, with the squared differences of neighbours scaled to the rms slope."""
+    squared = np.zeros_like(z)
+    for axis, spacing in enumerate(spacings):
+        difference = (np.diff(z, axis=axis) / spacing) ** 2
+        pad = [(1, 1) if n == axis else (0, 0) for n in range(z.ndim)]
+        padded = np.pad(difference, pad, mode="edge")
+        squared += 0.5 * (np.delete(padded, 0, axis) + np.delete(padded, -1, axis))
+    return HeightSample(z.ravel(), (squared * (slope**2 / squared.mean())).ravel())
 
 
 def _shortest_wave(heights: Heights) -> float:

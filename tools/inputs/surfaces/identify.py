@@ -9,6 +9,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
 from .. import fractal
+from .bearing_curve import add_surfaces
 from .fit import SelfAffineLaw, fit_law
 from .form import check_longest_wave, default_longest_wave, prepare_scan, scan_roughness
 from .heights import ArealMap, Heights
@@ -93,7 +94,9 @@ def identify(
         scan_roughness(surface.heights_with_gaps, surface.filled_heights, wave) for surface in prepared
     )
     notes = tuple(list_warnings(results, textured))
-    return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, side)
+    samples = [scan.sample for scan in scans]
+    gap = add_surfaces(samples[0], samples[-1]) if len(samples) == 2 or side == "both" else samples[0]
+    return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, gap, side)
 
 
 def make_two_sided_series(series: ScaleSeries) -> ScaleSeries:

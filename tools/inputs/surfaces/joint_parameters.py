@@ -2,7 +2,7 @@
 
 import math
 
-from jointfmu.contact.laws import ROUGHNESS_LAW
+from jointfmu.contact.laws import ROUGHNESS_LAW, TABLE_LAW
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import RoughSurface
 from jointfmu.parameters import ParameterFile
@@ -68,7 +68,8 @@ def with_surface(
     """Set the parameters of a file that follow from a measured surface, with their sources.
 
     These are the rms heights of the measured sides. With the law `roughness` also slope, longest wave and, if
-    it is determined, the Hurst exponent. With other laws also D and G, if they are determined.
+    it is determined, the Hurst exponent. With fractal laws also D and G, if they are determined. With the law
+    `table` none: `stiffness_table.with_points` sets its points.
 
     set_undetermined : set D and G or the Hurst exponent even if they are not determined; ValueError if one is
         not finite
@@ -76,6 +77,8 @@ def with_surface(
     sure = set_undetermined or undetermined_reason(identification, file.joint) is None
     if file.law == ROUGHNESS_LAW:
         file = _with_roughness_law(file, identification, method, sure)
+    elif file.law == TABLE_LAW:
+        return file  # its points follow from the heights: nothing to compare
     elif sure:
         file = _with_fractal_parameters(file, identification, method)
     for side, scan in identification.roughness_by_side.items():

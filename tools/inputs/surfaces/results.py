@@ -11,6 +11,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from ..fractal import second_difference_ratio
+from .bearing_curve import MAX_GAUSSIAN_RATIO, BearingCurve, HeightSample
 from .fit import SelfAffineLaw
 from .form import Repair, ScanRoughness
 from .heights import ArealMap
@@ -104,6 +105,7 @@ class Identification:
     warnings    : messages for the user
     is_textured : whether a surface is textured (not isotropic)
     scans       : roughness of each file
+    gap         : heights of the measured sides together
     side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
     """
 
@@ -113,6 +115,7 @@ class Identification:
     warnings: tuple[str, ...]
     is_textured: bool
     scans: tuple[ScanRoughness, ...]
+    gap: HeightSample
     side: str | None = None
 
     @property
@@ -126,6 +129,21 @@ class Identification:
     def h(self) -> float:
         """Combined rms height [m] of both sides for waves up to longest_wave; unmeasured sides are smooth."""
         return float(np.sqrt(sum(scan.h**2 for scan in self.roughness_by_side.values())))
+
+    @property
+    def bearing_curve(self) -> BearingCurve:
+        """Bearing curve of the gap of the measured sides."""
+        return BearingCurve.of_sample(self.gap)
+
+    @property
+    def tail_ratio(self) -> float:
+        """Height of the tail of the heights over the rms height of the gap [1]; 1 for Gaussian heights."""
+        return self.bearing_curve.tail_height / float(self.gap.heights.std())
+
+    @property
+    def is_gaussian(self) -> bool:
+        """Whether the tail that carries the load is about as high as that of Gaussian heights."""
+        return 1.0 / MAX_GAUSSIAN_RATIO <= self.tail_ratio <= MAX_GAUSSIAN_RATIO
 
     @property
     def slope(self) -> float:

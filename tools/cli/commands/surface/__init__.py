@@ -5,17 +5,29 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu.contact.laws import ROUGHNESS_LAW
+from jointfmu.contact.laws import ROUGHNESS_LAW, TABLE_LAW
 from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter_text
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity.refusal import InputRefusal
 
 from ....common.judgement import find_rms_height
-from ....inputs.surfaces.heights import FORM_NAMES
+from ....inputs.drawing.reading import expand_to_sides
+from ....inputs.drawing.tables import find_row
+from ....inputs.surfaces.heights import FORM_NAMES, ArealMap, Heights
 from ....inputs.surfaces.reading import MAX_RMS_HEIGHT, read_heights
 from ....inputs.surfaces.scan_text import parse_spacing
 from ....inputs.surfaces.spectrum import SCAN_SIDES, SERIES_METHODS
+from ....inputs.surfaces.stiffness_table import (
+    INTERFACE_TABLE_FILE,
+    InterfacePoints,
+    MaterialPair,
+    has_table_law,
+    points_from_solution,
+    points_from_tail,
+    with_points,
+)
 from ...command import (
     DEFAULT_SUBCOMMANDS,
     CommandResult,
@@ -72,6 +84,10 @@ def add_command(command_parsers: SubParsers) -> None:
     find.add_argument("--side", choices=SCAN_SIDES, help=text)
     text = "method whose result the joint gets (default: the one with the smaller uncertainty)"
     find.add_argument("--method", choices=SERIES_METHODS, help=text)
+    text = "press the heights together by boundary elements: stiffness over pressure for the law table"
+    find.add_argument("--solve", action="store_true", help=text)
+    text = "material of both sides, or of each side (jointfmu new materials; default: steel)"
+    declare_argument(find, "--material", str, text, "NAME", nargs="+", default=["steel"])
     text = "frequency ratio in Eq. 30 of Zhao 2018; only G_eq30 depends on it"
     declare_argument(find, "--gamma", float, text, "GAMMA", default=1.5)
     find.add_argument(
@@ -82,8 +98,9 @@ def add_command(command_parsers: SubParsers) -> None:
         help=f"one of {', '.join(KINDS)}",
     )
     laws = dict.fromkeys(law for kind in KINDS.values() if kind.surfaces for law in kind.laws)
-    text = f"law of the joint: {ROUGHNESS_LAW} (default), which uses h, or a law that uses D and G: "
-    text += ", ".join(law for law in laws if law != ROUGHNESS_LAW)
+    text = f"law of the joint: {ROUGHNESS_LAW} (default of Gaussian heights), which uses h, {TABLE_LAW} "
+    text += "(default of other heights and of --solve), or a law that uses D and G: "
+    text += ", ".join(law for law in laws if law not in (ROUGHNESS_LAW, TABLE_LAW))
     declare_argument(find, "--law", str, text, "LAW", choices=[*laws])
     declare_argument(find, "--params", Path, "parameter file to start from (TOML)")
     text = (
@@ -92,6 +109,8 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     find.add_argument("--force", action="store_true", help=text)
     declare_output(find, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
+    text = "write stiffness over pressure for `jointfmu new --interface-table` (.csv)"
+    declare_output(find, "--table", INTERFACE_TABLE_FILE, text)
     declare_output(find, "--plot", PICTURE_FILE, "draw data, law and scaling range (.png, .svg)")
     synthesize.add_command(steps, SUBCOMMANDS[1])
 
@@ -111,14 +130,55 @@ def _run_identify(args: argparse.Namespace) -> CommandResult:
     span = tuple(args.span) if args.span else None
     identified = identify(heights, args.form, span, args.longest_wave, args.side, args.keep_spikes)
     _check_rms_heights(identified, args.force)
+    points = None
+    if args.solve or base or args.table:
+        points = _find_points(identified, heights, args)
+    if args.joint and _needs_table(identified, args) and has_table_law(args.joint):
+        base = _load_table_default(args.joint, args.files)
     file = with_surface(base, identified, args.method, args.force) if base else None
+    if file and points and file.law == TABLE_LAW and has_table_law(file.joint):
+        file = with_points(file, points)
     if args.out and file:
         write_parameter_text(args.out, format_parameter_file(file))
+    if args.table and points:
+        write_text(args.table, points.to_csv())
     if args.plot:
         from ....inputs.surfaces.results import draw_identification
 
         draw_identification(identified, args.plot)
-    return results.build_result(identified, heights, file, args)
+    return results.build_result(identified, heights, file, points, args)
+
+
+def _load_table_default(joint: str, scans: list[Path]) -> ParameterFile:
+    """Default file of a joint with the law `table`, named after the scans."""
+    name = f"{load_default(joint).name}, interface of {' and '.join(path.name for path in scans)}"
+    return replace(load_default(joint, TABLE_LAW), roughness={}, name=name)
+
+
+def _needs_table(identification: "Identification", args: argparse.Namespace) -> bool:
+    """Whether the joint gets the law `table`, because --law says so, or by default."""
+    if args.params:
+        return False
+    is_default = args.solve or not identification.is_gaussian
+    return args.law == TABLE_LAW or (args.law is None and is_default)
+
+
+def _find_points(
+    identification: "Identification", heights: list[Heights], args: argparse.Namespace
+) -> InterfacePoints:
+    """Stiffness over pressure: by boundary elements with --solve, else from the tail of the heights."""
+    names = expand_to_sides("material", args.material)
+    assert names is not None  # the option has a default
+    materials = MaterialPair.from_rows([find_row("materials", name) for name in names])
+    files = " and ".join(Path(name).name for name in identification.file_names)
+    if not args.solve:
+        return points_from_tail(identification.bearing_curve, materials, files)
+    maps = []
+    for surface, scan in zip(heights, identification.scans, strict=True):
+        if not isinstance(surface, ArealMap):
+            raise InputRefusal(f"{surface.name}: is a profile; boundary elements need an areal map", "solve")
+        maps.append(surface.with_heights(scan.sample.heights.reshape(surface.z.shape)))
+    return points_from_solution(maps, args.side == "both", materials, files)
 
 
 def _check_rms_heights(identification: "Identification", accept_any_height: bool) -> None:
@@ -134,6 +194,8 @@ def _check_rms_heights(identification: "Identification", accept_any_height: bool
 
 def _check_arguments(args: argparse.Namespace) -> None:
     """Raise ValueError before any file is read if an option is out of range or missing."""
+    if args.solve and (args.law or TABLE_LAW) != TABLE_LAW:
+        raise InputRefusal(f"law {args.law} has no points of the stiffness; leave --law out", "solve")
     if not 1.0 < args.gamma < float("inf"):
         raise ValueError(f"gamma = {args.gamma:g} is outside (1, inf)")
     if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):

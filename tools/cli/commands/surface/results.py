@@ -4,7 +4,7 @@ import argparse
 import math
 from collections.abc import Mapping, Sequence
 
-from jointfmu.contact.laws import ROUGHNESS_LAW
+from jointfmu.contact.laws import ROUGHNESS_LAW, TABLE_LAW
 from jointfmu.contact.roughness import PERSSON_GAMMA, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -18,6 +18,7 @@ from ....inputs.surfaces.form import ScanRoughness
 from ....inputs.surfaces.heights import ArealMap, Heights
 from ....inputs.surfaces.joint_parameters import dimension_meaning, fractal_parameters, undetermined_reason
 from ....inputs.surfaces.results import Estimate, FractalResult, Identification
+from ....inputs.surfaces.stiffness_table import InterfacePoints
 from ...command import CommandResult
 from . import synthesize
 
@@ -29,6 +30,7 @@ def results_to_json(
     identification: Identification,
     heights: Sequence[Heights],
     parameter_file: ParameterFile | None,
+    points: InterfacePoints | None,
     args: argparse.Namespace,
 ) -> dict[str, object]:
     """JSON object of all results, in SI units.
@@ -62,9 +64,22 @@ def results_to_json(
         },
         "joints": {joint: _joint_parameters_to_json(identification, joint, args) for joint in joints},
         "law": parameter_file.law if parameter_file else None,
+        "table": _points_to_json(points) if points else None,
         "level": judged["level"],
         "written": str(args.out) if args.out else None,
         "warnings": [*collect_warnings(identification, parameter_file, args), *judged["warnings"]],
+    }
+
+
+def _points_to_json(points: InterfacePoints) -> dict[str, object]:
+    """JSON object of stiffness over pressure."""
+    return {
+        "pressure": points.pressure.tolist(),
+        "stiffness": points.stiffness.tolist(),
+        "ratio": points.ratio,
+        "range": list(points.factor_range),
+        "at_hardness": points.yielded.tolist() or None,
+        "source": points.source,
     }
 
 
@@ -89,6 +104,8 @@ def _roughness_to_json(
                 "Sq" if scan.is_areal else "Rq": scan.rms_height,
                 "Sa" if scan.is_areal else "Ra": scan.mean_absolute_height,
                 "h": scan.h,
+                "Ssk" if scan.is_areal else "Rsk": scan.sample.moment(3),
+                "Sku" if scan.is_areal else "Rku": scan.sample.moment(4),
                 "slope": scan.slope,
             }
             for name, scan in zip(identification.file_names, identification.scans, strict=True)
@@ -98,6 +115,8 @@ def _roughness_to_json(
         "h": h,
         "slope": identification.slope,
         "stiffness_per_MPa": predicted_stiffness(STATED_STIFFNESS_PRESSURE, h),
+        "gaussian": identification.is_gaussian,
+        "tail_stiffness_ratio": 1.0 / identification.tail_ratio,
     }
 
 
@@ -154,7 +173,13 @@ def collect_warnings(
 ) -> list[str]:
     """Collect warnings about the identified surface and the written parameter file."""
     lines = list(identification.warnings)
-    if not parameter_file or not args.out:
+    if parameter_file and parameter_file.law == ROUGHNESS_LAW and not identification.is_gaussian:
+        ratio = 1.0 / identification.tail_ratio
+        lines.append(
+            f"the heights are not Gaussian: the stiffness is about {ratio:.2g} times that of the law "
+            f"{ROUGHNESS_LAW}; --table FILE writes it for jointfmu new --interface-table"
+        )
+    if not parameter_file or not args.out or parameter_file.law == TABLE_LAW:
         return lines
     why = undetermined_reason(identification, parameter_file.joint)
     names = (
@@ -179,17 +204,22 @@ def build_result(
     identification: Identification,
     heights: Sequence[Heights],
     parameter_file: ParameterFile | None,
+    points: InterfacePoints | None,
     args: argparse.Namespace,
 ) -> CommandResult:
     """Build the result of the command: lines, table and warnings.
 
     parameter_file : parameter file with the identified surface, if one is made
+    points         : stiffness over pressure, if it is computed
     """
     lines = [
         f"{surface.name}: {synthesize.format_size(surface)}; {_format_scan(scan)}"
         for surface, scan in zip(heights, identification.scans, strict=True)
     ]
     lines.append(_format_stiffness(identification, parameter_file))
+    lines.append(_format_tail(identification))
+    if points and args.solve:
+        lines += _format_solution(points)
     if len(heights) == 2:
         lines.append("equivalent surface of the pair: structure functions and spectra added")
     lines += [f"repaired in {name}: {repair}" for name, repair in identification.repairs]
@@ -202,7 +232,7 @@ def build_result(
         )
     judgement = (
         judge_joint_stiffness(parameter_file)
-        if parameter_file and parameter_file.law != ROUGHNESS_LAW
+        if parameter_file and parameter_file.law not in (ROUGHNESS_LAW, TABLE_LAW)
         else Plausibility(None, ())
     )
     prefix = f"law {parameter_file.law}: " if parameter_file else ""
@@ -211,10 +241,10 @@ def build_result(
         *collect_warnings(identification, parameter_file, args),
     ]
     return CommandResult(
-        json_document=results_to_json(identification, heights, parameter_file, args),
+        json_document=results_to_json(identification, heights, parameter_file, points, args),
         lines=[*lines, *(f"{prefix}{line}" for line in judgement.format_lines())],
         notes=[f"warning: {text}" for text in texts],
-        written_files=(args.out, args.plot),
+        written_files=(args.out, args.table, args.plot),
     )
 
 
@@ -222,8 +252,37 @@ def _format_scan(scan: ScanRoughness) -> str:
     q, a = ("Sq", "Sa") if scan.is_areal else ("Rq", "Ra")
     return (
         f"{q} = {1e6 * scan.rms_height:.4g} um, {a} = {1e6 * scan.mean_absolute_height:.4g} um, "
-        f"h = {1e6 * scan.h:.4g} um of waves up to {1e3 * scan.longest_wave:.4g} mm"
+        f"h = {1e6 * scan.h:.4g} um of waves up to {1e3 * scan.longest_wave:.4g} mm, "
+        f"{q[0]}sk = {scan.sample.moment(3):.2f}, {q[0]}ku = {scan.sample.moment(4):.2f}"
     )
+
+
+def _format_tail(identification: Identification) -> str:
+    """Text on what the shape of the heights does to the stiffness."""
+    ratio = 1.0 / identification.tail_ratio
+    if identification.is_gaussian:
+        return f"highest points: as of Gaussian heights, stiffness {ratio:.2f} times p/(gamma h)"
+    shape = "closer together (plateau)" if ratio > 1.0 else "farther apart (peaks)"
+    return (
+        f"highest points: {shape} than those of Gaussian heights, stiffness about {ratio:.2g} times "
+        f"p/(gamma h): law {TABLE_LAW}"
+    )
+
+
+def _format_solution(points: InterfacePoints) -> list[str]:
+    """Table of the stiffness by boundary elements, with what a scan cannot know."""
+    heads = ("p [MPa]", "k [N/m3]", "at the hardness")
+    rows = [
+        (f"{p / 1e6:.3g}", f"{k:.3g}", f"{100.0 * share:.0f} %")
+        for p, k, share in zip(points.pressure, points.stiffness, points.yielded, strict=True)
+    ]
+    low, high = points.factor_range
+    return [
+        *align_columns([heads, *rows]),
+        f"boundary elements; sub-areas: {low:.2f} to {high:.2f} times their mean",
+        "not in the scan: waves longer than the scan, flatness, and waves shorter than the solved grid; "
+        "short waves raise the stiffness of contacts at the hardness",
+    ]
 
 
 def _format_stiffness(identification: Identification, parameter_file: ParameterFile | None) -> str:

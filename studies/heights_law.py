@@ -1,0 +1,98 @@
+"""Tables of docs/validity_stiffness.md on the law of heights; part of validity_stiffness.py.
+
+The constants were fixed on surfaces with odd seeds. The tables have even seeds; `print_fit` has the odd ones.
+"""
+
+from functools import cache
+
+import numpy as np
+from common import heading, row
+from jointfmu_tools.inputs.surfaces import bearing_curve
+from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve
+from oracles.boundary_element import press, slope
+from oracles.machined_surfaces import FEW_HILLS, KINDS, sample_periodic
+
+from jointfmu.contact.roughness import predicted_stiffness
+from jointfmu.progress import track_progress
+
+POINTS, LOADS = 128, (0.003, 0.01, 0.03, 0.1)
+"""Points along a side, and pressures of the boundary elements [E* h']."""
+LIGHT_POINTS, LIGHT_LOADS, LIGHT_SCALE = 512, (0.0003, 0.001, 0.003), 4
+"""The same for light load, where waves are shorter by the scale: 16 times as many hills."""
+FITTED, PROVED = (1, 3), (0, 2)
+"""Seeds of the fit, and of the proof."""
+FACTORS = (2.0, 3.0, 4.0, 5.0, 6.0)
+LIMITS = (0.45, 0.48, 0.5, 0.55)
+"""Constants tried on the odd seeds: SECTION_AREA_FACTOR, GAUSSIAN_DECAY_LIMIT."""
+
+
+@cache
+def solved(kind, seed, points, scale=1):
+    """Bearing curve, skewness, pressures [E*], stiffness [E* over side] of a surface by boundary elements."""
+    kinds = KINDS | FEW_HILLS
+    number = 1000 * list(kinds).index(kind)
+    z = kinds[kind](seed + number, points, *([scale] if scale > 1 else []))
+    contacts = press(z, slope(z) * np.array(LOADS if scale == 1 else LIGHT_LOADS))
+    sample = sample_periodic(z)
+    p, k = np.array([[c.p, c.stiffness] for c in contacts]).T
+    return BearingCurve.of_sample(sample), sample.moment(3), p, k
+
+
+def ratios(kind, seeds, points=POINTS, scale=1, gaussian=False):
+    """Law over boundary elements (seeds, loads); with `gaussian`, of p/(0.45 h)."""
+    rows = []
+    for seed in seeds:
+        curve, _, p, k = solved(kind, seed, points, scale)
+        rows.append((predicted_stiffness(p, 1.0) if gaussian else curve.stiffness(p, 1.0)) / k)
+    return np.array(rows)
+
+
+def print_table(title, kinds, seeds, points=POINTS, scale=1):
+    """Print the law of heights, and p/(0.45 h), over boundary elements; return the ratios of the law."""
+    loads = LOADS if scale == 1 else LIGHT_LOADS
+    names = ("surface", "skewness", *(f"{load:g}" for load in loads), *(f"p/(0.45 h): {x:g}" for x in loads))
+    heading(f"{title}: law over boundary elements at p/(E* h')", *names)
+    found = []
+    for kind in track_progress(kinds, "surfaces"):
+        law = ratios(kind, seeds, points, scale)
+        plain = ratios(kind, seeds, points, scale, gaussian=True).mean(axis=0)
+        skewness = np.mean([solved(kind, seed, points, scale)[1] for seed in seeds])
+        cells = [f"{r.mean():.2f} ({r.min():.2f} to {r.max():.2f})" for r in law.T]
+        row(kind, f"{skewness:.1f}", *cells, *(f"{one:.2f}" for one in plain))
+        found.append(law)
+    law = np.array(found)
+    if len(kinds) > 2:
+        log, mean = np.log(law), law.mean(axis=1)
+        print(
+            f"\nrms of ln(law over boundary elements) {np.sqrt(np.mean(log**2)):.3f}; single cases beyond a "
+            f"factor of 1.5: {np.sum(np.abs(log) > np.log(1.5))} of {law.size}; means beyond 30 %: "
+            f"{np.sum(np.abs(mean - 1.0) > 0.3)} of {mean.size}"
+        )
+    return law
+
+
+def print_proof():
+    """Law of heights on the surfaces of the proof, on surfaces of few hills, at light load."""
+    print_table("surfaces of the proof", list(KINDS), PROVED)
+    print_table("fewer than 16 hills", list(FEW_HILLS), (0, 2, 4, 6))
+    print_table("light load, 16 times as many hills", list(KINDS), PROVED[:1], LIGHT_POINTS, LIGHT_SCALE)
+
+
+def print_fit():
+    """Root mean square of ln(law over boundary elements) on the odd seeds, over both constants."""
+    heading("rms of ln(law over boundary elements), odd seeds", "SECTION_AREA_FACTOR", *LIMITS)
+    kept = bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT
+    for factor in FACTORS:
+        cells = []
+        for limit in LIMITS:
+            bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT = factor, limit
+            log = np.log(np.concatenate([ratios(kind, FITTED) for kind in KINDS]))
+            cells.append(f"{np.sqrt(np.mean(log**2)):.3f}")
+        row(factor, *cells)
+    bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT = kept
+
+
+def print_heights():
+    """Fit and proof of the law of heights."""
+    print_fit()
+    print_proof()

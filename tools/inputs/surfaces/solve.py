@@ -1,0 +1,200 @@
+"""Contact stiffness of scanned heights by boundary elements (ContactMechanics), with the hardness as limit.
+
+The gap of both surfaces is pressed on a periodic elastic half-space (Polonsky and Keer 1999; pressure limited
+to the hardness: Almqvist and others 2007). The stiffness is that of small motions: all points in contact move
+together.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from jointfmu.progress import track_progress
+from jointfmu.quantity import Array
+
+from .heights import MIN_AREAL_POINTS, ArealMap
+
+MAX_SIDE_POINTS = 256
+"""Largest number of points along a side that is solved. Most scans are finer, but the stiffness hardly
+depends on the short waves (docs/validity_stiffness.md)."""
+MIN_SIDE_POINTS = 2 * MIN_AREAL_POINTS
+"""Smallest number of points along a side, for the sub-areas."""
+MAX_ASPECT_RATIO = 4
+"""Largest ratio of the sides that is solved [1]."""
+SUB_AREAS = 2
+"""Number of sub-areas along a side, whose scatter gives the range."""
+MIN_CONTACT_POINTS = 16
+"""Smallest number of points in contact [1] whose stiffness counts: fewer are one summit."""
+LOADS = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1)
+"""Pressures over E* h' [1], with the rms slope h' of the grid."""
+FORCE_TOLERANCE, GAP_TOLERANCE = 1e-5, 1e-3
+"""Tolerances of the solver: force of a point over the mean force, gap over the rms height [1]."""
+STIFFNESS_TOLERANCE = 1e-4
+MAX_ITERATIONS = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class SolvedStiffness:
+    """Stiffness of a scan by boundary elements.
+
+    pressure  : (n) nominal pressures [Pa]
+    stiffness : (n) normal stiffness per area [Pa/m]
+    low, high : smallest and largest stiffness of the sub-areas over their geometric mean [1]
+    yielded   : (n) share of the real contact area at the hardness [1]
+    spacing   : spacing of the solved grid [m]
+    """
+
+    pressure: Array
+    stiffness: Array
+    low: float
+    high: float
+    yielded: Array
+    spacing: float
+
+
+def gap_of_scans(scans: Sequence[ArealMap]) -> ArealMap:
+    """Gap of two facing scans over their common area, the second one mirrored; of one scan, its heights.
+
+    Raises ValueError if the spacings differ by more than 1 %.
+    """
+    first = scans[0]
+    if len(scans) == 1:
+        return first
+    second = scans[1]
+    if max(abs(second.dx / first.dx - 1.0), abs(second.dy / first.dy - 1.0)) > 0.01:
+        raise ValueError(
+            f"{second.name}: spacing = {second.dx:g} x {second.dy:g} m, {first.name} has {first.dx:g} x "
+            f"{first.dy:g} m; --solve needs the same spacing: resample one scan"
+        )
+    rows, columns = (min(a, b) for a, b in zip(first.z.shape, second.z.shape, strict=True))
+    return first.with_heights(first.z[:rows, :columns] + second.z[:rows, :columns][:, ::-1])
+
+
+def coarsen(heights: ArealMap) -> ArealMap:
+    """Mean heights of square blocks of points, so that the grid has about MAX_SIDE_POINTS^2 points.
+
+    A long scan is cut to MAX_ASPECT_RATIO. Raises ValueError for fewer than MIN_SIDE_POINTS along a side.
+    """
+    short = min(heights.z.shape)
+    if short < MIN_SIDE_POINTS:
+        raise ValueError(
+            f"{heights.name}: {short} points along a side; boundary elements need at least {MIN_SIDE_POINTS}"
+        )
+    z = heights.z[: MAX_ASPECT_RATIO * short, : MAX_ASPECT_RATIO * short]
+    block = max(1, min(int(np.ceil(np.sqrt(z.size) / MAX_SIDE_POINTS)), short // MIN_SIDE_POINTS))
+    rows, columns = (n // block * block for n in z.shape)
+    z = z[:rows, :columns].reshape(rows // block, block, columns // block, block).mean(axis=(1, 3))
+    return ArealMap(z=z, dx=block * heights.dx, dy=block * heights.dy, name=heights.name)
+
+
+def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedStiffness:
+    """Stiffness of a gap without form over a range of pressures, and its scatter over sub-areas.
+
+    modulus, hardness : contact modulus E* and hardness of the softer body [Pa]
+
+    The sub-areas are elastic. Raises ValueError if too few points touch.
+    """
+    grid = coarsen(gap)
+    pressure = np.array(LOADS) * modulus * _rms_slope(grid)
+    pressure = pressure[pressure < 0.5 * hardness]
+    parts = [grid, *_sub_areas(grid)]
+    steps = track_progress(range(len(parts) * pressure.size), "boundary elements")
+    contacts = [
+        list(_press(part, pressure, modulus, hardness if part is grid else np.inf, steps)) for part in parts
+    ]
+    stiffness, yielded, count = (np.array(v) for v in zip(*contacts[0], strict=True))
+    use = count >= MIN_CONTACT_POINTS
+    if use.sum() < 2:
+        raise ValueError(
+            f"{gap.name}: fewer than two pressures have {MIN_CONTACT_POINTS} points in contact; use a scan "
+            "of more points"
+        )
+    parts_stiffness = np.array([[k for k, _, _ in one] for one in contacts[1:]])[:, use]
+    ratio = np.exp(np.log(parts_stiffness) - np.mean(np.log(parts_stiffness), axis=0))
+    return SolvedStiffness(
+        pressure[use],
+        np.maximum.accumulate(stiffness[use]),
+        float(ratio.min()),
+        float(ratio.max()),
+        yielded[use],
+        grid.dx,
+    )
+
+
+def _sub_areas(grid: ArealMap) -> Iterator[ArealMap]:
+    """Equal parts of a grid, each without its tilt."""
+    from .form import remove_form
+
+    rows, columns = (n // SUB_AREAS for n in grid.z.shape)
+    for i in range(SUB_AREAS):
+        for j in range(SUB_AREAS):
+            part = grid.z[i * rows : (i + 1) * rows, j * columns : (j + 1) * columns]
+            plane = remove_form(ArealMap(z=part, dx=grid.dx, dy=grid.dy, name=grid.name))
+            yield grid.with_heights(plane.z)
+
+
+def _rms_slope(grid: ArealMap) -> float:
+    """Rms slope [1] of a grid by differences of neighbours."""
+    along_y, along_x = (np.diff(grid.z, axis=axis) for axis in (0, 1))
+    return float(np.sqrt(np.mean((along_x / grid.dx) ** 2) + np.mean((along_y / grid.dy) ** 2)))
+
+
+def _press(
+    grid: ArealMap, pressures: Array, modulus: float, hardness: float, steps: Iterator[int]
+) -> Iterator[tuple[float, float, int]]:
+    """Per pressure: stiffness per area [Pa/m], share of the contact at the hardness, points in contact."""
+    try:
+        from ContactMechanics import PeriodicFFTElasticHalfSpace
+        from ContactMechanics.Optimization import constrained_conjugate_gradients
+    except ImportError:
+        raise ValueError(
+            "the package ContactMechanics is missing, needed to solve the contact of a scan: "
+            "pip install 'jointfmu[surface]'"
+        ) from None
+
+    sides = (grid.z.shape[0] * grid.dy, grid.z.shape[1] * grid.dx)
+    area, point = sides[0] * sides[1], grid.dx * grid.dy
+    half_space = PeriodicFFTElasticHalfSpace(grid.z.shape, modulus, sides, stiffness_q0=0.0)
+    z = grid.z - grid.z.mean()
+    forces = None
+    for pressure in pressures:
+        next(steps, None)
+        mean_force = float(pressure) * point
+        options = {
+            "external_force": float(pressure) * area,
+            "pentol": GAP_TOLERANCE * float(z.std()),
+            "forcetol": FORCE_TOLERANCE * mean_force,
+            "maxiter": MAX_ITERATIONS,
+        }
+        result = constrained_conjugate_gradients(half_space, z, initial_forces=forces, **options)
+        forces = -np.asarray(result.jac)
+        limit = hardness * point
+        if -forces.min() > limit:
+            result = constrained_conjugate_gradients(
+                half_space, z, hardness=limit, initial_forces=np.maximum(forces, -limit), **options
+            )
+        force = np.asarray(result.jac)
+        touching = force > 0.0
+        flowing = force >= (1.0 - 1e-6) * limit
+        count = int(touching.sum())
+        yield _bonded_stiffness(half_space, touching) / area, float(flowing.sum() / count), count
+
+
+def _bonded_stiffness(half_space: Any, touching: Array) -> float:
+    """Stiffness [N/m] of small motions: force on all points in contact for a common unit displacement."""
+    from scipy.sparse.linalg import LinearOperator, cg
+
+    field = np.zeros(touching.shape)
+
+    def displacement(force: Array) -> Array:
+        field[touching] = -force  # forces of the package act on the half-space
+        return np.asarray(half_space.evaluate_disp(field))[touching]
+
+    count = int(touching.sum())
+    operator = LinearOperator((count, count), displacement, dtype=float)
+    scale = float(displacement(np.ones(count)).mean())
+    start = np.full(count, 1.0 / scale)
+    force, _ = cg(operator, np.ones(count), x0=start, rtol=STIFFNESS_TOLERANCE, maxiter=MAX_ITERATIONS)
+    return float(force.sum())

@@ -1,0 +1,124 @@
+"""Points of the interface law `table` from a scan: by boundary elements, or from the tail of the heights."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from jointfmu.contact.laws import TABLE_LAW
+from jointfmu.contact.laws.table import TableLaw
+from jointfmu.contact.surface import ElasticConstants, contact_modulus, contact_shear_modulus
+from jointfmu.files.outputs import PROGRAM_MARK, FileKind
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.quantity import Array
+
+from ..drawing.tables import TableRow
+from .bearing_curve import TABLE_FACTOR_RANGE, BearingCurve
+from .heights import ArealMap
+
+INTERFACE_TABLE_FILE = FileKind("table of an interface", (".csv",))
+"""Kind of the file with points that `surface --table` writes."""
+
+
+@dataclass(frozen=True, slots=True)
+class InterfacePoints:
+    """Normal stiffness per area over pressure, with its range.
+
+    pressure, stiffness : (n) [Pa], [Pa/m]
+    ratio               : K_T/K_N of elastic contact spots [1]
+    factor_range        : smallest and largest stiffness over that of the points [1]
+    source              : text on the origin
+    yielded             : (n) share of the contact at the hardness [1]; empty: not computed
+    """
+
+    pressure: Array
+    stiffness: Array
+    ratio: float
+    factor_range: tuple[float, float]
+    source: str
+    yielded: Array = field(default_factory=lambda: np.zeros(0))
+
+    def to_csv(self) -> str:
+        """Text of a file for `new --interface-table`."""
+        low, high = self.factor_range
+        rows = [
+            f"{p:.6g},{k:.6g},{low * k:.6g},{high * k:.6g},{self.ratio:.6g}"
+            for p, k in zip(self.pressure, self.stiffness, strict=True)
+        ]
+        heads = "pressure [Pa],stiffness [Pa/m],stiffness_low [Pa/m],stiffness_high [Pa/m],ratio [1]"
+        return "\n".join([f"# {self.source} ({PROGRAM_MARK})", heads, *rows]) + "\n"
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialPair:
+    """Contact of two materials: contact modulus E* [Pa], K_T/K_N [1], hardness of the softer one [Pa]."""
+
+    modulus: float
+    ratio: float
+    hardness: float
+    names: str
+
+    @classmethod
+    def from_rows(cls, rows: Sequence[TableRow]) -> "MaterialPair":
+        """Pair from two rows of the table of materials."""
+        sides = [ElasticConstants(**{name: row.numbers[name].value for name in ("E", "nu")}) for row in rows]
+        modulus = float(contact_modulus(*sides))
+        ratio = 4.0 * float(contact_shear_modulus(*sides)) / modulus
+        hardness = min(row.numbers["H"].value for row in rows)
+        return cls(modulus, ratio, hardness, " and ".join(dict.fromkeys(row.title for row in rows)))
+
+
+def points_from_tail(curve: BearingCurve, materials: MaterialPair, files: str) -> InterfacePoints:
+    """Points of pressure over the decay length of the heights."""
+    pressure, stiffness = curve.stiffness_table(materials.modulus)
+    source = (
+        f"upper tail of the heights of {files}: pressure over decay length, E* = {materials.modulus:.4g} Pa "
+        f"of {materials.names}; range: single surfaces beside boundary elements (docs/validity_stiffness.md)"
+    )
+    return InterfacePoints(pressure, stiffness, materials.ratio, TABLE_FACTOR_RANGE, source)
+
+
+def points_from_solution(
+    scans: Sequence[ArealMap], both_sides: bool, materials: MaterialPair, files: str
+) -> InterfacePoints:
+    """Points by boundary elements.
+
+    scans      : heights without form, of one side or of both
+    both_sides : whether the single scan describes both sides: its gap is that to itself, turned
+    """
+    from .solve import gap_of_scans, solve_stiffness
+
+    if both_sides:
+        scans = [scans[0], scans[0].with_heights(scans[0].z[::-1])]
+    found = solve_stiffness(gap_of_scans(scans), materials.modulus, materials.hardness)
+    source = (
+        f"boundary elements on {files}, {1e6 * found.spacing:.3g} um between points: small motions, E* = "
+        f"{materials.modulus:.4g} Pa, hardness {materials.hardness:.4g} Pa of {materials.names}; range: "
+        "scatter of four sub-areas"
+    )
+    limits = found.low, found.high
+    return InterfacePoints(
+        found.pressure, found.stiffness, materials.ratio, limits, source, yielded=found.yielded
+    )
+
+
+def has_table_law(joint: str) -> bool:
+    """Whether an interface of this kind of joint can have the law `table`."""
+    kind = KINDS[joint]
+    return TABLE_LAW in kind.laws and isinstance(
+        kind.extract_law(load_default(joint, TABLE_LAW).values), TableLaw
+    )
+
+
+def with_points(file: ParameterFile, points: InterfacePoints) -> ParameterFile:
+    """Copy of a parameter file of the law `table` with new points."""
+    values = {
+        "table.pressure": tuple(float(f"{p:.6g}") for p in points.pressure),
+        "table.stiffness": tuple(float(f"{k:.6g}") for k in points.stiffness),
+        "table.factor": 1.0,
+    }
+    file = file.with_values(values, "derived", points.source)
+    text = "4 G'/E* of elastic contact spots (Mindlin 1949), not measured"
+    file = file.with_values({"table.ratio": points.ratio}, "estimate", text)
+    return replace(file, ranges={**file.ranges, "table.factor": points.factor_range})
