@@ -2,7 +2,7 @@
 
 import math
 
-from jointfmu.contact.laws import ROUGHNESS_LAW
+from jointfmu.contact.laws import ROUGHNESS_LAW, TABLE_LAW
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import RoughSurface
 from jointfmu.parameters import ParameterFile
@@ -68,14 +68,14 @@ def with_surface(
     """Set the parameters of a file that follow from a measured surface, with their sources.
 
     These are the rms heights of the measured sides. With the law `roughness` also slope, longest wave and, if
-    it is determined, the Hurst exponent. With other laws also D and G, if they are determined.
+    it is determined, the Hurst exponent. With fractal laws also D and G, if they are determined.
 
     force : set D and G or the Hurst exponent even if they are not determined; ValueError if one is not finite
     """
     sure = set_undetermined or undetermined_reason(identification, file.joint) is None
     if file.law == ROUGHNESS_LAW:
         file = _with_roughness_law(file, identification, method, sure)
-    elif sure:
+    elif sure and file.law != TABLE_LAW:
         file = _with_fractal_parameters(file, identification, method)
     for side, scan in identification.roughness_by_side.items():
         name = identification.file_names[min(side, len(identification.file_names)) - 1]
