@@ -363,7 +363,10 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
 
 def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
     """The values of inputs in the joint's file, or in the system file."""
-    files = {"harmonic_drive": {"temperature": 318.15}, "bolted_joint": {"preload": 12e3}}
+    files = {
+        "harmonic_drive": {"temperature": 318.15},
+        "bolted_joint": {"preload": 12e3, "temperature": 313.15},
+    }
     for joint, inputs in files.items():
         stated = dataclasses.replace(load_default(joint), inputs=inputs)
         (tmp_path / f"{joint}.toml").write_text(format_parameter_file(stated), encoding="utf-8")
@@ -379,7 +382,7 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
     render_system_model(
         column, template_environment(), lambda kind, file, point: asked.append(point) or known
     )
-    assert asked == [(12e3, 0.0)]
+    assert asked == [(12e3, 0.0, 313.15)]
 
 
 def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
