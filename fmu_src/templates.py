@@ -4,6 +4,7 @@ from base64 import b64encode
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
@@ -70,7 +71,7 @@ def law_variables(parameters: ParameterFile) -> dict[str, object]:
 
     Its name; whether it is `roughness` or `table`, and their template; numbers.
     """
-    table = getattr(parameters.values, "table", None)
+    table: Any = getattr(parameters.values, "table", None)
     is_rough, is_table = parameters.law == ROUGHNESS_LAW, isinstance(table, StiffnessTable)
     return {
         "law": parameters.law,

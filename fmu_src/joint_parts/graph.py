@@ -260,16 +260,12 @@ def add_law_functions(
         [],
         spots.regime_end_log_areas,
     )
-    head = [
-        law.A_0,
-        law.max_pressure,
-        spots.reference_area,
-        spots.size_exponent,
-        spots.stiffness_onset_log_area,
-    ]
+    head = [law.A_0, law.max_pressure, spots.reference_area, spots.size_exponent]
+    head += [spots.stiffness_onset_log_area, spots.first_kink]
     function_graph.add_function(
         "law_distribution",
-        "-> A_0 [m2], largest pressure [Pa], reference area [m2], exponent m, onset of the stiffness",
+        "-> A_0 [m2], largest pressure [Pa], reference area [m2], exponent m, log-areas of stiffness onset "
+        "and first kink",
         [],
         head,
     )

@@ -67,7 +67,7 @@ def find_code_class(parameters: object) -> type[object]:
 
 
 @cache
-def _class_with_numbers(cls: type[object]) -> type[object]:
+def _class_with_numbers(cls: Any) -> type[object]:
     section = ("table", _TableNumbers, group_field("spline of the stiffness over the pressure"))
     return make_dataclass(cls.__name__, [section], bases=(cls,), frozen=True, kw_only=True)
 

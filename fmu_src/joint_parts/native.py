@@ -147,5 +147,6 @@ def shared_definitions(shared_file_stems: Sequence[str]) -> CDefinitions:
     if "approach" not in shared_file_stems:
         return tables
     steps = {"APPROACH_STEPS": curve.MIN_STEPS_PER_LOG_AREA, "CLOSING_STEPS": curve.CLOSING_STEPS}
+    steps["MIN_SPLINE_STEPS_RATIO"] = curve.MIN_SPLINE_STEPS_RATIO
     ratio = {"CLOSING_AREA_RATIO": curve.CLOSING_AREA_RATIO}
     return tables | CDefinitions(steps, ratio) | define_quadrature("APPROACH_GAUSS", curve.GAUSS_RULE)

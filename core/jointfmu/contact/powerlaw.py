@@ -212,7 +212,7 @@ class SpotDistribution:
     regime_terms   : {quantity of a spot: its terms, one per regime}; always contains `load` [N]
     onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
     has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
-    kink_log_areas : log-areas [1] at which derivatives of the stiffness jump inside a regime
+    kink_log_areas : log-areas [1], ascending, at which derivatives of a spline of the stiffness jump
     """
 
     reference_area: Number
@@ -246,6 +246,11 @@ class SpotDistribution:
         if self.onset_log_area is not None:
             return self.onset_log_area
         return reduce(np.minimum, (term.lower_log_area for term in self.regime_terms["normal"]))
+
+    @property
+    def first_kink(self) -> Number:
+        """First of the kinks; plus infinity if the law has none."""
+        return self.kink_log_areas[0] if self.kink_log_areas else np.inf
 
     @property
     def sorted_regime_end_log_areas(self) -> list[float]:

@@ -31,6 +31,8 @@ MAX_REFINEMENT = 16
 """Largest refinement factor of the number of steps of a table [1]; factors are 1, 2, 4, ..."""
 MIN_STEPS_PER_LOG_AREA = 12
 """Initial number of steps of the approach curve per unit of log-area [1], doubled until it is accurate."""
+MIN_SPLINE_STEPS_RATIO = 2
+"""Smallest number of steps between two kinks of a law, over the steps per unit of log-area [1]."""
 CLOSING_STEPS = 48
 """Steps of the table over the closing of the contact [1]."""
 GAUSS_RULE = np.polynomial.legendre.leggauss(5)
@@ -336,7 +338,8 @@ def _tabulate_between_log_areas(
     ]
     pieces, offset = [], 0.0
     for start, end in pairwise(ends):
-        n = max(2 * int(np.ceil(0.5 * steps_per_log_area * (end - start))), 2)
+        least = MIN_SPLINE_STEPS_RATIO * steps_per_log_area if start >= spot_distribution.first_kink else 2
+        n = max(2 * int(np.ceil(0.5 * steps_per_log_area * (end - start))), least)
         u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])
         inner = u[:-1, None] + half * (1.0 + GAUSS_RULE[0])

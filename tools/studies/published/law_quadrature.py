@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from scipy.integrate import quad
-from scipy.interpolate import BPoly, PchipInterpolator
+from scipy.interpolate import BPoly, CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 from scipy.stats import norm
@@ -313,6 +313,31 @@ def _roughness(p: Parameters, pressure: float) -> dict[str, float]:
     }
 
 
+def _interface_table(p: Parameters, pressure: float) -> dict[str, float]:
+    """Quantities of the interface law `table` at a nominal pressure [Pa]."""
+    u, y = np.log(p["table.pressure"]), np.log(p["table.stiffness"])
+    chords = np.diff(y) / np.diff(u)
+    slopes = PchipInterpolator(u, y).derivative()(u)
+    slopes[[0, -1]] = min(chords[0], 1.0), chords[-1]
+    inside = min(max(log(pressure), u[0]), u[-1])
+    below = slopes[0] * min(log(pressure) - u[0], 0.0)
+    K_N = p["A_0"] * p["table.factor"] * exp(CubicHermiteSpline(u, y, slopes)(inside) + below)
+    mu, x, n = p["mu"], p["traction_ratio"], (y[-1] - y[0]) / (u[-1] - u[0])
+
+    def shear(force: float) -> float:
+        return (1.0 - (1.0 - force) ** (1.0 - n)) / (1.0 - n)
+
+    # Masing's loop between -x and x, at forces over mu F
+    loop = quad(lambda t: 4.0 * shear((x + t) / 2.0), -x, x, **_QUADRATURE)[0] - 4.0 * x * shear(x)
+    return {
+        "pressure": pressure,
+        "K_N": K_N,
+        "K_T": p["table.ratio"] * K_N,
+        "eta_t": -loop / (pi * x * shear(x)),
+        "friction_limit": mu * pressure * p["A_0"],
+    }
+
+
 def _catalogue(p: Parameters, wind_up: float) -> dict[str, float]:
     """Torque [N.m] and stiffness [N.m/rad] of a catalogue drive at a wind-up [rad]."""
     first = p["T1"] / p["K1"]
@@ -404,6 +429,15 @@ _ROUGHNESS = {
     "traction_ratio": 0.3,
     "A_0": 1e-3,
 }
+_INTERFACE_TABLE = {
+    "table.pressure": [1e5, 4e5, 1e6, 5e6, 2e7],
+    "table.stiffness": [4e11, 1.1e12, 1.6e12, 1.6e12, 9e12],
+    "table.ratio": 0.7,
+    "table.factor": 1.2,
+    "mu": 0.15,
+    "traction_ratio": 0.3,
+    "A_0": 1e-3,
+}
 _CATALOGUE = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9, "corner": 0.04}
 _TABLE = {
     "table.torque": [0.5, 1.0, 2.0, 4.0, 7.0, 10.0],
@@ -422,6 +456,7 @@ _CASES: Sequence[_Case] = (
     ("yu2022", _yu2022, _YU | {"rigid_flat": False, "plastic_area": "kogut_etsion", "e": 0.5}, (1e-10, 1e-7)),
     ("roughness", _roughness, _ROUGHNESS, (1e4, 1e6, 1e8)),
     ("roughness", _roughness, _ROUGHNESS | {"slope": 0.02}, (1e6, 1e8)),
+    ("table", _interface_table, _INTERFACE_TABLE, (1e4, 3e5, 8e5, 2e6, 1e7, 5e7)),
     ("catalogue", _catalogue, _CATALOGUE, (2e-4, 4.2e-4, 9e-4, 1.2e-3, 2e-3)),
     ("table", _table, _TABLE, (2.2e-4, 3e-4, 9e-4, 1.2e-3, 1.5e-3)),
 )

@@ -68,7 +68,9 @@ def compare_laws() -> list[LawComparison]:
     for case in read_reference_cases():
         law, (argument, *_) = case["law"], case["values"]
         at = np.array(case["values"].pop(argument))
-        computed = _evaluate_law(law, case["parameters"], at)
+        parameters = {n: tuple(v) if isinstance(v, list) else v for n, v in case["parameters"].items()}
+        is_interface = argument == "pressure"
+        computed = (_evaluate_interface if is_interface else _evaluate_midline)(law, parameters, at)
         for quantity, reference in case["values"].items():
             values = np.broadcast_to(computed[quantity], at.shape)
             for x, known, value in zip(at.tolist(), reference, values.tolist(), strict=True):
@@ -78,13 +80,17 @@ def compare_laws() -> list[LawComparison]:
     return [_largest_deviation(comparisons) for comparisons in found.values()]
 
 
-def _evaluate_law(law: str, parameters: Mapping[str, Any], at: Array) -> Mapping[str, Any]:
-    """Quantities of an interface law over pressures [Pa], or of a prescribed midline over wind-ups [rad]."""
-    if law in LAWS:
-        return evaluate_at_pressure(build_parameter_set(LAWS[law], parameters), at)
-    values = {name: tuple(v) if isinstance(v, list) else v for name, v in parameters.items()}
-    default: Any = load_default("harmonic_drive", law).values
-    torque, stiffness = torque_curve(replace_values(default, values | {"lost_motion": 0.0})).derivatives(at)
+def _evaluate_interface(law: str, parameters: Mapping[str, Any], pressure: Array) -> Mapping[str, Any]:
+    """Quantities of an interface law at pressures (n) [Pa]."""
+    return evaluate_at_pressure(build_parameter_set(LAWS[law], parameters), pressure)
+
+
+def _evaluate_midline(law: str, parameters: Mapping[str, Any], wind_up: Array) -> Mapping[str, Any]:
+    """Torque and stiffness of the prescribed midline of a drive at wind-ups (n) [rad]."""
+    drive: Any = replace_values(
+        load_default("harmonic_drive", law).values, {**parameters, "lost_motion": 0.0}
+    )
+    torque, stiffness = torque_curve(drive).derivatives(wind_up)
     return {"tau": torque, "K_WTS": stiffness}
 
 

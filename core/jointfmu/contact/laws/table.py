@@ -36,6 +36,8 @@ ONSET_PRESSURE_RATIO = 1e-6
 """Pressure at which the stiffness begins, over that of the first point [1]."""
 MIN_TRACTION_RATIO = 1e-7
 """Traction ratio [1] below which the loss factor is proportional to it, within round-off."""
+MAX_EXPONENT = 5.0
+"""Largest exponent of K ~ p^n between two points [1]: contact of rough surfaces has up to about 1."""
 MIN_PRESSURE_STEP = 1.001
 """Smallest ratio of the pressures of neighbouring points [1]."""
 _MIN_LENGTH = 1e-100
@@ -119,6 +121,11 @@ class StiffnessTable:
                 raise ValueError(
                     f"table.stiffness[{i}] = {L:g} Pa/m is below the one before it, {K:g} Pa/m: the "
                     "stiffness must not fall as the pressure rises"
+                )
+            if (exponent := np.log(L / K) / np.log(q / p)) > MAX_EXPONENT:
+                raise ValueError(
+                    f"table.stiffness[{i}] = {L:g} Pa/m rises from {K:g} Pa/m with power {exponent:.3g} of "
+                    f"the pressure, allowed is up to {MAX_EXPONENT:g}: smooth the points, or leave some out"
                 )
 
     @property

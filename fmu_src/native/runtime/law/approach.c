@@ -85,10 +85,11 @@ static double approach_increment(const SpotDistribution *spots, const double *c,
 }
 
 /* Number of segments of one regime of the stiffness; CURVE_NODES stands for all larger numbers. */
-static int count_segments(double regime_start, double regime_end, int steps)
+static int count_segments(const SpotDistribution *spots, double regime_start, double regime_end, int steps)
 {
     const double pairs = ceil(0.5 * steps * (regime_end - regime_start));
-    return pairs < (double)CURVE_NODES ? 2 * (int)fmax(pairs, 1.0) : CURVE_NODES;
+    const int least = regime_start >= spots->first_kink ? MIN_SPLINE_STEPS_RATIO * steps : 2;
+    return pairs < (double)CURVE_NODES ? (int)fmax(2.0 * pairs, least) : CURVE_NODES;
 }
 
 /* Add the nodes of one regime of the stiffness; x is the approach at its start, and at its end after the call.
@@ -96,7 +97,7 @@ static int count_segments(double regime_start, double regime_end, int steps)
 static bool add_piece(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c,
                       double regime_start, double regime_end, int steps, double *x)
 {
-    const int n = count_segments(regime_start, regime_end, steps);
+    const int n = count_segments(spots, regime_start, regime_end, steps);
     const double step = (regime_end - regime_start) / n;
     TableNode from = table_node(spots, c, regime_start, regime_start, regime_end, *x);
     if (curve->n == 0) {
@@ -142,7 +143,7 @@ bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribu
             ends[++pieces] = spots->regime_ends[i];
     ends[++pieces] = last;
     for (int i = 0; i < pieces; i++)
-        n_nodes += count_segments(ends[i], ends[i + 1], steps);
+        n_nodes += count_segments(spots, ends[i], ends[i + 1], steps);
     if (!curve_begin(curve, n_nodes, N_LAW_STATE, 0.0, reason))
         return false;
     for (int i = 0; i < pieces; i++)

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-_Static_assert(N_LAW_DISTRIBUTION == 5, "the members of SpotDistribution that set_spot_distribution reads");
+_Static_assert(N_LAW_DISTRIBUTION == 6, "the members of SpotDistribution that set_spot_distribution reads");
 
 int find_law_range(const SpotDistribution *spots, double u)
 {
@@ -50,6 +50,7 @@ bool set_spot_distribution(SpotDistribution *spots, const double *c, Text *reaso
     spots->reference_area = values[2];
     spots->size_exponent = values[3];
     spots->stiffness_onset = values[4];
+    spots->first_kink = values[5];
     law_range_bounds(0, c, spots->range_bounds);
     law_regime_ends(0, c, ends);
     set_regime_ends(spots, ends);

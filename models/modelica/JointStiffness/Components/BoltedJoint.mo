@@ -169,7 +169,7 @@ equation
 <li><b>Closing contact.</b> Below 4 kPa (default parameters) the law gives almost no stiffness; the curve continues smoothly to zero and departs from the law.</li>
 <li><b>Normal damping is off.</b> η<sub>n</sub> is the plastic work of first loading. A joint in service has been loaded before and does not dissipate this work again in each vibration; <code>plastic_damping</code> = true activates the paper's value.</li>
 <li><b>Trend.</b> An elastic boundary-element solution of rough surfaces finds a stiffness close to proportional to the pressure and hardly dependent on D. The fractal law has lower powers of the pressure, which depend on D.</li>
-<li><b>Range.</b> After separation only the stiffness of the bolts remains. If the mean pressure exceeds the hardness, the curve continues with its last tangent. If a moment would need a negative bolt force, the contact opens there and a warning is logged.</li>
+<li><b>Range.</b> After separation only the stiffness of the bolts remains. Above the hardness the curve of the pressure continues with its last tangent. If a moment would need a negative bolt force, the contact opens there and a warning is logged.</li>
 <li><b>Not included:</b> slip (the tangential force is not limited to μP), hysteresis in the force, the compliance of the clamped parts, the flanges' bending. Damping is the viscous equivalent at the resonance of <code>mass</code>.</li>
 </ul>
 <p>Y. Zhao, C. Yang, L. Cai, W. Shi, Y. Hong: <em>Stiffness and Damping Model of Bolted Joints with Uneven Surface Contact Pressure Distribution.</em> 2018.</p>
