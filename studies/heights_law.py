@@ -7,12 +7,17 @@ from functools import cache
 
 import numpy as np
 from common import heading, row
+from jointfmu_tools.inputs.drawing.tables import find_row
 from jointfmu_tools.inputs.surfaces import bearing_curve
-from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve
+from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve, HeightSample
 from oracles.boundary_element import press, slope
-from oracles.machined_surfaces import FEW_HILLS, KINDS, sample_periodic
+from oracles.interface_laws import mean_measured_stiffness
+from oracles.machined_surfaces import FEW_HILLS, KINDS, sample_periodic, standard
+from oracles.measured_joints import SLOPE
+from oracles.roughness_law import MEASURED, joints_with_roughness
 
 from jointfmu.contact.roughness import predicted_stiffness
+from jointfmu.contact.surface import ElasticConstants, contact_modulus
 from jointfmu.progress import track_progress
 
 POINTS, LOADS = 128, (0.003, 0.01, 0.03, 0.1)
@@ -92,7 +97,34 @@ def print_fit():
     bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT = kept
 
 
+def skewed_heights(Rq, skewness, seed):
+    """Sample of lognormal heights [m] with an rms height and a skewness, slope as assumed of the joints."""
+    normal = np.random.default_rng(seed).standard_normal(2**20)
+    spread = np.geomspace(1e-3, 1.2, 400)
+    moments = (np.exp(spread**2) + 2.0) * np.sqrt(np.expm1(spread**2))
+    s = np.sign(skewness or 1.0) * np.interp(abs(skewness), moments, spread)
+    return HeightSample(Rq * standard(np.sign(s) * np.exp(s * normal)), np.full(normal.size, 0.5 * SLOPE**2))
+
+
+def print_joints():
+    """Law of heights over measured joints, with the skewness of their finish."""
+    pressures = [f"{p / 1e6:g} MPa" for p in MEASURED]
+    heading("law of heights over measured stiffness", "joint", "skewness of each side", *pressures)
+    for joint in joints_with_roughness():
+        finish = next(name for name in ("ground", "scraped", "lapped") if name in joint["id"])
+        numbers = find_row("finishes", finish).numbers
+        body = ElasticConstants(E=joint["E"], nu=joint["nu"])
+        middle = mean_measured_stiffness(joint, MEASURED)
+        skews = dict.fromkeys([0.0, *(numbers[f"skewness{end}"].value for end in ("_high", "", "_low"))])
+        for skewness in skews:
+            sides = [skewed_heights(joint["Rq"], skewness, seed) for seed in (1, 2)]
+            curve = BearingCurve.of_sample(bearing_curve.add_surfaces(*sides))
+            k = curve.stiffness(MEASURED, contact_modulus(body, body))
+            row(joint["id"], f"{skewness:g}", *(f"{ratio:.2f}" for ratio in k / middle))
+
+
 def print_heights():
-    """Fit and proof of the law of heights."""
+    """Fit and proof of the law of heights, and measured joints."""
     print_fit()
     print_proof()
+    print_joints()

@@ -28,6 +28,8 @@ TYPICAL_SHARE = 0.03
 """Area share of the section [1] at which the tail is compared with Gaussian heights."""
 MAX_GAUSSIAN_RATIO = 1.3
 """Largest ratio [1] of h and the height of the tail, either way, of heights that count as Gaussian."""
+SCAN_PARTS = 4
+"""Number of parts of a scan that must agree that its heights are not Gaussian: few hills differ by chance."""
 MIN_SKEWNESS = 1e-3
 """Skewness [1] below which heights are Gaussian."""
 TABLE_FACTOR_RANGE = (1.0 / 1.5, 1.5)
@@ -51,6 +53,18 @@ class HeightSample:
         """Standardized moment [1]: order 3 is the skewness Ssk, order 4 the kurtosis Sku."""
         z = self.heights - self.heights.mean()
         return float(np.mean(z**order) / np.mean(z**2) ** (0.5 * order))
+
+    def split(self, count: int) -> list["HeightSample"]:
+        """Parts of equal size, in the order of the points of the scan."""
+        pairs = zip(
+            np.array_split(self.heights, count), np.array_split(self.squared_slopes, count), strict=True
+        )
+        return [HeightSample(heights, squared_slopes) for heights, squared_slopes in pairs]
+
+
+def tail_ratio(sample: HeightSample) -> float:
+    """Height of the tail of the heights over their rms height [1]; 1 for Gaussian heights."""
+    return BearingCurve.of_sample(sample).tail_height / float(sample.heights.std())
 
 
 def add_surfaces(first: HeightSample, second: HeightSample) -> HeightSample:

@@ -9,7 +9,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
 from .. import fractal
-from .bearing_curve import add_surfaces
+from .bearing_curve import SCAN_PARTS, add_surfaces
 from .fit import SelfAffineLaw, fit_law
 from .form import check_longest_wave, default_longest_wave, prepare_scan, scan_roughness
 from .heights import ArealMap, Heights
@@ -95,8 +95,12 @@ def identify(
     )
     notes = tuple(list_warnings(results, textured))
     samples = [scan.sample for scan in scans]
-    gap = add_surfaces(samples[0], samples[-1]) if len(samples) == 2 or side == "both" else samples[0]
-    return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, gap, side)
+    pairs = [samples, *zip(*(sample.split(SCAN_PARTS) for sample in samples), strict=True)]
+    is_pair = len(samples) == 2 or side == "both"
+    gap, *parts = (add_surfaces(one[0], one[-1]) if is_pair else one[0] for one in pairs)
+    return Identification(
+        names, tuple(results), tuple(repairs), notes, textured, scans, gap, tuple(parts), side
+    )
 
 
 def make_two_sided_series(series: ScaleSeries) -> ScaleSeries:

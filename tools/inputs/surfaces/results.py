@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from ..fractal import second_difference_ratio
-from .bearing_curve import MAX_GAUSSIAN_RATIO, BearingCurve, HeightSample
+from .bearing_curve import MAX_GAUSSIAN_RATIO, BearingCurve, HeightSample, tail_ratio
 from .fit import SelfAffineLaw
 from .form import Repair, ScanRoughness
 from .heights import ArealMap
@@ -106,6 +106,7 @@ class Identification:
     is_textured : whether a surface is textured (not isotropic)
     scans       : roughness of each file
     gap         : heights of the measured sides together
+    gap_parts   : the same of parts of the scans
     side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
     """
 
@@ -116,6 +117,7 @@ class Identification:
     is_textured: bool
     scans: tuple[ScanRoughness, ...]
     gap: HeightSample
+    gap_parts: tuple[HeightSample, ...]
     side: str | None = None
 
     @property
@@ -138,12 +140,13 @@ class Identification:
     @property
     def tail_ratio(self) -> float:
         """Height of the tail of the heights over the rms height of the gap [1]; 1 for Gaussian heights."""
-        return self.bearing_curve.tail_height / float(self.gap.heights.std())
+        return tail_ratio(self.gap)
 
     @property
     def is_gaussian(self) -> bool:
-        """Whether the tail that carries the load is about as high as that of Gaussian heights."""
-        return 1.0 / MAX_GAUSSIAN_RATIO <= self.tail_ratio <= MAX_GAUSSIAN_RATIO
+        """Whether the tail is about as high as that of Gaussian heights, or parts of the scan disagree."""
+        ratios = [self.tail_ratio, *map(tail_ratio, self.gap_parts)]
+        return not (max(ratios) < 1.0 / MAX_GAUSSIAN_RATIO or min(ratios) > MAX_GAUSSIAN_RATIO)
 
     @property
     def slope(self) -> float:
