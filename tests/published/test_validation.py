@@ -413,8 +413,8 @@ def refitted(monkeypatch, fits):
 @pytest.mark.slow
 @pytest.mark.parametrize("joint", FITS)
 def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
-    """From other values in the file, other start values of the fit, and with every other point made
-    unusable."""
+    """Calibration gives the committed values from other values in the file and other start values, and with
+    every other point made unusable."""
     committed = load_default(joint)
     paper, fits = FITS[joint]
     unknowns = [name for fit in fits for name in fit.unknowns]

@@ -241,7 +241,8 @@ def test_what_new_writes_without_lists_is_shown(
 
 @needed
 def test_a_file_is_read_however_it_is_written(shown: Browser, tmp_path: Path) -> None:
-    """Without the law, with integers, in tables and dotted keys, with comments and other line ends."""
+    """A file is read without the law, with integers, in tables and dotted keys, with comments and other line
+    ends."""
     choose(shown, "HarmonicDriveSpring", 3)
     text = format_parameter_file(load_default("harmonic_drive"))
     check_shown(shown, re.sub(r"(?m)^law = .*\n", "", text), tmp_path)

@@ -92,7 +92,8 @@ def test_any_step_passes_the_proof_in_each_importer(files_of, name, importer, ve
 
 @pytest.mark.parametrize("name", ["robot_joint", "bolted_column", "six_axis_robot"])
 def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
-    """In fmpy, the references of the FMU; in FMI 2.0, those of fmpy's own master agree."""
+    """The references of the FMU are those of model exchange in fmpy; for FMI 2.0, those of fmpy's own master
+    agree."""
     files, output = files_of(name), LAST[name]
     if name == "six_axis_robot":
         found = prove(files["3"])

@@ -265,7 +265,8 @@ def test_a_saved_state_goes_on_bit_by_bit(make: Make) -> None:
 @BOTH
 @pytest.mark.parametrize(("kind", "error"), [("ModelExchange", 1e-6), ("CoSimulation", 3e-5)])
 def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -> None:
-    """By CVode, and by its own steps."""
+    """The motion of a pendulum agrees with the exact solution, integrated by CVode and by the steps of the
+    FMU."""
     start = {"J": 0.05, "m": 1.0, "l": 0.2, "phi": 1.0, "w": 0.0}
     found = simulate_fmu(
         str(built / f"fmi{version}" / "RotationalInertia.fmu"),
@@ -936,7 +937,8 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
 def test_the_command_builds_a_system_of_ones_own(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With its own drive: an FMU that vibrates, archives that run, a Modelica model, table and picture."""
+    """A system with its own drive gives an FMU that vibrates, archives that run, a Modelica model, table and
+    picture."""
     text = (files("jointfmu_models") / "systems" / "robot_joint.toml").read_text(encoding="utf-8")
     model = 'model = "HarmonicDriveSpring"'
     own = text.replace(model, f'{model}\nparameters = "drives/my_drive.toml"').replace(
@@ -978,7 +980,8 @@ def test_the_command_builds_a_system_of_ones_own(
 
 
 def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
-    """Up to the middle of the motion; the layer of the sliders leaves an error of 1e-3 of the friction."""
+    """The wind-up agrees up to the middle of the motion; the layer of the sliders leaves an error of 1e-3 of
+    the friction."""
     import rumoca
 
     stop = 0.6

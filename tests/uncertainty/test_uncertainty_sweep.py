@@ -210,7 +210,8 @@ def test_a_process_that_dies_as_it_starts_prints_nothing():
 
 
 def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
-    """On the workers of a scheduler, given by its address only; the same numbers as `jointfmu ramp`."""
+    """Runs on the workers of a scheduler, given by its address only, give the same numbers as `jointfmu
+    ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
     task = state_fmu_problem(fmu, DRIVE, given)
     runs = runs_of(task, 8)

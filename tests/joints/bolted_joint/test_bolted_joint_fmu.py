@@ -133,8 +133,8 @@ def test_the_preload_ramp_agrees_with_scipy(fmus: Path) -> None:
 
 
 def test_loops_are_the_packages_down_to_no_amplitude(fmu: Host, host: Host, version: str) -> None:
-    """In all flavours, down to amplitudes at which differences of energies would cancel, derivatives
-    included."""
+    """Loops of all flavours agree with the package, derivatives included, down to amplitudes at which
+    differences of energies would cancel."""
     python, native = fmu("BoltedJoint").start(), host("BoltedJoint", version).start()
     for size in (1e-17, 1e-14, 1e-12, 1e-10, 1e-8, 2e-8, 5e-8, 1e-7):
         state = {"preload": 9e3, "moment": 300.0, "s_rel_x": 0.6 * size, "s_rel_y": -0.8 * size}

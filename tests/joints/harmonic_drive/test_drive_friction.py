@@ -291,7 +291,8 @@ def smooth(rng, size, t):
 @pytest.mark.slow  # 200 trajectories of 1000 steps
 @pytest.mark.parametrize("ratio", [100.0, -80.0])
 def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio, native, fmus):
-    """With all kinds of friction and changing temperature; work of both torques by the trapezoidal rule.
+    """With all kinds of friction and changing temperature, the work of both torques (trapezoidal rule) is
+    stored or becomes heat.
 
     The beginning of the first trajectory is that of every flavour too.
     """

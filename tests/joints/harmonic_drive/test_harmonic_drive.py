@@ -65,7 +65,7 @@ def still(spring, phi):
 
 @each_drive
 def test_peak_pressure(it):
-    """Its derivative, its symmetry, and its two defining values."""
+    """The peak pressure has its exact derivative, its symmetry, and its two defining values."""
     T = np.array([1e-3, 0.03, 0.1, 1.0, 5.0, 20.0])
     h = 1e-3 * T
     around = peak_pressure(it, T + h * FIVE[:, None])[0]

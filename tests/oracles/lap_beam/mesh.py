@@ -58,7 +58,7 @@ class LapBeam:
 
 
 def bodies(beam, view, size):
-    """Both halves; their boundaries under the bolt heads are named head0, head1, ..."""
+    """Both halves of the beam; their boundaries under the bolt heads are named head0, head1, ..."""
     return tuple(ElasticBody(_half(beam, view, size, side), beam.E, beam.nu, beam.density) for side in (1, 2))
 
 
