@@ -104,7 +104,7 @@ def test_each_derivative_is_the_slope_of_the_one_before(curves):
 
 
 def test_nodes_are_met(curves):
-    """Load, stiffness and both one-sided second derivatives at every node."""
+    """The curve meets load, stiffness and both one-sided second derivatives at every node."""
     for curve in curves.values():
         x = curve.displacement
         load, stiffness = curve.derivatives(x, 1)
@@ -269,7 +269,7 @@ SMOOTH = {
 @pytest.mark.parametrize("name", SMOOTH)
 @pytest.mark.parametrize("segments", [16, 32, 64])
 def test_measured_error_covers_the_true_error(name, segments):
-    """Error of load and stiffness, everywhere between the nodes."""
+    """The measured error covers the true error of load and stiffness, everywhere between the nodes."""
     f, slope, bend = SMOOTH[name]
     x = np.linspace(1.0, 3.0, segments + 1)
     curve = assemble_curve([(x, f(x), slope(x), bend(x))])

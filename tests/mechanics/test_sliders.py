@@ -268,8 +268,8 @@ def test_no_closed_path_makes_work():
 
 
 def test_work_is_stored_or_lost():
-    """Around closed paths; with a quarter of the step, the error of the trapezoidal rule falls to a
-    sixteenth."""
+    """The work around closed paths is stored or lost; with a quarter of the step, the error of the
+    trapezoidal rule falls to a sixteenth."""
     few = foundation(0.8)
     errors = []
     for steps in (96, 384):

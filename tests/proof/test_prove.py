@@ -138,7 +138,7 @@ def test_the_library_of_another_joint_fails_in_one_line(
 def test_a_library_that_computes_something_else_fails_by_name(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], importer: str
 ) -> None:
-    """Another number in the constants of the law: pi."""
+    """A library with another constant of the law (another pi) fails with the name of the output."""
     number = np.float64(np.pi).tobytes()
 
     def change(name: str, data: bytes) -> bytes:
@@ -575,7 +575,7 @@ def test_no_listing_of_an_fmu_that_fails(
 
 
 def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:
-    """During an experiment of a million steps."""
+    """Ctrl-C during an experiment of a million steps ends the command and its importer."""
     one = '<Experiment name="long"><TransientSimulation stopTime="10" stepSize="2e-6"/></Experiment>'
     path = other_manifest(fmu, tmp_path / "long.fmu", one)
     command, own = [sys.executable, "-m", "jointfmu", "prove", str(path)], tmp_path / "own"

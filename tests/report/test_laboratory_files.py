@@ -278,7 +278,7 @@ def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) 
 def test_a_bolted_joint_of_a_drawing_is_refused(
     shown: Browser, drawings: dict[str, str], name: str, key: str
 ) -> None:
-    """A complete joint, and its interface: their contact points are not those of the page."""
+    """A complete joint and its interface are refused: their contact points are not those of the page."""
     for model, index in (("BoltedJoint", 0), ("BoltedJoint", 1), ("GearContact", 0)):
         choose(shown, model, index)
         said = refusal(shown, drawings[name])

@@ -363,7 +363,7 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
 
 
 def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
-    """The values of inputs in the joint's file, or in the system file."""
+    """The Modelica model has the inputs of the joint's file, or those of the system file."""
     files = {"harmonic_drive": {"temperature": 318.15}, "bolted_joint": {"preload": 12e3}}
     for joint, inputs in files.items():
         stated = dataclasses.replace(load_default(joint), inputs=inputs)

@@ -183,7 +183,7 @@ class Opened:
 
 
 def test_derivatives_are_exact(joint):
-    """Against central differences; 1e-6 is the square root of their round-off."""
+    """Derivatives agree with central differences; 1e-6 is the square root of their round-off."""
     with Opened(joint["2"]) as one:
         fmu, known = one.host.fmu, one.host.variables
         names = ["motor.phi", "link.phi", "motor.w", "link.w", "load.tau_in", "link.tau_a"]
@@ -207,7 +207,7 @@ def test_derivatives_are_exact(joint):
 
 
 def test_a_saved_state_goes_on_alike(joint):
-    """Through bytes too, with slipping friction: equal to the last bit."""
+    """A run from a saved state, also from its bytes, is equal to the last bit, with slipping friction."""
     with Opened(joint["2"]) as one:
         fmu, host = one.host.fmu, one.host
         fmu.exitInitializationMode()

@@ -545,7 +545,7 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
 
 @pytest.mark.parametrize("name", list_system_names())
 def test_the_own_master_runs_an_archive_as_fmpy_does(built: Path, name: str) -> None:
-    """Parallel master: the same equations in each step."""
+    """The package's parallel master solves the same equations in each step as fmpy."""
     found = load_system(name)
     own = simulate_system(found, built / "fmi2", stop=STEPS * found.interval)
     rows = in_fmpy(built, name)
@@ -893,7 +893,8 @@ def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop
 
 @BOTH
 def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
-    """Drive and link as model-exchange FMUs, one system in CVode."""
+    """Drive and link as model-exchange FMUs, solved as one system by CVode, move as in co-simulation with
+    small steps."""
     stop, angle, count = 0.03, 1.3e-3, 24_000
     fmus = {
         "drive": make("HarmonicDriveSpring", version, True).start(),
@@ -1160,7 +1161,7 @@ def test_ring_down_of_a_drive_with_hysteresis(
 
 
 def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """K_xx at very small motion."""
+    """The frequency of small vibrations in shear belongs to K_xx at very small motion."""
     fmus = str(built / "fmi2")
     arguments = ["--amplitude", "1e-8", "--load", "9e3", "--inertia", "50"]
     assert cli.main(["ring", "bolted_column", "--fmus", fmus, *arguments, "--json"]) == 0

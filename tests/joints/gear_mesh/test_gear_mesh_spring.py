@@ -45,7 +45,8 @@ def motion(spring, s, roll, rate=0.0):
 
 @each
 def test_stiffness_is_the_slope_of_the_force(spring):
-    """Along the line of action at constant phase, from first contact to beyond the table."""
+    """The stiffness is the slope of the force along the line of action at constant phase, from first contact
+    to beyond the table."""
     s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end_point[0]
     h = 1e-3 * s
     kinks = spring.curve.displacement[1:-1][

@@ -317,7 +317,8 @@ def test_what_is_stated_makes_the_friction(tmp_path):
 
 
 def test_lost_motion_is_told_beside_its_limit(capsys):
-    """Below the limit with the catalogue's stiffness, above it with a softer drive."""
+    """The command prints lost motion and its limit: below the limit with the catalogue's stiffness, above it
+    with a softer drive."""
     for words, place in (([], "below"), (["--K1", "20000"], "above")):
         assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-25-100", *words]) == 0
         assert f"; {place} 0.0002909 rad: limit" in capsys.readouterr().out

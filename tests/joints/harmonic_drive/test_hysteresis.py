@@ -93,7 +93,7 @@ def ripple(law, inertia, speed, periods=60):
 
 @pytest.mark.slow  # some simulations
 def test_velocity_ripple_resonates_at_half_the_natural_frequency():
-    """Against the closed form of an oscillator whose rest position oscillates."""
+    """The amplitude agrees with the closed form of an oscillator whose rest position oscillates."""
     inertia, amplitude, damping = 0.05, 1e-6, 1.5
     law = default_spring(error_2=amplitude, d=damping)
     natural = float(np.sqrt(law.curve.stiffness[0] / inertia))
