@@ -243,7 +243,7 @@ def here_alone(versions: str = "23") -> Iterator[None]:
 
     What is kept for all of them is taken from there; what else is compiled is kept apart.
 
-    versions : of FMI that are compiled
+    versions : versions of FMI that are compiled
     """
     from jointfmu_fmu_src.native.compiled import compiled_models
     from jointfmu_tools.systems.fmu import build as system

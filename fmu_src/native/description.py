@@ -84,7 +84,7 @@ def format_fmi2_description(
 
     token        : GUID
     source_names : names of the C files to compile, in `sources/`
-    variability  : of all parameters, one of VARIABILITIES
+    variability  : FMI variability of all parameters, one of VARIABILITIES
     """
     variables = list_variables(model, parameters)
     root = _make_root(model, "2.0", "guid", token)

@@ -93,7 +93,7 @@ def test_a_step_with_unchanged_inputs_changes_nothing(fmu: Host, name: str) -> N
 
 
 def test_outputs_do_not_depend_on_the_way_there(fmu: Host, name: str) -> None:
-    """Models without history."""
+    """Outputs of models without history depend on the present inputs only."""
     there, back = random_inputs(name, 2, seed=6)
     instance = fmu(name).start(there | CASES[name].tuning.also)
     before = instance.get()

@@ -84,7 +84,8 @@ def test_decay_of_a_parabola():
 
 
 def test_decay_of_a_viscous_spring():
-    """Without friction: frequency sqrt(K/M), decrement pi d/(2 sqrt(K M)) per half period."""
+    """A spring with viscous damping and without friction: frequency sqrt(K/M), decrement pi d/(2 sqrt(K M))
+    per half period."""
     law = HysteresisLaw(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous_damping=200.0)
     omega, decrement = law.free_decay(AMPLITUDES, 5.0)
     np.testing.assert_allclose(omega, np.sqrt(K / 5.0), rtol=1e-9)
@@ -132,7 +133,8 @@ def test_branches_follow_their_law():
 
 
 def test_a_branch_ends_where_it_passes_the_turning_point_before():
-    """Growing amplitudes: the part beyond the last loop has another history."""
+    """In loops of growing amplitude, the part beyond the last loop has another history and belongs to no
+    branch."""
     turns = np.array([0.0, 1.0, -1.5, 2.0, -2.0])
     motion = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in pairwise(turns)])
     found = branches.cut_branches([("", motion, motion)])

@@ -62,8 +62,7 @@ def test_force_acts_on_the_joint(drive):
 
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
 def test_without_memory_nothing_is_lost(native, version):
-    """With force as input and motion as output, about a working point, because the contact carries no
-    tension."""
+    """The motion is computed from the force about a working point, because the contact carries no tension."""
     fmu = native / version / "GearContact.fmu"
     found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
     assert (found.motion_name, found.force_name) == ("s_rel", "f")

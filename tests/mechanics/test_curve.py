@@ -104,7 +104,7 @@ def test_each_derivative_is_the_slope_of_the_one_before(curves):
 
 
 def test_nodes_are_met(curves):
-    """Load, stiffness and both one-sided second derivatives at every node."""
+    """The curve meets load, stiffness and both one-sided second derivatives at every node."""
     for curve in curves.values():
         x = curve.displacement
         load, stiffness = curve.derivatives(x, 1)
@@ -180,7 +180,8 @@ def test_energy_of_a_polynomial(nodes, coefficients, t):
 
 @pytest.mark.parametrize("name", [*SETS, "drive"])
 def test_load_is_the_slope_of_the_energy(curves, name):
-    """Between nodes; the energy in a segment is one polynomial of degree six, as the stencil requires."""
+    """Between nodes the load is the derivative of the energy; the energy in a segment is one polynomial of
+    degree six, as the stencil requires."""
     curve = curves[name]
     x0, h = curve.displacement[:-1], np.diff(curve.displacement)
     x = x0 + h * (0.5 + 0.1 * np.arange(-3, 4)[:, None])
@@ -268,7 +269,7 @@ SMOOTH = {
 @pytest.mark.parametrize("name", SMOOTH)
 @pytest.mark.parametrize("segments", [16, 32, 64])
 def test_measured_error_covers_the_true_error(name, segments):
-    """Error of load and stiffness, everywhere between the nodes."""
+    """The measured error covers the true error of load and stiffness, everywhere between the nodes."""
     f, slope, bend = SMOOTH[name]
     x = np.linspace(1.0, 3.0, segments + 1)
     curve = assemble_curve([(x, f(x), slope(x), bend(x))])
@@ -307,7 +308,7 @@ def test_approach_is_the_integral_of_dp_over_k(law):
 
 @each_set
 def test_stiffness_is_the_laws(law):
-    """Everywhere between the nodes, at the pressure of the table."""
+    """Everywhere between the nodes, the stiffness is that of the law at the pressure of the table."""
     curve = tabulate_approach(law)
     x = curve.displacement[curve.displacement >= 0.0]
     t = np.linspace(0.0, 1.0, 11)[:-1, None]

@@ -83,7 +83,7 @@ def test_few_points_keep_share_and_moments_to_rounding(name, count):
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_patches_that_left_the_nodes_keep_the_same_sums(name):
-    """As few points as the friction has patches, inside the contact."""
+    """The reduced contact has as few points as the friction has patches; they are inside the contact."""
     shape, patches = contact(name), moved(name)
     assert patches.area_share.size <= 22
     assert np.min(patches.area_share) > 0.0
@@ -94,7 +94,8 @@ def test_patches_that_left_the_nodes_keep_the_same_sums(name):
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_largest_pressure_is_that_of_all_nodes(name):
-    """Under moments of both signs; rounding decides between nodes that symmetry makes equal."""
+    """Under moments of both signs, the largest pressure is that of all nodes; rounding decides between nodes
+    that symmetry makes equal."""
     shape = contact(name)
     points = reduced(name, 160)
     for moment in np.linspace(-1.0, 1.0, 41):
@@ -113,7 +114,7 @@ def test_few_nodes_stay_as_they_are():
 
 
 def test_equations_are_solved_as_lapack_does():
-    """Within eps times the condition number, about 1e5."""
+    """The solution agrees with LAPACK within eps times the condition number, about 1e5."""
     slopes = np.random.default_rng(2).standard_normal((300, 110)) * np.geomspace(0.1, 10.0, 110)
     matrix, right = slopes.T @ slopes, np.ones(110)
     there = np.linalg.solve(matrix, right)

@@ -121,7 +121,7 @@ def test_what_rounding_leaves_is_zero():
 
 
 def test_functions_are_those_of_numpy():
-    """Roots and powers of two, products of matrices."""
+    """Roots, powers of two and products of matrices agree with numpy."""
     rng = np.random.default_rng(3)
     values, power = rng.random((4, 9)), np.array([[2.0], [4.0], [16.0], [64.0]])
     np.testing.assert_allclose(take_power_of_two_root(values, power), values ** (1.0 / power), rtol=1e-15)

@@ -41,7 +41,7 @@ def along(*ways: float, approach: float = APPROACH) -> np.ndarray:
 
 
 def test_backbone_is_cattaneos(sliders):
-    """Within 1e-3 of the friction limit; gross slip is exact."""
+    """The first loading agrees with Cattaneo within 1e-3 of the friction limit; gross slip is exact."""
     way = np.linspace(0.0, 1.3 * GROSS, 66)
     found = follow_path(sliders, along(*way))[0][:, 0]
     np.testing.assert_allclose(found, backbone(APPROACH, way[1:]), rtol=0.0, atol=1e-3 * LARGEST)
@@ -56,7 +56,7 @@ def test_full_stick_is_exact(sliders):
 
 @pytest.mark.parametrize("part", [0.1, 0.3, 0.6, 0.95])
 def test_area_of_a_loop_is_mindlins(sliders, part):
-    """Within 1 %."""
+    """The area of a loop agrees with Mindlin within 1 %."""
     u = float(displacement(APPROACH, part))
     losses = follow_path(sliders, along(0.0, u, -u, u))[1]
     np.testing.assert_allclose(np.sum(losses[1:]), loop_area(APPROACH, part), rtol=1e-2)
@@ -99,7 +99,8 @@ def test_force_and_load_that_grow_in_a_line_do_not_slip(sliders, slope, start):
 
 @pytest.mark.parametrize("slope", [0.6, 0.9])
 def test_nearly_as_steep_as_friction_does_not_slip(sliders, slope):
-    """As above. The slider that comes into contact slips too early, less with more heights."""
+    """A path nearly as steep as friction does not slip. The slider that comes into contact slips too early,
+    less with more heights."""
     path = np.array([[0.1, 0.0, 0.0], [0.6, slope * FRICTION / RATIO * 0.5, 0.0]])
     found = follow_path(sliders, path, 40)[0][0, 0]
     np.testing.assert_allclose(found, slope * FRICTION * (load(0.6) - load(0.1)), rtol=4e-3)
@@ -173,7 +174,8 @@ def test_opening_forgets(sliders):
     "approaches", [(0.4, 0.4), (0.1, 0.6), (0.6, 0.2)], ids=["constant", "growing", "falling"]
 )
 def test_ten_times_larger_steps_agree_along_straight_paths(sliders, approaches):
-    """To round-off, at constant load with slip, and at changing load without slip."""
+    """Ten times larger steps agree to round-off, at constant load with slip, and at changing load without
+    slip."""
     way = 1.2 * GROSS if approaches[0] == approaches[1] else 0.02 * GROSS
     path = np.array([[approaches[0], 0.0, 0.0], [approaches[1], 0.6 * way, 0.8 * way]])
     (one, loss, _), (ten, losses, _) = follow_path(sliders, path), follow_path(sliders, path, 10)
@@ -266,8 +268,8 @@ def test_no_closed_path_makes_work():
 
 
 def test_work_is_stored_or_lost():
-    """Around closed paths; with a quarter of the step, the error of the trapezoidal rule falls to a
-    sixteenth."""
+    """The work around closed paths is stored or lost; with a quarter of the step, the error of the
+    trapezoidal rule falls to a sixteenth."""
     few = foundation(0.8)
     errors = []
     for steps in (96, 384):

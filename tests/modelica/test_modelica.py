@@ -223,7 +223,7 @@ def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload
 
 
 def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """For another preload too."""
+    """The library has the record of the stated drive, and the bolted joint under the stated preload."""
     file = load_default("harmonic_drive").with_values({"ratio": 50.0}, "user", "test")
     params = tmp_path / "mine.toml"
     params.write_text(format_parameter_file(file).replace(file.name, "my drive, 50:1"), encoding="utf-8")
@@ -380,7 +380,7 @@ def test_gear_component_gives_the_force_of_the_package(rumoca: Any, gear: GearCo
 
 
 def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: BoltedJointSpring):
-    """Without history, far below the friction limit, which the FMU has for each of its nodes."""
+    """Forces without history agree far below the friction limit, which the FMU has for each of its nodes."""
     s, v = (0.0, -2e-9, -4e-6), (2e-6, -1e-6, 6e-3)
     flags = {"memory": False, "damping": True, "plastic_damping": True}
     plastic = BoltedJointSpring.for_interface_nodes(replace_values(bolted.joint, flags))
@@ -442,7 +442,8 @@ def test_bolts_of_the_component_lift_off_as_those_of_the_package(
 
 
 def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: Any, bolted: BoltedJointSpring):
-    """Without history, where the linear force would exceed twice the limit, while the load changes."""
+    """The elastic shear force without history agrees while the load changes, where the linear force would
+    exceed twice the limit."""
     body = "JointStiffness.Components.BoltedJoint joint(memory=false, damping=false);"
     rates = (6e-6, -4e-6, -5e-7)
     body += "".join(f"\n  Move m{a}(at=0.0, rate={v!r});" for a, v in zip("xyz", rates, strict=True))

@@ -222,8 +222,8 @@ sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [kind.models[0].name for kind in KINDS.values()])
 def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) -> None:
-    """In an installation without compiler, after the default FMU was built; with the numbers of the package.
-    FMUs of one joint share all fixed contents."""
+    """After the default FMU was built, an installation without compiler builds a variant, with the numbers of
+    the package. FMUs of one joint share all fixed contents."""
     kind = KINDS[MODELS[name].joint]
     tuned = ({n: v} for n, v in CASES[name].tuning.tuned.items())
     alone = [one for one in tuned if not list(kind.find_contradictions(of(name, one)[1].values))]

@@ -384,7 +384,8 @@ def test_a_mutated_state_is_refused_or_used_without_harm(
 def test_a_mutated_state_of_elastic_sides_is_refused_or_used_without_harm(
     sanitizing: str, builder: Builder, elastic_joint: Path
 ) -> None:
-    """In both FMI versions, whose states differ in their header only."""
+    """A mutated state is refused or harmless in both FMI versions, whose states differ in their
+    header only."""
     ELASTIC_FILES[:] = [load_parameter_file(elastic_joint / "joint.toml")]
     for version in VERSIONS:
         check_mutations(builder, sanitizing, ELASTIC, version, ELASTIC_MUTATIONS)

@@ -174,7 +174,8 @@ def check_mean_of_sides(instance: Fmu, state: dict[str, float], nominal: dict[st
 def test_derivatives_in_random_states_are_the_mean_of_both_sides(
     host: Host, version: str, moment: str
 ) -> None:
-    """All outputs with respect to all inputs."""
+    """In random states, the derivative of every output with respect to every input is the mean of the slopes
+    on both sides."""
     nominal = {v.name: v.nominal for v in MODELS["BoltedJoint"].outputs}
     for seed in range(16):
         instance = host("BoltedJoint", version)

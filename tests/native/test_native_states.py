@@ -68,7 +68,7 @@ def test_a_state_as_bytes_goes_into_an_instance_that_was_never_initialized(
 
 
 def test_what_was_asked_before_does_not_matter(host: Host, name: str, version: str) -> None:
-    """Not by one bit: values that an instance stores for other inputs only save time."""
+    """Values that an instance stores for other inputs only save time: results do not change by one bit."""
     fresh, used = host(name, version).start(), host(name, version).start()
     asked = random_inputs(name, 60, seed=61)
     swept = [asked[0] | {"s_rel_z": -2e-6 + 4e-9 * k} for k in range(1000)] if name == "BoltedJoint" else []

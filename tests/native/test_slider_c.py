@@ -155,7 +155,8 @@ def assert_close(found: object, expected: object, size: float) -> None:
 
 
 def test_along_one_direction(library: CDLL) -> None:
-    """Forces, sums, tangent and rates of a changing limit, and derivative of the heat at a constant limit."""
+    """Along one direction, C and Python agree in forces, sums, tangent and rates of a changing limit, and in
+    the derivative of the heat at a constant limit."""
     moved, slipped = np.empty(SLIDERS), 0
     for K, before, after, force, (u, *_) in moves(plane=False):
         rows = rows_of(K, before, after, force)
@@ -213,7 +214,7 @@ def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> n
 
 
 def test_in_a_plane(library: CDLL) -> None:
-    """Forces, tangents and heat."""
+    """In a plane, C and Python agree in forces, tangents and heat."""
     slipped = 0
     for K, before, after, force, shift in moves(plane=True):
         rows = rows_of(K, before, after, force)
@@ -256,8 +257,8 @@ def forces_together(
 
 
 def test_slopes(library: CDLL) -> None:
-    """Finite for any sliders. Away from the start and end of slip they agree with differences, within the
-    step over the smallest limit."""
+    """Slopes are finite for any sliders. Away from the start and end of slip they agree with differences,
+    within the step over the smallest limit."""
     rng, step, compared = np.random.default_rng(2), 1e-6, 0
     for K, before, after, force, shift in moves(plane=True):
         rates = rng.normal(size=(3, SLIDERS))

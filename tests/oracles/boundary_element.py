@@ -22,7 +22,8 @@ class Contact:
     """Rough contact under a mean pressure p (over E*).
 
     area, plastic : real area over nominal, share of it at the hardness
-    separation    : of the mean planes (of the side); stiffness, tangential : per nominal area (E* over side)
+    separation    : distance of the mean planes (of the side)
+    stiffness     : stiffness per nominal area (E* over side)
     isolated      : 2 sum sqrt(a_i/pi) over the spots, the stiffness if no spot felt another
     """
 

@@ -102,7 +102,7 @@ class Contact:
     """Two bodies in normal contact.
 
     heights, pressure : (points, points)
-    approach          : of the mean planes, zero where heights of zero touch
+    approach          : approach of the mean planes, zero where heights of zero touch
     steps             : gradient steps of the normal and of the tangential problem
     """
 

@@ -92,7 +92,7 @@ class Comparison:
 class Loop:
     """Friction loop between two opposite displacements.
 
-    amplitude   : of the displacement; `area` of the loop
+    amplitude   : amplitude of the displacement; `area`: area of the loop
     open        : difference of the force between end and start, over the force at the start [1]
     back, again : (stations) forces on the two branches
     """
@@ -162,7 +162,7 @@ def sphere_errors(points, nu, radius=0.4, curvature=0.1):
     """Relative errors of a sphere against Cattaneo and Mindlin: load, displacements (at forces), loop areas
     (at amplitudes).
 
-    radius, curvature : of the contact and of the sphere, in sides of the square
+    radius, curvature : radius of the contact and curvature of the sphere, in lengths of a side
     """
     x = (np.arange(points) + 0.5) / points - 0.5
     z = -0.5 * curvature * (x[:, None] ** 2 + x**2)

@@ -24,7 +24,7 @@ def periodic(size, points, D, G, band, seed):
     D      : 1    fractal dimension of the surface, 2 < D < 3
     G      : [m]  fractal roughness in the sense of `isotropic`
     band   : [m]  longest and shortest wave, size >= longest > shortest >= 2 spacings
-    seed   : of the phases; the amplitudes are those of `fractal.wave_power` without scatter
+    seed   : random seed of the phases; the amplitudes are those of `fractal.wave_power` without scatter
 
     Raises ValueError if D is outside its interval or the band does not fit the square and its grid.
     """

@@ -116,7 +116,7 @@ def test_every_experiment_states_times_and_tolerance(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_references_are_those_of_the_joint_itself(name: str) -> None:
-    """Computed by the functions of the joint, without those that the builders call."""
+    """References are computed by functions of the joint that the builders do not call."""
     model, file = given(name)
     ramp = next(one for one in made(name) if one.name == "load ramp")
     joint = law(name, parameters(name))
@@ -218,7 +218,7 @@ def test_the_sources_of_parameters_can_be_built_from(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_it_is_small(name: str) -> None:
-    """Packed below 50 kB, a tenth of an FMU; unpacked below 120 kB."""
+    """The proof takes less than 50 kB packed, a tenth of an FMU, and less than 120 kB unpacked."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for path, content in members(name).items():

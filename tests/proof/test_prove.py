@@ -77,7 +77,7 @@ def test_an_fmu_proves_itself(
 def test_fmus_of_other_laws_prove_themselves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], joint: str, law: str
 ) -> None:
-    """Also under a name that the user chose."""
+    """FMUs of other laws pass their own proof, also under a name that the user chose."""
     name = KINDS[joint].models[-1].name
     with here_alone("3"):
         fmu = native_build(name, load_default(joint, law), tmp_path, "3", alias="own_joint")
@@ -138,7 +138,7 @@ def test_the_library_of_another_joint_fails_in_one_line(
 def test_a_library_that_computes_something_else_fails_by_name(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], importer: str
 ) -> None:
-    """Another number in the constants of the law: pi."""
+    """A library with another constant of the law (another pi) fails with the name of the output."""
     number = np.float64(np.pi).tobytes()
 
     def change(name: str, data: bytes) -> bytes:
@@ -203,7 +203,8 @@ def test_an_fmu_without_this_platform_is_refused(
 def test_a_changed_reference_fails_by_name(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By twice the tolerance, in the last row of one output."""
+    """A reference that was changed by twice the tolerance, in the last row of one output, fails with the name
+    of the output."""
 
     def change(name: str, data: bytes) -> bytes:
         if not name.endswith("load_ramp_ref.csv"):
@@ -272,7 +273,8 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
 def test_an_importer_whose_library_does_not_load_is_refused(
     native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As on a machine without a library that the importer loads."""
+    """An importer is refused if its library does not load, as on a machine without a library that
+    it needs."""
     (tmp_path / "ecospy.py").write_text("raise OSError('libtbb.so.12: cannot open shared object file')\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
@@ -573,7 +575,7 @@ def test_no_listing_of_an_fmu_that_fails(
 
 
 def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:
-    """During an experiment of a million steps."""
+    """Ctrl-C during an experiment of a million steps ends the command and its importer."""
     one = '<Experiment name="long"><TransientSimulation stopTime="10" stepSize="2e-6"/></Experiment>'
     path = other_manifest(fmu, tmp_path / "long.fmu", one)
     command, own = [sys.executable, "-m", "jointfmu", "prove", str(path)], tmp_path / "own"

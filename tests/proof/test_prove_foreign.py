@@ -227,7 +227,7 @@ def test_values_that_do_not_fit_are_named(
 def test_what_lies_elsewhere_or_in_other_formats_is_left_out(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A web address, an experiment in another format, two result files."""
+    """A web address, an experiment in another format and a second result file are left out."""
     files = {"y.csv": b"time,x\n0,0\n3,0\n"}
     two = '<References source="y.csv"/><References source="z.csv"/>'
     path = other_manifest(neuron, tmp_path / "n.fmu", experiment("two", two), **files)

@@ -260,7 +260,7 @@ def test_a_guess_that_is_none_is_refused(how, said):
 
 @pytest.mark.parametrize("name", ["x", "z", "missing"])
 def test_a_guess_from_what_was_not_calibrated_is_refused(name):
-    """A guess from the point itself, from a prediction without guess, or from no point."""
+    """A guess from the point itself, from a prediction without guess, or from no point is refused."""
     asked = point(guess=Guess(rule="constant", points=[name]))
     with pytest.raises(ValueError, match=f"x: guess from '{name}', allowed are calibration points"):
         compute_trivial_guesses([point(id="z"), asked])
@@ -413,8 +413,8 @@ def refitted(monkeypatch, fits):
 @pytest.mark.slow
 @pytest.mark.parametrize("joint", FITS)
 def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
-    """From other values in the file, other start values of the fit, and with every other point made
-    unusable."""
+    """Calibration gives the committed values from other values in the file and other start values, and with
+    every other point made unusable."""
     committed = load_default(joint)
     paper, fits = FITS[joint]
     unknowns = [name for fit in fits for name in fit.unknowns]
@@ -459,7 +459,7 @@ def test_a_joint_without_points_is_refused():
 
 @pytest.mark.slow
 def test_a_fit_that_cannot_be_met_is_reported(monkeypatch):
-    """A pressure between the bolts above the largest pressure."""
+    """A fit is reported as impossible if a pressure between the bolts would be above the largest pressure."""
     paper = FITS["bolted_joint"][0]
     bad = [replace(p, value=9e6) if p.id == "p_between.9kN" else p for p in read_points(paper)]
     monkeypatch.setattr(calibration, "read_points", lambda asked: bad)

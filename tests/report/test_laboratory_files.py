@@ -241,7 +241,8 @@ def test_what_new_writes_without_lists_is_shown(
 
 @needed
 def test_a_file_is_read_however_it_is_written(shown: Browser, tmp_path: Path) -> None:
-    """Without the law, with integers, in tables and dotted keys, with comments and other line ends."""
+    """A file is read without the law, with integers, in tables and dotted keys, with comments and other line
+    ends."""
     choose(shown, "HarmonicDriveSpring", 3)
     text = format_parameter_file(load_default("harmonic_drive"))
     check_shown(shown, re.sub(r"(?m)^law = .*\n", "", text), tmp_path)
@@ -277,7 +278,7 @@ def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) 
 def test_a_bolted_joint_of_a_drawing_is_refused(
     shown: Browser, drawings: dict[str, str], name: str, key: str
 ) -> None:
-    """A complete joint, and its interface: their contact points are not those of the page."""
+    """A complete joint and its interface are refused: their contact points are not those of the page."""
     for model, index in (("BoltedJoint", 0), ("BoltedJoint", 1), ("GearContact", 0)):
         choose(shown, model, index)
         said = refusal(shown, drawings[name])

@@ -312,8 +312,8 @@ def test_a_measured_curve_stands_beside_the_curves_that_measure_the_same(shown: 
 
 @needed
 def test_every_stop_of_every_slider_is_allowed(shown: Browser) -> None:
-    """Also where other parameters leave a narrow interval, as for the radial deformation of a
-    harmonic drive."""
+    """A stop is allowed even where other parameters leave a narrow interval, as for the radial deformation of
+    a harmonic drive."""
     script = """laboratory.then((lab) => {
       for (const { show } of lab.fits()) show();
       const stops = (v) => [0, 200, 400, 600, 800, 1000].map((t) => onScale(v, t));

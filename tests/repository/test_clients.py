@@ -87,6 +87,7 @@ def test_an_unknown_client_is_an_error():
 
 
 def test_a_script_that_fails_says_why_in_one_line():
-    """As with a package whose library cannot be loaded: the last line of the traceback."""
+    """A script that fails, as with a package whose library cannot be loaded, gives the last line of the
+    traceback."""
     with pytest.raises(OSError, match=r"^OSError: libmissing\.so: cannot open shared object file$"):
         clients.script("raise OSError('libmissing.so: cannot open shared object file')")()

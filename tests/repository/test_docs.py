@@ -285,7 +285,8 @@ def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
 
 
 def test_the_reference_has_every_public_name(site: Path) -> None:
-    """With arguments and their help as list items; the site's search finds each name."""
+    """The reference lists every public name with arguments and their help; the site's search finds
+    each name."""
     page = site / "reference.html"
     ids, text = Links(page).ids, page.read_text(encoding="utf-8")
     for name in (*(f"jointfmu{n}" for n in jointfmu.__all__), "jointbuild", "drivejointwind_up"):

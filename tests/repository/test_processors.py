@@ -90,7 +90,8 @@ newer = needs("AVX2", "gmsh")
 
 @newer
 def test_the_file_of_a_whole_joint_is_the_same(tmp_path, paths):
-    """With the element sizes of these tests."""
+    """The parameter file of a whole joint, computed as on an old processor with coarse elements, has the same
+    text."""
     script = [sys.executable, "-c", COARSE.format(**REFINEMENT), *drawing("plate", tmp_path)]
     subprocess.run(script, env=os.environ | OLD, check=True, stdout=PIPE)
     here = next(path for path in paths if path.stem == "plate")

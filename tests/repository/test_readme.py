@@ -42,7 +42,8 @@ def test_the_readme_is_short():
 @pytest.mark.slow
 @needs("git and a checkout", "gmsh")
 def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monkeypatch):
-    """In a clone; `.ci/run` runs the installation and the complete build in an environment of its own."""
+    """The blocks run in a clone; `.ci/run` runs the installation and the complete build in an environment of
+    its own."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = os.environ | {"URL": str(ROOT), "PATH": path}
     found = re.findall(r"```(sh|python)\n(.*?)```", README, flags=re.DOTALL)
@@ -208,7 +209,8 @@ def test_errors_are_those_of_the_comparison(rows):
 
 
 def test_the_start_says_how_far_it_holds(rows):
-    """In five lines of the README, and before the first picture of the guide."""
+    """The limits of validity are stated in five lines of the README, and before the first picture of the
+    guide."""
     start = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     trust = README.partition("## How far to trust it")[2].partition("\n## ")[0]
     assert trust.count("\n- ") == 5

@@ -66,7 +66,7 @@ def test_the_plugin_is_timed_beside_python():
     ],
 )
 def test_pages_have_the_tables_of_their_study(page, sections):
-    """Rows of drives only; the other rows of the page are shortened."""
+    """The page has all rows of drives of its study; its other rows are shortened."""
     text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
     rows = [row for row in table_lines(run(f"studies/{page}.py", *sections)) if row.startswith("| RT1-H")]
     assert rows

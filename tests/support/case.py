@@ -11,7 +11,7 @@ class Beyond(NamedTuple):
     """Input far beyond the end of the table: its output, its stiffness and the warning.
 
     inverse : the stiffness is that of the input over the answer, not of the answer over the input
-    lever   : of the input, by which the answer's slope is larger than the stiffness
+    lever   : lever arm of the input, by which the slope of the output is larger than the stiffness
     """
 
     driven: str
@@ -47,8 +47,8 @@ class Description:
     calibration : some of the parameters that say they are calibrated
     shown       : {variable: display unit}
     flanges     : {terminal: its variables}
-    domain      : or domains of its terminals
-    steps       : of the default experiment; None if they are no whole number to the last bit
+    domain      : domain or domains of its terminals
+    steps       : number of steps of the default experiment; None if they are no whole number to the last bit
     linear      : an output is linear in an input, with a factor that FMI may call constant or tunable
     others      : parameters with which such a constant factor stays
     """
@@ -74,8 +74,8 @@ class Numbers:
     place   : makes inputs of random numbers in `ranges`, where not each range stands for itself
     span    : inputs over the range of the tables, for the benchmark
     state   : one state with nothing zero
-    sizes   : of inputs, for differences, where `state` does not give them
-    good    : what is set for an ordinary state, the other inputs zero
+    sizes   : sizes of inputs, for differences, where `state` does not give them
+    good    : inputs of an ordinary state; the other inputs are zero
     rest    : inputs that are not zero where nothing moves
     jumps   : outputs that hold the third derivative of a table, which jumps at its nodes
     kinks   : outputs that have kinks or jumps themselves, as friction does
@@ -148,10 +148,10 @@ class Case:
 class Joint:
     """Properties of a joint that the shared tests need.
 
-    cases   : of its FMUs
+    cases   : test cases of its FMUs
     varied  : a parameter of its surface that may change a little
     scaled  : another one that may be scaled a little
-    studies : of its uncertainty
+    studies : studies of its uncertainty
     unloaded : outputs that are not zero without load
     """
 

@@ -60,8 +60,8 @@ class Read:
 
     Scalars are numbers or arrays over time, Modelica's arrays are lists of them.
 
-    values  : of all that is not a parameter
-    changes : of parameters
+    values  : values of all variables that are no parameters
+    changes : changed values of parameters
     """
 
     def __init__(

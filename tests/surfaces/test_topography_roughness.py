@@ -49,7 +49,8 @@ def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
 
 
 def test_one_surface_has_one_height():
-    """From D and G of the profiles, or D_s and G_s of the surface; for gamma near 1 from the spectrum."""
+    """The height from D and G of the profiles, or from D_s and G_s of the surface, is the same; for gamma
+    near 1 it is from the spectrum."""
     H = 0.58
     profile = fractal.rms_height(2.0 - H, G, SIZE)
     assert fractal.rms_height(3.0 - H, fractal.areal_roughness(G, H), SIZE, is_areal=True) == pytest.approx(

@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
     "page", [pytest.param("drake", marks=needs("Drake")), pytest.param("pinocchio", marks=needs("Pinocchio"))]
 )
 def test_the_page_gives_wind_up_and_tip_error(page, capsys, tmp_path, monkeypatch):
-    """By the law of the drives, as printed on the page."""
+    """The code of the page prints wind-up and tip error by the law of the drives, as the command does."""
     monkeypatch.chdir(ROOT)
     (code,) = re.findall(r"```python\n(.*?)```", (ROOT / f"docs/tools/{page}.md").read_text(), re.DOTALL)
     exec(compile(code, page, "exec"), {})
@@ -42,7 +42,7 @@ def test_the_page_gives_wind_up_and_tip_error(page, capsys, tmp_path, monkeypatc
     [("mujoco", r"elbow at (29\.\d|30\.\d)\d\d deg, -?\d\.\d\d N m"), ("ros2", r"wrote \S*drive\.urdf")],
 )
 def test_what_the_page_has_runs_top_to_bottom(page, found, capsys, tmp_path, monkeypatch):
-    """All code except installations."""
+    """All code of the page runs, except installations."""
     shutil.copytree(ROOT / "models/robots", tmp_path / "models/robots")
     monkeypatch.chdir(tmp_path)
     text = (ROOT / f"docs/tools/{page}.md").read_text()

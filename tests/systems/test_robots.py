@@ -55,7 +55,7 @@ def pulled(model, torques):
     ],
 )
 def test_wind_up_at_rated_torque_is_the_fmus(name, capsys):
-    """A ramp of 2 s; the stated tolerance is 3 %."""
+    """At the end of a ramp of 2 s to rated torque, the wind-up is within 3 % of that of the FMU."""
     said, model = exported(capsys, name)
     drive = jointfmu.load(name)
     rated = drive.values["rated_torque"]
@@ -122,7 +122,7 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100"])
 def test_loops_inside_have_the_area_of_the_fmus(name):
-    """Fitted at rated torque only."""
+    """Springs that were fitted at rated torque only have the area of smaller loops within 5 %."""
     own = make_transmission(jointfmu.drive(name, hysteresis=1.0).file)
     springs = fit_spring(own, own.rated_torque)
     for share in (0.1, 0.2, 0.3, 0.5, 0.7):

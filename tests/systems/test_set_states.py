@@ -81,7 +81,7 @@ def set_vector(fmu: Fmu, states: dict[str, float]) -> None:
 def test_derivatives_and_outputs_follow_states_that_a_host_sets(
     folder: Path, version: str, name: str, set_states: SetStates, continuous: bool
 ) -> None:
-    """As after setting the state vector in continuous-time mode."""
+    """Derivatives and outputs agree with those after setting the state vector in continuous-time mode."""
     path, states, start = file_of(folder, name, version), STATES[name], START.get(name, {})
     expected, fmu = (Fmu(path, exchange=True).start(start) for _ in range(2))
     expected.fmu.enterContinuousTimeMode()

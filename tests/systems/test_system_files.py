@@ -326,7 +326,8 @@ def test_the_tip_is_where_the_links_lead() -> None:
 
 
 def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
-    """At T2 of the rows of sizes 32, 40, 25, 20, 17, 14; round corners change 0.5 %."""
+    """The wind-ups are those at T2 of the rows of sizes 32, 40, 25, 20, 17, 14; round corners
+    change 0.5 %."""
     rows = {
         "base": (29, 108, 67e3, 110e3),
         "shoulder": (54, 196, 130e3, 200e3),
@@ -362,7 +363,7 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
 
 
 def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
-    """The values of inputs in the joint's file, or in the system file."""
+    """The Modelica model has the inputs of the joint's file, or those of the system file."""
     files = {
         "harmonic_drive": {"temperature": 318.15},
         "bolted_joint": {"preload": 12e3, "temperature": 313.15},
@@ -386,7 +387,8 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
 
 
 def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
-    """For motor and link on the drive at rest, and at the largest torque of a run."""
+    """A warning names the interval for motor and link on the drive, at rest and at the largest torque of a
+    run."""
     monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, overwrite: [])
     path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
     drive = HarmonicDriveSpring.tabulate(read_system(path).joints["drive"].parameter_file.values)

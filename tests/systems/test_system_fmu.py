@@ -92,7 +92,8 @@ def test_any_step_passes_the_proof_in_each_importer(files_of, name, importer, ve
 
 @pytest.mark.parametrize("name", ["robot_joint", "bolted_column", "six_axis_robot"])
 def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
-    """In fmpy, the references of the FMU; in FMI 2.0, those of fmpy's own master agree."""
+    """The references of the FMU are those of model exchange in fmpy; for FMI 2.0, those of fmpy's own master
+    agree."""
     files, output = files_of(name), LAST[name]
     if name == "six_axis_robot":
         found = prove(files["3"])
@@ -182,7 +183,7 @@ class Opened:
 
 
 def test_derivatives_are_exact(joint):
-    """Against central differences; 1e-6 is the square root of their round-off."""
+    """Derivatives agree with central differences; 1e-6 is the square root of their round-off."""
     with Opened(joint["2"]) as one:
         fmu, known = one.host.fmu, one.host.variables
         names = ["motor.phi", "link.phi", "motor.w", "link.w", "load.tau_in", "link.tau_a"]
@@ -206,7 +207,7 @@ def test_derivatives_are_exact(joint):
 
 
 def test_a_saved_state_goes_on_alike(joint):
-    """Through bytes too, with slipping friction: equal to the last bit."""
+    """A run from a saved state, also from its bytes, is equal to the last bit, with slipping friction."""
     with Opened(joint["2"]) as one:
         fmu, host = one.host.fmu, one.host
         fmu.exitInitializationMode()

@@ -265,7 +265,8 @@ def test_a_saved_state_goes_on_bit_by_bit(make: Make) -> None:
 @BOTH
 @pytest.mark.parametrize(("kind", "error"), [("ModelExchange", 1e-6), ("CoSimulation", 3e-5)])
 def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -> None:
-    """By CVode, and by its own steps."""
+    """The motion of a pendulum agrees with the exact solution, integrated by CVode and by the steps of the
+    FMU."""
     start = {"J": 0.05, "m": 1.0, "l": 0.2, "phi": 1.0, "w": 0.0}
     found = simulate_fmu(
         str(built / f"fmi{version}" / "RotationalInertia.fmu"),
@@ -544,7 +545,7 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
 
 @pytest.mark.parametrize("name", list_system_names())
 def test_the_own_master_runs_an_archive_as_fmpy_does(built: Path, name: str) -> None:
-    """Parallel master: the same equations in each step."""
+    """The package's parallel master solves the same equations in each step as fmpy."""
     found = load_system(name)
     own = simulate_system(found, built / "fmi2", stop=STEPS * found.interval)
     rows = in_fmpy(built, name)
@@ -892,7 +893,8 @@ def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop
 
 @BOTH
 def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
-    """Drive and link as model-exchange FMUs, one system in CVode."""
+    """Drive and link as model-exchange FMUs, solved as one system by CVode, move as in co-simulation with
+    small steps."""
     stop, angle, count = 0.03, 1.3e-3, 24_000
     fmus = {
         "drive": make("HarmonicDriveSpring", version, True).start(),
@@ -936,7 +938,8 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
 def test_the_command_builds_a_system_of_ones_own(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With its own drive: an FMU that vibrates, archives that run, a Modelica model, table and picture."""
+    """A system with its own drive gives an FMU that vibrates, archives that run, a Modelica model, table and
+    picture."""
     text = (files("jointfmu_models") / "systems" / "robot_joint.toml").read_text(encoding="utf-8")
     model = 'model = "HarmonicDriveSpring"'
     own = text.replace(model, f'{model}\nparameters = "drives/my_drive.toml"').replace(
@@ -978,7 +981,8 @@ def test_the_command_builds_a_system_of_ones_own(
 
 
 def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
-    """Up to the middle of the motion; the layer of the sliders leaves an error of 1e-3 of the friction."""
+    """The wind-up agrees up to the middle of the motion; the layer of the sliders leaves an error of 1e-3 of
+    the friction."""
     import rumoca
 
     stop = 0.6
@@ -1157,7 +1161,7 @@ def test_ring_down_of_a_drive_with_hysteresis(
 
 
 def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """K_xx at very small motion."""
+    """The frequency of small vibrations in shear belongs to K_xx at very small motion."""
     fmus = str(built / "fmi2")
     arguments = ["--amplitude", "1e-8", "--load", "9e3", "--inertia", "50"]
     assert cli.main(["ring", "bolted_column", "--fmus", fmus, *arguments, "--json"]) == 0

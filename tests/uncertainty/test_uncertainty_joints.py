@@ -61,8 +61,8 @@ def test_outputs_are_those_of_the_python_law(joint, study):
 
 @pytest.mark.parametrize("law", ["zhao2018", "roughness"])
 def test_approach_and_loss_factor_of_the_bolted_joint(law):
-    """Against quadrature of the compliance of patches and nodes, and against the loop of the whole
-    interface."""
+    """The results agree with quadrature of the compliance of patches and nodes, and with the loop of the
+    whole interface."""
     task = state_problem(load_default("bolted_joint", law), {"mu": "0.1..0.2", "H": "+-5%"}, None, 5)
     columns, joint = sample_of(task, propagate.sample_designs(task, 4, 5)[0], 0)
     joint = replace(with_rigid_members(joint), embedding=0.0)
@@ -140,7 +140,8 @@ def test_refused_samples_are_counted_with_the_reason():
 
 
 def test_samples_that_only_the_law_refuses():
-    """A dimension so close to 1 that the critical spot area overflows."""
+    """The law alone refuses samples whose dimension is so close to 1 that the critical spot area
+    overflows."""
     task = state_problem(load_default("bolted_joint"), {"surface.D": "1.0001..1.3"}, None, 3)
     points = propagate.sample_designs(task, 256, 0)[0]
     found = propagate.compute_bands(task, points)

@@ -210,7 +210,8 @@ def test_a_process_that_dies_as_it_starts_prints_nothing():
 
 
 def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
-    """On the workers of a scheduler, given by its address only; the same numbers as `jointfmu ramp`."""
+    """Runs on the workers of a scheduler, given by its address only, give the same numbers as `jointfmu
+    ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
     task = state_fmu_problem(fmu, DRIVE, given)
     runs = runs_of(task, 8)
@@ -234,7 +235,8 @@ def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
     ],
 )
 def test_an_fmu_and_its_joint_have_the_same_numbers(flavour, name, load, to, given, native, tmp_path):
-    """The same samples through the importer and through the library alone."""
+    """An FMU and its joint give the same numbers for the same samples, through the importer and through the
+    library alone."""
     path, drive = native / flavour / f"{name}.fmu", LoadRamp(load, to, to / 6.0)
     task = state_fmu_problem(path, drive, given)
     runs = runs_of(task, 4, 3)
@@ -248,7 +250,8 @@ def test_an_fmu_and_its_joint_have_the_same_numbers(flavour, name, load, to, giv
 
 
 def test_bands_of_an_fmu(fmu, tmp_path, capsys):
-    """The same samples as of the deprecated command; without a folder nothing is stored."""
+    """The bands are those of the deprecated command for the same samples; without a folder nothing
+    is stored."""
     arguments = [str(fmu), *SETTINGS, *RAMP, "--samples", "16", "--workers", "1", "--json"]
     assert cli.main(["uncertainty", *arguments, "--csv", str(tmp_path / "bands.csv")]) == 0
     found = json.loads(capsys.readouterr().out)

@@ -9,7 +9,7 @@ from dataclasses import KW_ONLY, dataclass
 class Option:
     """Command-line option, also a keyword argument in Python, of a tool module.
 
-    name         : in Python; on the command line with hyphens
+    name         : name in Python; on the command line with hyphens
     help_text    : meaning of the option; for a number with its unit
     metavar      : placeholder of the value in the help
     default      : value if the user does not set the option

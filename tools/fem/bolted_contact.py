@@ -20,7 +20,7 @@ class BoltedContact:
     """Finite-element model of a bolted assembly: meshed bodies and interface, ready for any preload.
 
     bodies          : side 1 and side 2, or side 2 alone if side 1 is its mirror image
-    bolt_head_loads : for each body, nodal load (n, bolts) [N/N] of a unit force of each bolt along +z
+    bolt_head_loads : nodal loads of each body (n, bolts) [N/N] of a unit force of each bolt along +z
     """
 
     assembly: Assembly

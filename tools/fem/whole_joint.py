@@ -143,7 +143,7 @@ class JointFiniteElements:
         """Compliances of the complete joint, by their sources: interface, members, bolts.
 
         interface_stiffness : stiffness per area (q, 3) [N/m3] of the interface along x, y, z
-        bolt_stiffness      : of each bolt [N/m]
+        bolt_stiffness      : stiffness of each bolt [N/m]
 
         Raises RuntimeError if a body can move freely.
         """
@@ -269,7 +269,7 @@ class LinearJoint:
     """Linear model of a joint: the interface is a layer of springs.
 
     body_matrix, contact_matrix, bolt_matrix : stiffness matrices (n, n) [N/m] of bodies, interface, bolts
-    bolt_stiffness : of each bolt [N/m]
+    bolt_stiffness : stiffness of each bolt [N/m]
     unit_motion_displacement : (n, 6) for unit motions of side 2's attachment, about the centroid of the
         contact
     rigid_displacement : (n, 6) for the same motions if the bodies were rigid

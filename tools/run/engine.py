@@ -42,7 +42,7 @@ class PathResult(NamedTuple):
 class JointEngine(Protocol):
     """A joint that can be evaluated along paths of its inputs.
 
-    model : its inputs and outputs
+    model : inputs and outputs of the joint
     """
 
     model: Model
@@ -81,7 +81,7 @@ class VariableJoint:
     Parameters that the FMU exposes are set in the open joint. For other values of the remaining parameters
     the joint is opened again; the last MAX_OPEN_JOINTS stay open.
 
-    model : its inputs and outputs
+    model : inputs and outputs of the joint
     file  : parameters that `with_values` changes; None: those of the first call of `with_parameters`
     """
 

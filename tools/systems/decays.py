@@ -90,7 +90,7 @@ def simulate_decays(
 
     folder             : folder of the FMUs (FMI 2.0) of joint and body
     initial_deflection : [m or rad] from the working point
-    loads              : in SI units; None: the largest example load of the joint
+    loads              : loads in SI units; None: the largest example load of the joint
     inertia            : [kg.m2 or kg] of the body; None: that of the system
     settings           : parameters of the joint that replace those of the system
 

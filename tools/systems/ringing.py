@@ -120,8 +120,8 @@ class VibrationTest:
     """Vibration test of a joint with a body. A joint defines its test by the constant VIBRATION_TEST.
 
     model_name              : FMU of the joint, with motion as input
-    motion_inputs           : its inputs: position and speed of the body
-    force_output            : its output: force or torque on the body
+    motion_inputs           : inputs of the joint: position and speed of the body
+    force_output            : output of the joint: force or torque on the body
     body_model              : FMU of the body
     load_variable           : variable that is the load on the joint
     find_example_loads      : (FMU of the joint, its parameters) -> example loads, in SI units
@@ -264,7 +264,7 @@ def simulate_vibrations(
     """Simulate free vibrations of a body on its joint without friction, one for each load.
 
     folder  : folder of the FMUs (FMI 2.0) of joint and body
-    loads   : in SI units; None: the example loads of the joint
+    loads   : loads in SI units; None: the example loads of the joint
     inertia : [kg.m2 or kg] of the body; None: that of the system
 
     Raises ValueError if an FMU is missing or returns an error, or if there is no vibration.

@@ -158,7 +158,7 @@ def build_systems(
     parameters     : parameter file of a joint that replaces those of the systems; then only systems with this
         kind of joint are built
     build_joints   : whether to build the FMUs of the joints too; False: they exist already in `out`
-    variability    : of all parameters, one of VARIABILITIES
+    variability    : FMI variability of all parameters, one of VARIABILITIES
     pool           : processes that build in parallel; None: build in this process
     overwrite      : also replace files that jointfmu did not write
 

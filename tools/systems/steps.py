@@ -23,7 +23,8 @@ def find_largest_stable_step(system: System, results: Mapping[str, Array] | None
     Each joint is treated alone with the bodies on it. An undamped joint has no stable step with a parallel
     master; then the step of a sequential master is used.
 
-    results : of a simulation: the step is evaluated at the largest loads in it; None: at the start values
+    results : results of a simulation: the step is evaluated at the largest loads in them; None: at the
+        start values
 
     Raises ValueError as `wiring.find_connections`.
     """

@@ -91,7 +91,7 @@ class System:
     title               : name given in the file
     components          : {name: component}
     connections         : pairs of ends: `COMPONENT.FLANGE`, the name of a load, or GROUND
-    stop_time, interval : of the experiment [s]
+    stop_time, interval : end and output interval of the experiment [s]
     arm                 : serial arm with its motion; None: the system is no arm
     experiment_sources  : {entry of the experiment: source}
     """

@@ -21,9 +21,9 @@ def set_result_store(store: ResultStore | None) -> None:
 
 
 def compute_once(name: str, arguments: "Sequence[Array]", compute: "Callable[[], Array]") -> "Array":
-    """Result (...) of float64 that depends on the arguments alone, from the store if it is there.
+    """Compute a result (...) of float64, or read it from the store if the same was computed before.
 
-    name : of the computation, and of numbers on which it depends besides the arguments
+    name : text with the name of the computation and all numbers on which it depends besides the arguments
     """
     import numpy as np  # here: the tools import this module before they can report an interrupt
 

@@ -629,7 +629,7 @@ def varying_stiffness_loss(
 ) -> Number:
     """Energy loss [J/m2] of a slider with changing stiffness: work minus increase of elastic energy.
 
-    force, new_force : at the start and at the end of the increment
+    force, new_force : forces at the start and at the end of the increment
     tangential_displacement : displacement increment
     stiffness : [Pa/m] at both ends
     slip_force : slip force of the return mapping, see `ReturnMapping`

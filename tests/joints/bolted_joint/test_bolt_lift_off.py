@@ -167,7 +167,8 @@ def test_no_bolt_pushes(spring, sweep):
 
 
 def test_a_lifted_bolt_has_no_stiffness():
-    """Zero beyond lift-off, half of the full stiffness at lift-off; between rigid sides."""
+    """Between rigid sides, the stiffness of a bolt is zero beyond lift-off, and half of the full one at
+    lift-off."""
     spring = BoltedJointSpring.for_joint(rigid_file().values)
     free, six = without_bolts(spring), np.zeros(6)
     x, y = spring.bolts.position.T
@@ -281,7 +282,7 @@ def test_the_fmu_lifts_its_bolts_as_the_package(file, spring, tmp_path, flavour)
 
 
 def test_derivatives_are_those_of_the_forces_on_both_sides(file, tmp_path):
-    """Derivatives with respect to normal motions, preload and moment."""
+    """Derivatives with respect to normal motions, preload and moment agree with differences of the forces."""
     with here_alone():
         build_fmus(["BoltedJoint"], ["fmi2"], file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")

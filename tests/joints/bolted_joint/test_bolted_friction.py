@@ -115,8 +115,8 @@ def test_shear_does_not_lift(spring):
 @each_load
 @pytest.mark.parametrize("s_z", [0.0, -1e-6, 2e-6])
 def test_gross_slip_is_mu_times_the_normal_force(spring, preload, moment, s_z):
-    """In every direction. The patches keep share, preload and moment ratio exactly; sums under tension only
-    to 0.2 %."""
+    """The limit is mu times the normal force in every direction. The patches keep share, preload and moment
+    ratio exactly; sums under tension only to 0.2 %."""
     for angle in (0.0, 0.7, 2.5):
         place = np.array([2e-5 * np.cos(angle), 2e-5 * np.sin(angle), s_z, 0.0, 0.0, 0.0])
         out = rest(spring, place, preload=preload, moment=moment)
@@ -276,7 +276,8 @@ def missing(spring, steps, taken):
 
 @pytest.mark.slow
 def test_work_is_stored_or_lost_step_by_step(spring):
-    """With opening, bending and tightening, over 12 steps, without errors that cancel.
+    """Over 12 steps of opening, bending and tightening, the work of each step is stored or lost, without
+    errors that cancel.
 
     Measured: 1.6e-4 at 64 steps an oscillation (0.2 um each), 7e-8 at 640, 2.4e-9 at 2560 (5 nm).
     """
@@ -288,7 +289,7 @@ def test_work_is_stored_or_lost_step_by_step(spring):
 
 
 def test_heat_never_falls(spring):
-    """For any motion and any preload."""
+    """The dissipated energy does not fall for any motion and any preload."""
     rng, memory, before = np.random.default_rng(41), spring.initial_history(), 0.0
     for _ in range(60):
         loads = {"preload": 9e3 * rng.random(), "moment": 900.0 * rng.normal()}
@@ -334,7 +335,7 @@ def test_elastic_joint_warns_beyond_its_friction():
 
 @each_load
 def test_without_turns_the_forces_are_those_of_all_nodes(spring, preload, moment):
-    """On the points that carry the normal force, within 1e-5 of the bolt force."""
+    """The few points that carry the normal force give that of all nodes within 1e-5 of the bolt force."""
     nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     for z in (-3e-6, -1e-6, 1e-6, 3e-6):
         few, all_ = (
@@ -390,8 +391,8 @@ def test_tilt_turns_back_and_moment_alone_does_not_turn(spring):
 @pytest.mark.parametrize("degrees", [10.0, 90.0])
 @pytest.mark.parametrize("memory", [True, False])
 def test_a_turned_frame_gives_turned_forces(degrees, memory):
-    """Without history to round-off. The sliders are on circles that do not rotate: 2 % of a bolt's force, 6 %
-    of the heat of first slip."""
+    """Without history the forces agree to round-off. The sliders are on circles that do not rotate: 2 % of a
+    bolt's force, 6 % of the heat of first slip."""
     spring = BoltedJointSpring.for_joint(replace(JOINT, memory=memory))
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

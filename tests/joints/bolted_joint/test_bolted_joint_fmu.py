@@ -133,8 +133,8 @@ def test_the_preload_ramp_agrees_with_scipy(fmus: Path) -> None:
 
 
 def test_loops_are_the_packages_down_to_no_amplitude(fmu: Host, host: Host, version: str) -> None:
-    """In all flavours, down to amplitudes at which differences of energies would cancel, derivatives
-    included."""
+    """Loops of all flavours agree with the package, derivatives included, down to amplitudes at which
+    differences of energies would cancel."""
     python, native = fmu("BoltedJoint").start(), host("BoltedJoint", version).start()
     for size in (1e-17, 1e-14, 1e-12, 1e-10, 1e-8, 2e-8, 5e-8, 1e-7):
         state = {"preload": 9e3, "moment": 300.0, "s_rel_x": 0.6 * size, "s_rel_y": -0.8 * size}
@@ -221,8 +221,8 @@ def test_derivatives_keep_the_closed_relations_of_the_bolted_joint(
 
 @pytest.mark.parametrize("memory", [True, False])
 def test_all_36_slopes_are_those_of_the_forces_after_a_path(host: Host, version: str, memory: bool) -> None:
-    """Against central differences of trial evaluations of the same instance, with slip and opening along the
-    path."""
+    """All 36 slopes agree with central differences of trial evaluations of the same instance, with slip and
+    opening along the path."""
     states = random_inputs("BoltedJoint", 6, seed=35)
     instance = host("BoltedJoint", version).start({"memory": memory} | states[0])
     for state in states[1:]:

@@ -99,8 +99,8 @@ def test_members_of_a_textbook():
 @pytest.mark.parametrize("outer", [0.016, 0.022, 0.03, 0.05, 0.2])
 @pytest.mark.parametrize("tapped", [False, True])
 def test_members_are_the_integral_over_the_cone(outer, tapped):
-    """By quadrature of dz/(E A) over the cone, cut off at D_A; and by Eq. 36 of VDI 2230 for a
-    complete cone."""
+    """The compliance is the quadrature of dz/(E A) over the cone, cut off at D_A; for a complete cone also
+    Eq. 36 of VDI 2230."""
     grip, bearing, hole, E = 0.04, 0.0166, 0.0135, 210e9
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
     layers = [vdi2230.ClampedPart(0.015, E), vdi2230.ClampedPart(0.025, 2.0 * E)]
@@ -754,7 +754,8 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 @needs("gmsh")
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
-    """With elements of three times the size, whose error is far below the tolerance."""
+    """The field by finite elements of three times the size, whose error is far below the tolerance, is near
+    that of the cones."""
     monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.35))
     files = {}
     for field in ("cones", "computed"):
@@ -775,8 +776,9 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
 @needs("gmsh")
 @pytest.mark.slow
 def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, monkeypatch):
-    """As wide as the cone of VDI 2230 for a tapped thread, in a joint without symmetry; under moments and
-    higher preload, the hole edges reach the hardness of aluminium. With coarser elements."""
+    """In a joint without symmetry, the field is as wide as the cone of VDI 2230 for a tapped thread; under
+    moments and higher preload, the hole edges reach the hardness of aluminium. The elements are coarser than
+    usual."""
     monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.7))
     files = {}
     for field in ("cones", "computed"):

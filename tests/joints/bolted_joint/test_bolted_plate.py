@@ -386,7 +386,7 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
 @needs("gmsh")
 @pytest.mark.slow
 def test_four_bolts_share_a_load_evenly(capsys):
-    """With coarse elements."""
+    """By coarse finite elements, four bolts have equal shares of a load."""
     words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", *M16[6:]]
     facts, _ = made(capsys, *words, "--preload", "15e3", "--embedding", "0")
     assert facts["joint_load_factor"] == pytest.approx(4.0 * facts["bolt_load_share"], rel=1e-2)

@@ -99,7 +99,8 @@ def stiffness(spring):
     ("words", "preload"), [(FOUR, 15e3), ([*M16, "--attached", "heads"], PRELOAD)], ids=["faces", "heads"]
 )
 def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words, preload):
-    """Within 3 %, because modes have four digits and few points represent the contact."""
+    """The stiffness is within 3 % of that by finite elements, because modes have four digits and few points
+    represent the contact."""
     joint = made(*words, preload=preload)
     out, _ = at(joint.spring, *STILL, preload=preload)
     found = [out[name] for name in AXES]
@@ -278,7 +279,8 @@ def test_a_moment_changes_the_bolts_by_their_rows(made):
 
 
 def test_sides_that_do_not_give_way_are_rigid(made):
-    """With modes 1e12 times as stiff: the interface on the same patches, with the bolts at their positions.
+    """Modes that are 1e12 times as stiff give the interface on the same patches, with the bolts at their
+    positions.
 
     Patches have the normal force of the points, not that at their own places: 1.3e-3 of a force and 0.7 N.m
     were seen, where the friction is 6 kN some 30 mm from the centre.

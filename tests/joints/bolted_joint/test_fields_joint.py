@@ -78,8 +78,8 @@ def direct(joint, shape, load):
 
 
 def test_points_keep_the_sums(reduced):
-    """At loads outside the reduction's load cases, within the stated deviation; the peak pressure
-    is exact."""
+    """At loads outside the load cases of the reduction, sums are within the stated deviation; the peak
+    pressure is exact."""
     joint, shape, found = reduced
     assert found.point_count < 0.35 * found.node_count
     assert found.largest_deviation <= RELATIVE_TOLERANCE

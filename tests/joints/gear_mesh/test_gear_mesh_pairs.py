@@ -79,7 +79,8 @@ def test_even_and_between_its_neighbours(ratio, engagement, phase):
 
 @given(ratio=ratios, engagement=st.floats(0.05, 1.0))
 def test_slope(ratio, engagement):
-    """By central differences, with the error h^2/6 times the third derivative, at most 60/width^3."""
+    """The slope agrees with central differences, whose error is h^2/6 times the third derivative, at most
+    60/width^3."""
     part = ratio - np.floor(ratio)
     width = engagement * min(part, 1.0 - part)
     if width < 1e-3:
@@ -94,8 +95,8 @@ def test_slope(ratio, engagement):
 
 
 def test_arrays_of_ratios():
-    """As in studies with many samples: every row equals the result for its ratio alone, integer ratios
-    included."""
+    """In an array of ratios, as in studies with many samples, every row equals the result for its ratio
+    alone, integer ratios included."""
     ratio, engagement = np.array([[1.0], [1.5], [2.0], [2.9]]), np.array([[0.5], [1.0], [0.1], [0.3]])
     together = pairs_in_contact(ratio, engagement, 0.0, CYCLE)
     for i in range(4):
@@ -106,7 +107,8 @@ def test_arrays_of_ratios():
 
 @given(ratio=ratios, engagement=engagements, overlap=st.floats(0.05, 4.0), phase=st.floats(-3.0, 3.0))
 def test_a_helical_mesh_is_the_mean_of_its_sections(ratio, engagement, overlap, phase):
-    """By the midpoint rule, with the error h^2/24 overlap times the curvature, at most 6/width^2."""
+    """The stiffness agrees with the midpoint rule, whose error is h^2/24 overlap times the curvature, at most
+    6/width^2."""
     part = ratio - np.floor(ratio)
     width = engagement * min(part, 1.0 - part)
     if 0.0 < width < 0.02:

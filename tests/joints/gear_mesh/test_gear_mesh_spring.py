@@ -45,7 +45,8 @@ def motion(spring, s, roll, rate=0.0):
 
 @each
 def test_stiffness_is_the_slope_of_the_force(spring):
-    """Along the line of action at constant phase, from first contact to beyond the table."""
+    """The stiffness is the slope of the force along the line of action at constant phase, from first contact
+    to beyond the table."""
     s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end_point[0]
     h = 1e-3 * s
     kinks = spring.curve.displacement[1:-1][
@@ -138,14 +139,14 @@ def period(panels=40_000):
 
 
 def undamped(spring):
-    """Same spring without damping."""
+    """Spring of the same mesh without damping."""
     return GearMeshSpring(replace_values(spring.joint, {"d": 0.0}), spring.curve, spring.closing_end)
 
 
 @each
 @pytest.mark.parametrize("seed", range(4))
 def test_a_closed_path_returns_its_energy(spring, seed):
-    """Over three mesh cycles, with both flanks and separation."""
+    """Over three mesh cycles with contact of both flanks and separation, the work is zero."""
     t, weights = period()
     path = closed_path(spring, seed, t)
     out = undamped(spring).evaluate(*path)
@@ -286,7 +287,8 @@ def test_the_model_gives_its_outputs_and_depends_as_it_says():
 
 @pytest.mark.parametrize("name", ["default", "soft teeth"])
 def test_symbols(name):
-    """Same equations with symbols, from which the C code is made."""
+    """The equations give the same numbers when they are evaluated with symbols, from which the C code is
+    made."""
     import casadi
 
     from jointfmu.joints.gear_mesh.spring import deflection, mesh_outputs

@@ -83,7 +83,8 @@ def test_the_stiffness_of_helical_wheels_is_that_of_their_lines_of_contact(capsy
 
 
 def test_the_lines_of_contact_have_their_mean_length_and_fluctuation():
-    """Against lines on the field of contact, inclined by beta_b, one base pitch apart."""
+    """Mean and fluctuation agree with those of lines on the field of contact, inclined by beta_b, one base
+    pitch apart."""
     mesh = wheels(20.0, 0.04)
     eps, overlap = mesh.contact_ratio, mesh.overlap_ratio
     axial = (np.arange(4000) + 0.5) / 4000  # place over the width

@@ -77,7 +77,7 @@ def test_names(name, found):
     ],
 )
 def test_the_nearest_names_are_told(name, near):
-    """Of the same series, then with the nearest size, then with the nearest ratio."""
+    """The error lists drives of the same series, then with the nearest size, then with the nearest ratio."""
     with pytest.raises(ValueError, match=f"nearest are {near}"):
         catalogue.find_drive(name)
 

@@ -122,7 +122,7 @@ def test_a_drive_begins_where_it_is():
 
 
 def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
-    """One step against very many small steps by the trapezoidal rule."""
+    """The work of one step equals that of very many small steps by the trapezoidal rule."""
     brake, rng = FrictionSliders(5.0 * SLIDER_STIFFNESS_SHARES), np.random.default_rng(4)
     memory = brake.pack_history(
         brake.advance(HISTORY_LAYOUT.virgin_history(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08)
@@ -291,7 +291,8 @@ def smooth(rng, size, t):
 @pytest.mark.slow  # 200 trajectories of 1000 steps
 @pytest.mark.parametrize("ratio", [100.0, -80.0])
 def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio, native, fmus):
-    """With all kinds of friction and changing temperature; work of both torques by the trapezoidal rule.
+    """With all kinds of friction and changing temperature, the work of both torques (trapezoidal rule) is
+    stored or becomes heat.
 
     The beginning of the first trajectory is that of every flavour too.
     """

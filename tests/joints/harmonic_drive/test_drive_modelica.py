@@ -124,7 +124,8 @@ def way(ratio: float, t: float) -> tuple[float, ...]:
 
 
 def test_friction_along_a_path_is_the_packages(rumoca: Any):
-    """With all other effects; friction alone agrees better, see the test of the heat port."""
+    """The torque agrees with the package with all other effects; friction alone agrees better, see the test
+    of the heat port."""
     more = {"ratio": -80.0, "hysteresis_loss": 2e-4, "error_2": 2e-4, "error_4": 5e-5, "error_4_phase": 1.0}
     more |= {"friction_1": 0.002, "friction_1_phase": 0.5, "friction_2": 0.0015, "friction_2_phase": -1.0}
     left = 1e-4  # of the layer, for the 44 sliders of the hysteresis
@@ -149,7 +150,8 @@ def test_friction_along_a_path_is_the_packages(rumoca: Any):
 
 @pytest.mark.parametrize("speed", [-3.0, 0.0, 0.05])
 def test_a_drive_begins_where_it_is(rumoca: Any, speed: float):
-    """Far from zero at rest without friction; in rotation as if it had rotated for 0.1 s."""
+    """At rest far from zero, the drive begins without friction; in rotation, as if it had rotated
+    for 0.1 s."""
     law = spring(**DRY)
     text = top(
         f"{component(law, DRY)}\n  Move motor(at=500, rate={speed!r});"

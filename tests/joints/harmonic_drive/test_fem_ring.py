@@ -88,7 +88,7 @@ def test_a_spring_takes_the_force():
 
 @pytest.mark.parametrize("perturbed", [0.0, 1e-14, -1e-14])
 def test_a_loose_ring_is_refused(monkeypatch, perturbed):
-    """Also if the factorisation of its singular matrix does not fail."""
+    """A ring without support is refused even if the factorisation of its singular matrix does not fail."""
     monkeypatch.setattr(contact, "splu", lambda m: splu((m + perturbed * sparse.diags(m.diagonal())).tocsc()))
     circle = Circle.of(R, 16)
     load = circle.load(0.0 * circle.theta, np.ones_like(circle.theta))  # turns it

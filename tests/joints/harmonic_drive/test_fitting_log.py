@@ -267,7 +267,7 @@ def test_a_rotor_beyond_the_whole_is_refused(drive, tmp_path, capsys, given, hin
 
 
 def test_noise_is_not_written(drive, tmp_path, capsys):
-    """With torque that is unrelated to the motion: status 1, one line; a file is written only with
+    """A log whose torque is unrelated to the motion gives status 1 and one line; a file is written only with
     --force."""
     noise = np.random.default_rng(0).standard_normal(4001)
     path, out = written(tmp_path / "log.csv", tau=("N.m", 0.3 + 0.02 * noise)), tmp_path / "out.toml"
@@ -368,7 +368,8 @@ def test_the_torque_at_the_joint_alone(tmp_path, capsys):
 
 
 def test_a_sensor_and_the_angle_of_the_motor_give_the_stiffness(tmp_path):
-    """Without motor torque; the loads of the log are between T1 and T2."""
+    """Stiffness is fitted to sensor and motor angle, without motor torque; the loads of the log are between
+    T1 and T2."""
     log_columns, file = sensor_log(), size_32_file()
     load = 2.5 * np.gradient(log_columns["dq"], 0.01) + 110.0 * np.cos(log_columns["q"])
     wind_up = HarmonicDriveSpring.tabulate(file.values).curve.odd_inverse(load)
@@ -462,7 +463,8 @@ def test_a_long_log_starts_from_a_part_of_its_samples(monkeypatch, tmp_path):
 
 @pytest.mark.slow
 def test_a_log_of_300_000_rows_takes_seconds(tmp_path):
-    """It took 11 s, mostly for reading and for repeated fits to all samples."""
+    """Reading and fitting a log of 300 000 rows takes seconds; it took 11 s, mostly for reading and for
+    repeated fits to all samples."""
     time, rng = np.arange(300_000) * 1e-3, np.random.default_rng(0)
     dq = 2.0 * np.pi * (0.22 * np.cos(2.0 * np.pi * 0.31 * time) + 0.33 * np.cos(2.0 * np.pi * 0.83 * time))
     current = np.sign(dq) + 0.6 * dq + 0.02 * rng.standard_normal(time.size)

@@ -61,7 +61,8 @@ def name_of(row):
 
 @pytest.mark.parametrize("row", ROWS, ids=name_of)
 def test_every_row_keeps_its_angles(row):
-    """At T1, T2, rated and peak torque, and exactly outside the corners, by the exported spring."""
+    """The exported spring keeps the angles of every row at T1, T2, rated and peak torque, and exactly outside
+    the corners."""
     K = {
         n: float(row[k]) for n, k in (("K1", "K1_Nm_per_rad"), ("K2", "K2"), ("T1", "T1_Nm"), ("T2", "T2_Nm"))
     }

@@ -109,7 +109,8 @@ def test_the_python_flavour_has_the_same_variables_and_numbers(
 
 @pytest.mark.parametrize("one", LAWS)
 def test_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, one: str) -> None:
-    """On the lines and inside a corner (at the wind-up of T1)."""
+    """Derivatives agree with differences of the outputs, on the lines and inside a corner (at the wind-up of
+    T1)."""
     values = file_of(one).values
     for phi in (1e-4, 3.92e-4, 6e-4, 2e-3):
         state = CASES[SPRING].numbers.state | {"phi1": 0.0, "phi2": phi}
@@ -156,7 +157,8 @@ def table_of(points: int) -> ParameterFile:
 def test_another_table_needs_no_compiler(
     host: Host, built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, points: int
 ) -> None:
-    """For any number of points, with the numbers of the package, the largest stiffness included."""
+    """An FMU takes a table of any number of points without a compiler; it has the numbers of the package, the
+    largest stiffness included."""
 
     def refused(*_: object) -> None:
         raise AssertionError("compiled")

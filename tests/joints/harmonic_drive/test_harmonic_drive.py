@@ -65,7 +65,7 @@ def still(spring, phi):
 
 @each_drive
 def test_peak_pressure(it):
-    """Its derivative, its symmetry, and its two defining values."""
+    """The peak pressure has its exact derivative, its symmetry, and its two defining values."""
     T = np.array([1e-3, 0.03, 0.1, 1.0, 5.0, 20.0])
     h = 1e-3 * T
     around = peak_pressure(it, T + h * FIVE[:, None])[0]
@@ -84,7 +84,7 @@ def test_peak_pressure(it):
 
 @each_drive
 def test_derivatives_of_the_stiffness(it):
-    """dK_TS/dT and dK_WTS/dT against central differences for both laws."""
+    """dK_TS/dT and dK_WTS/dT agree with central differences for both laws."""
     T = np.array([0.02, 0.3, 2.0, 5.0, 11.0])
     h = 1e-3 * np.hypot(T, it.torque_smoothing)
     for law in (pair_stiffness, drive_stiffness):
@@ -99,7 +99,7 @@ def test_derivatives_of_the_stiffness(it):
 
 @each_drive
 def test_eq_46(it):
-    """1/K_WTS = 1/K_FTS + 1/K_TS."""
+    """The stiffness obeys Eq. 46: 1/K_WTS = 1/K_FTS + 1/K_TS."""
     T = np.array([0.0, 0.5, 3.0, 12.0])
     total = drive_stiffness(it, T)[0]
     contact = pair_stiffness(it, T)[0]
@@ -192,7 +192,7 @@ def test_softer_body_is_the_one_that_yields_first():
 
 @each_drive
 def test_windup_is_the_integral_of_dT_over_K(it, springs):
-    """Against adaptive quadrature of 1/K_WTS from zero, to MAX_ERROR."""
+    """The wind-up agrees with adaptive quadrature of 1/K_WTS from zero, to MAX_ERROR."""
     curve = next(spring.curve for spring in springs.values() if spring.joint is it)
     torques = [0.0, 0.2 * it.torque_smoothing, it.torque_smoothing, 0.5, 5.0, it.max_torque]
     phi = 0.0

@@ -263,7 +263,8 @@ def test_a_printed_drive_has_its_friction(item):
 
 @pytest.mark.parametrize("name", [n for n, item in PRINTED.items() if is_printed(item, "efficiency")])
 def test_efficiency_at_rated_torque_is_predicted_without_it(name):
-    """From starting, running and back-driving torque alone: 1.5 to 5.2 points above the published value.
+    """The efficiency predicted from starting, running and back-driving torque alone is 1.5 to 5.2 points
+    above the published value.
 
     Beyond the catalogue's own scatter of 3 points for two of four; no load_loss is 4.7 to 8.9 points off.
     """
@@ -279,7 +280,7 @@ def test_efficiency_at_rated_torque_is_predicted_without_it(name):
 
 
 def test_the_fmu_has_the_friction_of_every_printed_drive(native):
-    """As in the Python drive: starting and back-driving torque, efficiency."""
+    """The FMU has starting torque, back-driving torque and efficiency of the Python drive."""
     for item in PRINTED.values():
         own, back = make_test_rig(SPRING, made(item.name)), item.numbers["back_driving_torque"].value
         with open_fmu_test_rig(
@@ -316,7 +317,8 @@ def test_what_is_stated_makes_the_friction(tmp_path):
 
 
 def test_lost_motion_is_told_beside_its_limit(capsys):
-    """Below the limit with the catalogue's stiffness, above it with a softer drive."""
+    """The command prints lost motion and its limit: below the limit with the catalogue's stiffness, above it
+    with a softer drive."""
     for words, place in (([], "below"), (["--K1", "20000"], "above")):
         assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-25-100", *words]) == 0
         assert f"; {place} 0.0002909 rad: limit" in capsys.readouterr().out

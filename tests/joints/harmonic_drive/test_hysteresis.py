@@ -93,7 +93,7 @@ def ripple(law, inertia, speed, periods=60):
 
 @pytest.mark.slow  # some simulations
 def test_velocity_ripple_resonates_at_half_the_natural_frequency():
-    """Against the closed form of an oscillator whose rest position oscillates."""
+    """The amplitude agrees with the closed form of an oscillator whose rest position oscillates."""
     inertia, amplitude, damping = 0.05, 1e-6, 1.5
     law = default_spring(error_2=amplitude, d=damping)
     natural = float(np.sqrt(law.curve.stiffness[0] / inertia))
@@ -251,7 +251,8 @@ def test_first_friction_is_the_extra_stiffness():
 @pytest.mark.parametrize("law", [None, "roughness"])
 @pytest.mark.parametrize(("loss", "stiffness"), [(0.25, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (1.0, 2e4)])
 def test_branches_at_zero_torque_are_apart_as_stated(law, loss, stiffness):
-    """At zero torque after rated torque in both directions, in steps; allowed 1 %, measured round-off."""
+    """After rated torque in both directions, in steps, the branches at zero torque are hysteresis_loss apart;
+    allowed 1 %, measured round-off."""
     found = spring(law, loss * ARCMIN, hysteresis_stiffness=stiffness)
     memory, place = HISTORY_LAYOUT.virgin_history(), []
     for start, end in pairwise((0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0)):
@@ -263,7 +264,7 @@ def test_branches_at_zero_torque_are_apart_as_stated(law, loss, stiffness):
 
 
 def test_fully_slipped_friction_carries_the_midline_at_half_of_the_loss():
-    """With so large a stiffness that all sliders have reversed before the torque is zero."""
+    """The stiffness is so large that all sliders have reversed before the torque is zero."""
     found = spring(hysteresis_stiffness=1e5)
     midline = float(found.curve.derivatives(0.5 * ARCMIN)[0])
     assert np.sum(found.hysteresis.friction_limit) == pytest.approx(midline, rel=1e-12)

@@ -153,7 +153,7 @@ def test_the_loop_opens_as_stated(instance: Any, flavour: str) -> None:
 def test_derivatives_are_those_at_the_accepted_state(
     host: Host, name: str, given: dict[str, float], version: str
 ) -> None:
-    """Against central differences of trial evaluations, away from reversals of the motion."""
+    """Derivatives agree with central differences of trial evaluations, away from reversals of the motion."""
     found, driven = begin(host(name, version), given), "tau" if name == COMPLIANCE else "phi2"
     size = {"tau": 1.0, "phi1": 0.1, "phi2": 1e-3, "w1": 1.0, "w2": 0.01, "temperature": 10.0}
     for inputs in path(name, given)[:-1]:

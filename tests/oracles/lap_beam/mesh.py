@@ -19,7 +19,7 @@ HEADS = "head{}"
 class LapBeam:
     """Lengths [m] and material of the beam.
 
-    length, lap  : of the whole beam and of the overlap
+    length, lap  : lengths of the whole beam and of the overlap
     side         : height of the section; `width` the other side of it, None: a square
     bolts        : positions along x from the middle
     hole, washer : diameters of the clearance hole and of what presses on the outer face
@@ -58,7 +58,7 @@ class LapBeam:
 
 
 def bodies(beam, view, size):
-    """Both halves; their boundaries under the bolt heads are named head0, head1, ..."""
+    """Both halves of the beam; their boundaries under the bolt heads are named head0, head1, ..."""
     return tuple(ElasticBody(_half(beam, view, size, side), beam.E, beam.nu, beam.density) for side in (1, 2))
 
 

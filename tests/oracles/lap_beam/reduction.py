@@ -29,7 +29,7 @@ class Structure:
     """Meshed beam without interface.
 
     bodies    : half 1 and 2
-    interface : its patches, one for each element of the contact, as points of a quadrature
+    interface : patches of the contact, one for each element of the contact, as points of a quadrature
     bolts     : [N/m] stiffness of the shanks between the unknowns of both bodies
     """
 

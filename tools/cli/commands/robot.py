@@ -179,7 +179,7 @@ def _describe_other_poses(
     """Warnings of axes that are overloaded in a pose of the grid, and less so in the pose of the results.
 
     weight_torques  : axes with their torques [N.m] in the pose of the results
-    largest_torques : their largest torques [N.m] over the grid
+    largest_torques : largest torques [N.m] of the poses over the grid
     """
     lines = []
     for (axis, torque), largest in zip(weight_torques, largest_torques, strict=True):

@@ -76,7 +76,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
             heads = [(name, units[name]) for name in run]
             write_text(args.csv, columns.format_table(heads, list(run.values()), digits=12))
         if args.plot:
-            save_panels(args.plot, systems.system_panels(described, run), systems.MOTION_FIGURE_SIZE)
+            save_panels(args.plot, systems.system_charts(described, run), systems.MOTION_FIGURE_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
     notes = [f"warning: {text}" for text in (_warn_long_step(described, *step),) if text]
     texts = [str(path) for path in paths]

@@ -274,7 +274,7 @@ class PatchFit:
     def _stiffness_jacobian(self, patch_displacement: Array, friction: MonotonicFriction) -> Array:
         """Derivative of the stiffness errors with respect to the patch displacements.
 
-        friction : of the sliders for unit motions of the joint in full stick
+        friction : friction forces of the sliders for unit motions of the joint in full stick
         """
         force = (
             self.sliders.point_area

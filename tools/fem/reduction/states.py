@@ -151,7 +151,7 @@ class CellwiseJoint:
     """Joint with the interface law in n cells and b bolts, for monotonic motions of side 2.
 
     reduced_joint      : the reduced joint; it gives the law
-    compliance         : of the bodies (3 n + b, 3 n + b) [m/N]
+    compliance         : compliance of the bodies (3 n + b, 3 n + b) [m/N]
     rigid_displacement : (3 n + b, 6) displacement of cells and bolts by rigid-body motions of side 2
     preload_approach   : approach (n) [m] of the cells in the preloaded joint
     preload            : [N] per bolt

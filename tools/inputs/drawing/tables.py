@@ -166,7 +166,7 @@ def find_washer(thread: Thread) -> Washer:
 class TighteningMethod:
     """Method of tightening a bolt, with the scatter of its preload.
 
-    title               : in words
+    title               : name of the method in words
     factor              : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
     depends_on_friction : whether the friction decides on the preload
     """

@@ -287,7 +287,7 @@ class UnknownExchange:
     def restore_unknowns(self, parameter_values: Mapping[str, float], start_value: float) -> dict[str, float]:
         """Convert values with the derived quantity to values of the original unknowns, by the secant method.
 
-        start_value : of the exchanged unknown, for the secant method
+        start_value : start value of the exchanged unknown, for the secant method
 
         Raises ValueError if no value of the replaced unknown gives the quantity.
         """

@@ -213,7 +213,7 @@ def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
 def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[str]:
     """Warnings for the user about the results of one surface.
 
-    results : of all directions and methods; the first two are of the whole surface
+    results : results of all directions and methods; the first two are of the whole surface
     """
     lines = []
     if is_textured:

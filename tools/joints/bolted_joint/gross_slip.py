@@ -81,7 +81,7 @@ def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear_ampli
 class PreloadResult(NamedTuple):
     """Results of the tightened joint at one preload.
 
-    preload      : of each bolt at tightening [N]
+    preload      : preload of each bolt at tightening [N]
     K_zz, K_xx   : stiffness of the joint along z and x [N/m]
     slip_force   : shear force [N] of gross slip
     opening_load : force [N] along z that opens the interface around the most loaded bolt, linear estimate

@@ -178,7 +178,7 @@ def friction_parameters(
     """Friction parameters of a drive from catalogue numbers: {parameter: number}.
 
     sourced_numbers : ratio, rated_torque and FRICTION_COLUMNS, as far as they are known
-    stated_names    : of FRICTION_COLUMNS; contradictions of these numbers are errors
+    stated_names    : stated numbers, of FRICTION_COLUMNS; contradictions of these numbers are errors
 
     friction_coulomb = starting torque
     friction_viscous = (running torque - starting torque)/CATALOGUE_MOTOR_SPEED

@@ -184,7 +184,7 @@ def _add_motor_drag(
 ) -> dict[str, SourcedNumber]:
     """Add the dry friction of the motor's bearings and seals to friction_coulomb.
 
-    drag_text : as the user states it; None: no motor drag
+    drag_text : motor drag as the user states it; None: no motor drag
     """
     if drag_text is None:
         return friction_numbers

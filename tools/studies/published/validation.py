@@ -113,8 +113,8 @@ class PublishedPointCounts:
     """Numbers of compared points by role and verdict, as the README, the report and the pages state them.
 
     numbers        : number of published numbers, without claims
-    printed        : how many of them the papers print
-    derived        : how many of them are computed from printed numbers
+    printed        : number of points that the papers print
+    derived        : number of points computed from printed numbers
     roles          : {role: number of points}, with claims
     met            : {role: number of points within their tolerance}
     guessed        : {role: number of points with a trivial guess}

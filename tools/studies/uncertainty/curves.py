@@ -34,7 +34,7 @@ class JointSample(Protocol):
 class DerivedOutput:
     """Quantity that is computed from several evaluations of the joint. It is 0 at zero load.
 
-    variable       : its name, unit and meaning
+    variable       : name, unit and meaning of the output
     compute_values : function (sample, loads (m) above zero, ascending) -> values (m); the last load is the
         end of the ramp
     """

@@ -191,7 +191,7 @@ def compute_sensitivity(
 ) -> Sensitivity:
     """Sobol' indices of all quantities of a joint along the load ramp.
 
-    bands : of a set of points that begins with A
+    bands : bands of a set of points that begins with A
     A, B  : two independent sets of points (n, d) of the unit cube, n a power of two
     """
     n, d = A.shape

@@ -48,8 +48,8 @@ def build_system(
 
     Equal content gives equal files.
 
-    versions  : of FMI, "2" and "3"
-    platforms : of the binaries, names of FMI 3.0
+    versions  : versions of FMI, "2" and "3"
+    platforms : platforms of the binaries, names of FMI 3.0
     overwrite : also replace files that jointfmu did not write
 
     Raises ImportError if a package is missing, RuntimeError if the compiler fails, ValueError if a folder

@@ -352,7 +352,7 @@ def _check_loops(
     """Check stiffness after reversals, force at gross slip, and bearing after slip, of measured loops.
 
     stiffness_ratio : measured stiffness over stiffness of the start values [1]
-    joint, preload  : with the start values, and [N] of each bolt
+    joint, preload  : joint with the start values, preload [N] of each bolt
 
     Raises ValueError for loops that bear after slip. Raises InputRefusal for a stiffness far from that of the
     start values, and for a slip force without a plausible friction coefficient.

@@ -118,7 +118,7 @@ def fit(
     start_parameters : parameters of the joint to start from
     fitted_names     : names to fit; None: those of FITTED_PARAMETERS, with `mass` instead of the level for
                        frequencies without `modal_mass`; for one preload the level alone
-    direction        : of the motion, "normal" or "tangential"
+    direction        : direction of the motion, "normal" or "tangential"
     modal_mass       : [kg] mass that vibrates on the joint, for frequencies; replaces `mass`
     series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is among the names
 

@@ -71,7 +71,7 @@ def find_preload(
 ) -> AssemblyPreload:
     """Find the assembly preload from the options of a drawing.
 
-    bearing_diameter, hole_diameter : of the face under the head [m]
+    bearing_diameter, hole_diameter : outer and inner diameter of the face under the head [m]
 
     Raises ValueError, one line, for options that contradict each other, or a torque that no bolt bears.
     """

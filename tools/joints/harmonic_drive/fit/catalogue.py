@@ -107,7 +107,7 @@ def fit_contact_pair_law(
 
     fitted_names    : names to fit; None: FITTED_PARAMETERS, and EXTRA_FITTED_PARAMETER if the others do not
                       suffice
-    sourced_numbers : of the row, from `make_sourced_numbers`; None: those of `catalogue_row`
+    sourced_numbers : numbers of the row, from `make_sourced_numbers`; None: those of `catalogue_row`
     source          : where the row is published
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.

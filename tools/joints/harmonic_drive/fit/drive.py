@@ -56,7 +56,7 @@ def resize_drive(
     """Change the rated torque [N.m]; torque_smoothing changes in proportion.
 
     max_torque_ratio : new max_torque over the new rated torque [1]
-    origin, source   : of the new rated torque, for the parameter file
+    origin, source   : origin and source of the new rated torque, for the parameter file
 
     Raises ValueError if the rated torque is not positive and finite.
     """
@@ -107,7 +107,7 @@ def change_law(
     """Change the law of a drive.
 
     law_class          : parameter class of the new law
-    parameter_set_name : of the new parameter file
+    parameter_set_name : name of the parameter set in the new file
     sourced_numbers    : {parameter: number with source} of the new law
     copied_names       : parameters of the law of `start_file` to copy, in addition to those of all drives
     """

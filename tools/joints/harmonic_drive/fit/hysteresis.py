@@ -214,7 +214,7 @@ def fit_robot_log(
 ) -> tuple[Solution, FitPlot]:
     """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
-    fitted_names   : of ROBOT_LOG_FITTED_PARAMETERS
+    fitted_names   : names of the fitted parameters, some of ROBOT_LOG_FITTED_PARAMETERS
     torque_changes : (k, n) [N.m] change of the torques by each of k independent errors of the load, of one
                      standard deviation each; their effect is added to the covariance of the fit
 
@@ -245,7 +245,7 @@ def _fit_wind_ups(
 
     torque         : {name: value} -> torque (n) [N.m]
     torque_changes : as in `fit_robot_log`
-    extra_unknowns : on which the torque depends
+    extra_unknowns : unknowns on which the torque depends
     """
     begin = (
         {HYSTERESIS_LOSS_NAME: DEFAULT_HYSTERESIS_LOSS}

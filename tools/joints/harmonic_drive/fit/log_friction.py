@@ -158,8 +158,8 @@ FINITE_DIFFERENCE_STEP = 1e-4
 class FittedLogFriction:
     """Friction model fitted to the samples of logs.
 
-    drive                   : with the fitted friction
-    solution                : of the fit of the friction parameters
+    drive                   : drive with the fitted friction
+    solution                : solution of the fit of the friction parameters
     linear_unknowns         : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
     covariance              : (k, k) of the linear unknowns
     rotor_inertia           : [kg.m2]
@@ -279,7 +279,7 @@ def fit_samples(
 ) -> FittedLogFriction:
     """Fit friction parameters and linear terms to samples.
 
-    fitted_names  : of the friction parameters to fit
+    fitted_names  : names of the friction parameters to fit
     rotor_inertia : [kg.m2]
     """
     linear = _fit_linear_model(samples, parameter_file.values)[1]

@@ -289,7 +289,7 @@ def make_log(
     """Make the samples of a log from its columns.
 
     torque_constant : motor torque over motor current [N.m/A]
-    drive           : for plausibility checks of speed and torque
+    drive           : drive, for plausibility checks of speed and torque
     torque_at       : place of the torque in the column tau, "motor" or "joint"
 
     Raises ValueError with a one-line message that begins with the path.

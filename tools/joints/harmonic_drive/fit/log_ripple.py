@@ -103,7 +103,7 @@ def add_ripples(
     """Parameter file with the ripples, facts about them, and notes.
 
     source           : source of the parameters, without their intervals
-    confidence_level : of the intervals [1]
+    confidence_level : confidence level of the intervals [1]
     """
     facts: FitFacts = {}
     factor = float(stats.norm.ppf(0.5 + 0.5 * confidence_level))
