@@ -187,23 +187,13 @@ def _option_help(option: Option) -> str:
 
 
 @dataclass(frozen=True, repr=False)
-class Fit(TableDisplay):
-    """Result of a fit. `joint` has the fitted parameters; the printed table has each with its uncertainty.
+class FitTable(TableDisplay):
+    """Result of a fit; the printed table has each parameter with its uncertainty.
 
     outcome : fitted parameters, their uncertainty, and facts about the fit
-
-    >>> import jointfmu
-    >>> fit = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9)
-    >>> fit.joint.build("dist", "python", fmu="HarmonicDriveCompliance")[0].name
-    'HarmonicDriveCompliance.fmu'
     """
 
     outcome: FitResult
-
-    @property
-    def joint(self) -> Joint:
-        """The joint with the fitted parameters."""
-        return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
 
     def _build_table(self) -> Table:
         rows = [
@@ -219,7 +209,8 @@ class Fit(TableDisplay):
             for row in self.outcome.unknown_rows()
         ]
         doubt = self.outcome.rejection_reason()
-        lines = [f"warning: the fit does not determine the joint: {doubt}"] if doubt else []
+        subject = "joint" if self.outcome.parameters.joint in KINDS else "system"
+        lines = [f"warning: the fit does not determine the {subject}: {doubt}"] if doubt else []
         lines += [f"note: {line}" for line in self.outcome.warnings()]
         return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
 
@@ -229,6 +220,22 @@ class Fit(TableDisplay):
         figure = plots.create_figure(figure_size(self.outcome))
         draw_fit(figure, self.outcome)
         return figure
+
+
+@dataclass(frozen=True, repr=False)
+class Fit(FitTable):
+    """Result of a fit. `joint` has the fitted parameters; the printed table has each with its uncertainty.
+
+    >>> import jointfmu
+    >>> fit = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9)
+    >>> fit.joint.build("dist", "python", fmu="HarmonicDriveCompliance")[0].name
+    'HarmonicDriveCompliance.fmu'
+    """
+
+    @property
+    def joint(self) -> Joint:
+        """The joint with the fitted parameters."""
+        return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
 
 
 def _procedure_paths(
