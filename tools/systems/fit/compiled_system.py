@@ -66,12 +66,14 @@ class CompiledSystem(LoadedLibrary):
         times: Array,
         inputs: Mapping[str, Array],
         output_names: Sequence[str],
+        tolerance: float = SIMULATION_TOLERANCE,
     ) -> Array:
         """Simulate the system; returns the outputs (n, outputs) [SI] at the times.
 
         values : {parameter, or start value of a state: SI value} that differ from the system
         times  : (n) [s], increasing
         inputs : {input: values (n) [SI]}, linear between the times; other inputs keep their start values
+        tolerance : relative tolerance of a step [1]
 
         Raises ValueError with one line if a value is refused or the motion cannot be computed.
         """
@@ -89,7 +91,7 @@ class CompiledSystem(LoadedLibrary):
             self._messages.clear()
             lib.fmi3Reset(instance)
             self.set_parameters(self._start_values | first | parameters)
-            lib.fmi3EnterInitializationMode(instance, True, SIMULATION_TOLERANCE, times[0], False, 0.0)
+            lib.fmi3EnterInitializationMode(instance, True, tolerance, times[0], False, 0.0)
             self.set_parameters(states)
             if lib.fmi3ExitInitializationMode(instance):
                 raise ValueError(self._take_error_message())
