@@ -50,7 +50,7 @@ def _run_fit(args: argparse.Namespace) -> CommandResult:
         fit.save(args.out, force=args.force)
     lines = []
     for row in outcome.unknown_rows():
-        low, high = ("unknown" if end is None else f"{end:.4g}" for end in row["interval"])
+        low, high = ("unknown" if end is None else f"{end:.6g}" for end in row["interval"])
         mark = "" if row["determined"] else "   not determined"
         ends = f"95 %: {low} to {high}"
         lines.append(

@@ -123,7 +123,7 @@ def solve(
     noise: float | None = None,
     nuisance_count: int = 0,
     tolerance: float = CONVERGENCE_TOLERANCE,
-    difference_step: float = FINITE_DIFFERENCE_STEP,
+    difference_steps: float | Array = FINITE_DIFFERENCE_STEP,
 ) -> Solution:
     """Minimise the sum of squared residuals over the unknowns.
 
@@ -134,7 +134,7 @@ def solve(
     noise          : standard deviation of a residual [1]; estimated from the residuals if None
     nuisance_count : number of parameters that the residual function itself eliminates (for example an offset)
     tolerance      : relative change of cost or parameters at which the fit ends [1]
-    difference_step : step of the central differences, in the logarithm of a parameter [1]
+    difference_steps : step of the central differences, in the logarithm of each parameter [1]
 
     Raises
     ------
@@ -143,7 +143,7 @@ def solve(
     """
     from scipy.optimize import least_squares
 
-    model = _LogarithmicModel(tuple(unknowns), residuals, difference_step)
+    model = _LogarithmicModel(tuple(unknowns), residuals, difference_steps)
     logs = model.start
     first = residuals(model.values_by_name(logs))
     degrees_of_freedom = first.size - logs.size - nuisance_count
@@ -219,14 +219,16 @@ def _root_mean_square(residuals: Array) -> float:
 class _LogarithmicModel:
     """Residuals and regularisation as function of the logarithms (k); infinite if the model refuses them."""
 
-    def __init__(self, unknowns: tuple[Unknown, ...], residuals: Residuals, difference_step: float) -> None:
+    def __init__(
+        self, unknowns: tuple[Unknown, ...], residuals: Residuals, difference_steps: float | Array
+    ) -> None:
         self.unknowns = unknowns
         self.names = [u.name for u in unknowns]
         self.start = np.array([u.to_search(u.start_value) for u in unknowns])
         self.low = np.array([u.to_search(u.lower_bound) for u in unknowns]) + 1e-9
         self.high = np.array([u.to_search(u.upper_bound) for u in unknowns]) - 1e-9
         self.residuals = residuals
-        self.difference_step = difference_step
+        self.difference_steps = np.broadcast_to(difference_steps, len(unknowns))
         self.ridge = 0.0
         self.size = 0
         self.refusal: str | None = None
@@ -256,7 +258,7 @@ class _LogarithmicModel:
         columns = []
         for k in range(log_values.size):
             ends = np.clip(
-                log_values[k] + np.array([-self.difference_step, self.difference_step]),
+                log_values[k] + self.difference_steps[k] * np.array([-1.0, 1.0]),
                 self.low[k],
                 self.high[k],
             )

@@ -1,8 +1,8 @@
 """Covariance of least-squares parameters if the residuals are correlated in time.
 
 An autoregressive model describes the residuals of each measured column: Yule-Walker equations, order by the
-Akaike criterion (Brockwell and Davis, Time Series: Theory and Methods, 1991, sections 8.1 and 9.3). With the
-covariance R of the residuals that follows from it, the covariance of the parameters is
+Bayesian information criterion (Brockwell and Davis, Time Series: Theory and Methods, 1991, sections 8.1 and
+9.3). With the covariance R of the residuals that follows from it, the covariance of the parameters is
 (J^T J)^-1 J^T R J (J^T J)^-1. Different columns count as independent.
 """
 
@@ -35,7 +35,7 @@ def estimate_spectrum(residuals: Array) -> Array:
         coefficients = solve_toeplitz(autocovariance[:order], lags) if order else lags
         variance = autocovariance[0] - coefficients @ lags
         if variance > 0.0:
-            models.append((n * np.log(variance) + 2 * order, variance, coefficients))
+            models.append((n * np.log(variance) + np.log(n) * order, variance, coefficients))
     _, variance, coefficients = min(models, key=lambda model: model[0])
     transfer = np.fft.fft(np.concatenate([[1.0], -coefficients]), 2 * n)
     return np.asarray(variance / np.abs(transfer) ** 2)

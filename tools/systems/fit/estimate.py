@@ -34,14 +34,17 @@ from .record import Record, describe_nearest, read_record
 
 FITTED_SHARES = (0.125, 0.25, 0.5)
 """Shares of the fitted rows [1] that are fitted first, one after the other."""
-SHARE_TOLERANCE, TOLERANCE = 1e-3, 1e-5
+SHARE_TOLERANCE, TOLERANCE = 1e-3, 1e-7
 """Relative change of cost or parameters at which the fit of such a share, and the whole fit, end [1]."""
 MAX_SHARE_CHANGE = 1.0
 """Largest change of the logarithm of a parameter [1] in the fit of such a share."""
-DIFFERENCE_STEP = 1e-2
-"""Step of the central differences, in the logarithm of a parameter [1].
+DIFFERENCE_STEP_LIMITS = 1e-5, 1e-2
+"""Smallest and largest step of the central differences, in the logarithm of a parameter [1]."""
+DIFFERENCE_EFFECT = 5.0
+"""Root mean square effect of such a step over the noise [1].
 
-With friction, the error of a simulation changes by jumps with the parameters, because its steps change.
+Smaller ones vanish in the error of a simulation, which changes by jumps with the parameters, because the
+steps of the simulation change. Larger ones shift an oscillation by more than a small angle.
 """
 NOISE_TOLERANCE, MAX_NOISE_UPDATES = 0.02, 5
 """Relative change of the noise of the columns at which the fit ends, largest number of repeats."""
@@ -191,25 +194,30 @@ class _Estimation:
         smallest, current = MIN_NOISE_RATIO * np.std(measured, axis=0), list(unknowns)
         noise = np.maximum(np.sqrt(np.mean(np.diff(measured, 2, axis=0) ** 2, axis=0) / 6.0), smallest)
 
+        steps = np.full(len(current), DIFFERENCE_STEP_LIMITS[1])
+
         def solve_rows(searched: Sequence[Unknown], row_count: int, tolerance: float) -> Solution:
             solution = solve(
                 searched,
                 lambda values: (self.misfit(values, row_count) / noise).T.ravel(),
                 noise=1.0,
                 tolerance=tolerance,
-                difference_step=DIFFERENCE_STEP,
+                difference_steps=steps,
             )
             current[:] = [replace(u, start_value=solution.values[u.name]) for u in current]
+            effects = np.sqrt(np.mean(solution.jacobian**2, axis=0))
+            with np.errstate(divide="ignore"):
+                steps[:] = np.clip(DIFFERENCE_EFFECT / effects, *DIFFERENCE_STEP_LIMITS)
             return solution
 
         for share in FITTED_SHARES:
             bounded = [_limit_change(u) for u in current]
             solve_rows(bounded, max(int(share * self.fitted_count), 2), SHARE_TOLERANCE)
-        for _ in range(MAX_NOISE_UPDATES):
+        for update in range(MAX_NOISE_UPDATES):
             solution = solve_rows(current, self.fitted_count, TOLERANCE)
             previous, misfit = noise, self.misfit(solution.values, self.fitted_count)
             noise = np.maximum(np.sqrt(np.mean(misfit**2, axis=0)), smallest)
-            if np.max(np.abs(np.log(noise / previous))) < NOISE_TOLERANCE:
+            if update and np.max(np.abs(np.log(noise / previous))) < NOISE_TOLERANCE:
                 break
         return replace(solution, unknowns=tuple(unknowns)), noise
 
