@@ -53,6 +53,7 @@ NEED = (
     "sweep",
     "footprint",
     "modes",
+    "fit system",
 )
 """Commands whose examples take long: they build FMUs or need them, solve finite elements or thin tables."""
 ON_PAGES = [{*shlex.split(line, comments=True)[1:]} for line in commands]

@@ -3,21 +3,28 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jointfmu_fmu_src.naming import check_fmu_name
 
 from jointfmu.files.outputs import PARAMETER_FILE, check_output, write_parameter_text
 
 from ..common.options import require_package
+from ..inputs.fitting.outcome import FitResult
 from ..systems.fit.system_text import format_fitted_system
 from ..systems.system import find_system_file, load_system
-from .make import FitTable
+from .frame import Table, TableDisplay
+from .make import make_fit_table, plot_fit
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, repr=False)
-class SystemFit(FitTable):
+class SystemFit(TableDisplay):
     """Result of a fit of a system; the printed table has each parameter with its uncertainty.
 
+    outcome     : fitted parameters, their uncertainty, and facts about the fit
     system_file : system file with the start values
 
     >>> import jointfmu
@@ -26,7 +33,15 @@ class SystemFit(FitTable):
     0.0651
     """
 
+    outcome: FitResult
     system_file: Path
+
+    def _build_table(self) -> Table:
+        return make_fit_table(self.outcome)
+
+    def plot(self) -> "Figure":
+        """Draw measured and simulated columns and residuals over time; returns a matplotlib figure."""
+        return plot_fit(self.outcome)
 
     def save(self, path: str | Path, *, force: bool = False) -> Path:
         """Write the system file with the fitted values; its comments are not kept.
