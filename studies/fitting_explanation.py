@@ -6,14 +6,16 @@ round-trips : seeds with every fitted parameter within three of its standard dev
               errors
 logs        : median errors of the friction from a robot's log, and how often the 95 % interval holds the
               truth
+systems     : the same for parameters of systems from time series
 """
 
 import sys
 import tempfile
+from pathlib import Path
 
 import numpy as np
 from common import heading, row, run_study
-from oracles import curve_measurements, drive_measurements, joint_measurements, robot_log
+from oracles import curve_measurements, drive_measurements, joint_measurements, robot_log, system_records
 from oracles.curve_measurements import errors
 
 from jointfmu.progress import track_progress
@@ -66,9 +68,21 @@ def print_logs(options):
         print(f"<!-- {fit.facts} {fit.notes} -->", file=sys.stderr)
 
 
+def print_systems(options):
+    """Print median errors and coverage of the intervals of system fits."""
+    heading("", "record", "parameter", "median error", "95 % interval holds it")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, (_, truth) in system_records.CASES.items():
+            fits = [system_records.fit_case(name, seed, Path(folder)) for seed in range(options.seeds)]
+            for label, value in truth.items():
+                median = np.median([abs(fit.solution.values[label] / value - 1.0) for fit in fits])
+                held = sum(system_records.count_held(fit, truth)[label] for fit in fits)
+                row(name, f"`{label}`", f"{100.0 * median:.2g} %", f"{held} of {len(fits)}")
+
+
 if __name__ == "__main__":
     run_study(
         __doc__,
-        {"round-trips": print_round_trips, "logs": print_logs},
+        {"round-trips": print_round_trips, "logs": print_logs, "systems": print_systems},
         options={"--seeds": {"type": int, "default": 100, "metavar": "N"}},
     )

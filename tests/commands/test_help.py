@@ -53,6 +53,7 @@ NEED = (
     "sweep",
     "footprint",
     "modes",
+    "fit system",
 )
 """Commands with examples that take long: the examples build or run FMUs, or solve finite elements."""
 ON_PAGES = [{*shlex.split(line, comments=True)[1:]} for line in commands]

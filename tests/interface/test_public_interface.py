@@ -15,7 +15,7 @@ from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
 import jointfmu
 
-MODULES = ("frame", "joint", "law", "make")
+MODULES = ("frame", "joint", "law", "make", "system_fit")
 PLATE = {
     "plate": (200, 100),
     "bolts": "4xM12",

@@ -18,6 +18,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.inputs.fields import nodal_result
 from jointfmu_tools.inputs.fields.nodal_result import ContactField
 from jointfmu_tools.studies.published import validation
+from oracles import system_records
 
 from jointfmu.files.outputs import write_parameter_text
 from jointfmu.mechanics.footprint import bolts
@@ -93,6 +94,7 @@ def folder(tmp_path_factory, native):
     speeds = (s * w for s in (-1.0, 1.0) for w in (0.1, 0.5, 1.0, 2.0))
     rows = "".join(f"{w},{math.copysign(0.5, w) + 0.3 * w}\n" for w in speeds)
     (place / "robot.csv").write_text(f"dq [rad/s],i [A]\n{rows}")
+    system_records.make_chirp_record(place, 1)
     return place
 
 

@@ -15,6 +15,8 @@ from .make import Fit as Fit
 from .make import create_drawing_function
 from .make import fit as fit
 from .make import load as load
+from .system_fit import SystemFit as SystemFit
+from .system_fit import fit_system as fit_system
 
 drive = create_drawing_function(
     "drive",

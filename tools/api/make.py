@@ -187,6 +187,33 @@ def _option_help(option: Option) -> str:
     return f"{option.help_text}{': ' + ', '.join(option.choices) if option.choices else ''}"
 
 
+def make_fit_table(outcome: FitResult) -> Table:
+    """Table of a fit: each parameter with its uncertainty; doubts and notes as lines."""
+    rows = [
+        (
+            row["name"],
+            f"{row['value']:.6g}",
+            row["unit"],
+            "unknown" if row["relative_deviation"] is None else format_deviation(row["relative_deviation"]),
+            "yes" if row["determined"] else "no",
+        )
+        for row in outcome.unknown_rows()
+    ]
+    doubt = outcome.rejection_reason()
+    subject = "joint" if outcome.parameters.joint in KINDS else "system"
+    lines = [f"warning: the fit does not determine the {subject}: {doubt}"] if doubt else []
+    lines += [f"note: {line}" for line in outcome.warnings()]
+    return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
+
+
+@plots.apply_style()
+def plot_fit(outcome: FitResult) -> "Figure":
+    """Draw data, fitted law and residuals; returns a matplotlib figure."""
+    figure = plots.create_figure(figure_size(outcome))
+    draw_fit(figure, outcome)
+    return figure
+
+
 @dataclass(frozen=True, repr=False)
 class Fit(TableDisplay):
     """Result of a fit. `joint` has the fitted parameters; the printed table has each with its uncertainty.
@@ -207,29 +234,11 @@ class Fit(TableDisplay):
         return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
 
     def _build_table(self) -> Table:
-        rows = [
-            (
-                row["name"],
-                f"{row['value']:.6g}",
-                row["unit"],
-                "unknown"
-                if row["relative_deviation"] is None
-                else format_deviation(row["relative_deviation"]),
-                "yes" if row["determined"] else "no",
-            )
-            for row in self.outcome.unknown_rows()
-        ]
-        doubt = self.outcome.rejection_reason()
-        lines = [f"warning: the fit does not determine the joint: {doubt}"] if doubt else []
-        lines += [f"note: {line}" for line in self.outcome.warnings()]
-        return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
+        return make_fit_table(self.outcome)
 
-    @plots.apply_style()
     def plot(self) -> "Figure":
         """Draw data, fitted law and residuals; returns a matplotlib figure."""
-        figure = plots.create_figure(figure_size(self.outcome))
-        draw_fit(figure, self.outcome)
-        return figure
+        return plot_fit(self.outcome)
 
 
 def _procedure_paths(

@@ -31,6 +31,8 @@ EXAMPLES = {
     "fit torque-angle": "fit torque-angle loop.csv --out drive.toml",
     "fit loop": "fit loop shear.csv --preload 9e3 --free mu surface.G --out joint.toml",
     "fit log": "fit log robot.csv --drive CSG-25-100 --torque-constant 0.1 --out drive.toml",
+    "fit system": "fit system arm.toml record.csv --free motor.J link.J drive.K1 drive.d --hold-out 0.2 "
+    "--out fitted_arm.toml",
     "fit preload": "fit preload stiffness.csv --params my_joint.toml --out joint.toml",
     "uncertainty": "uncertainty gear_contact --set e=0.1..0.3 --samples 1024",
     "sweep": "sweep dist/fmi2/GearContact.fmu --set e=0.1..0.3 --input f --to 1000 --step 100 "

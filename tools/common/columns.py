@@ -156,6 +156,20 @@ def parse_heading(cell: str) -> ColumnHead:
     return cell.strip(), None
 
 
+def parse_stated_headings(texts: Sequence[str], column_names: Iterable[str]) -> dict[str, ColumnHead]:
+    """Parse texts `NAME=HEADING` or `NAME=HEADING [UNIT]`: {column: (heading in the file, unit or None)}.
+
+    Raises ValueError for other text and unknown columns.
+    """
+    known, found = [*column_names], {}
+    for word in texts:
+        name, _, text = word.partition("=")
+        if name not in known or not text.strip():
+            raise ValueError(f"--columns {word!r}: expected NAME=HEADING with one of {', '.join(known)}")
+        found[name] = parse_heading(text)
+    return found
+
+
 def read_numbered_lines(path: Path, max_lines: int | None = None) -> list[tuple[int, str]]:
     """Read (line number, text) of a file's lines, without comments and empty lines.
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,9 @@ from numpy.typing import ArrayLike
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, build_parameter_set, flatten_parameters
+
+if TYPE_CHECKING:
+    from jointfmu_fmu_src.native.library import JointLibrary
 
 _ERROR_STATUS, _WARNING_STATUS = 3, 1
 """Status of a log message in FMI 3.0."""
@@ -151,28 +154,23 @@ def _announce_python_evaluation(reason: str) -> None:
     )
 
 
-class CompiledJoint:
-    """A joint that the library of its FMU evaluates. See `JointEngine`.
+class LoadedLibrary:
+    """Instance of a model in the loaded library of its FMU (FMI 3.0, co-simulation).
 
-    Raises ImportError if the library must be compiled and a package is missing, RuntimeError if the compiler
-    fails or compiles for no such platform, OSError if the library cannot be loaded.
+    model : its inputs, outputs and parameters
+
+    Raises OSError if the library cannot be loaded, RuntimeError if it gives no instance.
     """
 
-    def __init__(self, model: Model, file: ParameterFile) -> None:
-        from jointfmu_fmu_src.native.library import make_joint_library
-
+    def __init__(self, model: Model, library: "JointLibrary") -> None:
         self.model = model
         self._messages: list[tuple[int, str]] = []
         self._lock = Lock()  # calls of the library release Python's own lock
         fields = model.parameter_fields()
-        inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
-        self._names = (*inputs, *outputs)
+        self._names = tuple(v.name for v in (*model.inputs, *model.outputs))
         self._references = {name: i for i, name in enumerate(["time", *self._names, *fields])}
-        self._input_references, self._output_references = map(self._list_references, (inputs, outputs))
-        self._input_columns = {name: i for i, name in enumerate(inputs)}
-        self._start_row = np.array([[float(file.start_value(name)) for name in inputs]])
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
-        library, messages = make_joint_library(model, file), self._messages
+        messages = self._messages
 
         def log(environment: Any, status: int, category: bytes, text: bytes) -> None:
             messages.append((status, text.decode("utf-8", "replace")))
@@ -207,14 +205,9 @@ class CompiledJoint:
         ]  # fmt: skip
         for function in (lib.fmi3SetFloat64, lib.fmi3SetBoolean):
             function.argtypes = [_POINTER_TYPE, _POINTER_TYPE, _SIZE_TYPE, _POINTER_TYPE, _SIZE_TYPE]
-        lib.jointfmu_follow_path.restype = _SIZE_TYPE
-        lib.jointfmu_follow_path.argtypes = [
-            _POINTER_TYPE, ctypes.c_bool, _SIZE_TYPE, _SIZE_TYPE, _POINTER_TYPE, _POINTER_TYPE, _SIZE_TYPE,
-            _POINTER_TYPE, _POINTER_TYPE,
-        ]  # fmt: skip
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
-        """See `JointEngine.set_parameters`; parameters that the FMU does not expose cannot be set here."""
+        """Set exposed parameters and other variables {name: SI value}; ValueError if one is refused."""
         for is_boolean, function, kind in (
             (False, self._library.fmi3SetFloat64, np.float64),
             (True, self._library.fmi3SetBoolean, np.bool_),
@@ -235,6 +228,31 @@ class CompiledJoint:
         text = next((text for status, text in reversed(self._messages) if status >= _ERROR_STATUS), "refused")
         self._messages.clear()
         return text
+
+
+class CompiledJoint(LoadedLibrary):
+    """A joint that the library of its FMU evaluates. See `JointEngine`.
+
+    Raises ImportError if the library must be compiled and a package is missing, RuntimeError if the compiler
+    fails or compiles for no such platform, OSError if the library cannot be loaded.
+    """
+
+    def __init__(self, model: Model, file: ParameterFile) -> None:
+        from jointfmu_fmu_src.native.library import make_joint_library
+
+        super().__init__(model, make_joint_library(model, file))
+        inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
+        self._input_references, self._output_references = map(self._list_references, (inputs, outputs))
+        self._input_columns = {name: i for i, name in enumerate(inputs)}
+        self._start_row = np.array([[float(file.start_value(name)) for name in inputs]])
+
+    def _declare_functions(self) -> None:
+        super()._declare_functions()
+        self._library.jointfmu_follow_path.restype = _SIZE_TYPE
+        self._library.jointfmu_follow_path.argtypes = [
+            _POINTER_TYPE, ctypes.c_bool, _SIZE_TYPE, _SIZE_TYPE, _POINTER_TYPE, _POINTER_TYPE, _SIZE_TYPE,
+            _POINTER_TYPE, _POINTER_TYPE,
+        ]  # fmt: skip
 
     def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
         """See `JointEngine.follow`."""

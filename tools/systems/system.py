@@ -154,17 +154,22 @@ def load_system(name: str) -> System:
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
+    return _load_shipped(name) if name in list_system_names() else read_system(find_system_file(name))
+
+
+def find_system_file(name: str) -> Path:
+    """Path of a system file: of a shipped system by name, or the path itself; ValueError for other names."""
     if name in list_system_names():
-        return _load_shipped(name)
+        return Path(str(files("jointfmu_models") / "systems" / f"{name}.toml"))
     if not name.endswith(".toml"):
         raise ValueError(f"system {name!r}: allowed are {', '.join(list_system_names())}, or a file .toml")
-    return read_system(Path(name))
+    return Path(name)
 
 
 @cache
 def _load_shipped(name: str) -> System:
     """Read a shipped system; cached."""
-    return read_system(Path(str(files("jointfmu_models") / "systems" / f"{name}.toml")))
+    return read_system(find_system_file(name))
 
 
 def read_system(path: Path) -> System:

@@ -20,6 +20,7 @@ from ...inputs.fitting.procedure import Procedure, fit_procedures
 from ..command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
 from ..outputs import FORCE_OPTION_HELP, declare_output
 from . import declare_option
+from .fit_system import add_procedure
 
 
 def add_command(command_parsers: SubParsers) -> None:
@@ -29,6 +30,7 @@ def add_command(command_parsers: SubParsers) -> None:
     ways = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
     for choices in fit_procedures().values():
         _declare_procedure(ways, choices)
+    add_procedure(ways)
 
 
 def _declare_procedure(procedure_parsers: SubParsers, procedure_by_joint: Mapping[str, Procedure]) -> None:

@@ -1,8 +1,9 @@
-"""Nonlinear least squares for positive parameters, in their logarithms, with bounds and covariance.
+"""Nonlinear least squares, in the logarithms of positive parameters, with bounds and covariance.
 
 A thin layer over `scipy.optimize.least_squares` (trust region reflective). The unknowns are the logarithms of
-the parameters. Residuals are infinite at parameters that the model refuses, so the search steps back. The
-covariance follows from the Jacobian at the solution.
+the parameters; a parameter of any sign is divided by a scale instead. "Logarithm" means both below. Residuals
+are infinite at parameters that the model refuses, so the search steps back. The covariance follows from the
+Jacobian at the solution.
 
 During the search a parameter may be replaced by a derived quantity (`UnknownExchange`). Example: factor and
 exponent of a power law together give a stiffness, which the data determine a thousand times better than
@@ -39,21 +40,37 @@ AT_BOUND_TOLERANCE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """Positive parameter to be fitted: name, unit, start value and open bounds in this SI unit."""
+    """Parameter to be fitted: name, unit, start value and open bounds in this SI unit.
+
+    scale : scale of a parameter of any sign, in its unit; None: the parameter is positive
+    """
 
     name: str
     unit: str
     start_value: float
     lower_bound: float
     upper_bound: float
+    scale: float | None = None
 
     def __post_init__(self) -> None:
-        if not self.lower_bound < self.start_value < self.upper_bound or self.start_value <= 0.0:
+        low = self.lower_bound if self.scale else max(self.lower_bound, 0.0)
+        if not low < self.start_value < self.upper_bound:
             unit = "" if self.unit == "1" else f" {self.unit}"
             raise ValueError(
                 f"{self.name} = {self.start_value:g}{unit} cannot be the start value of the fit; expected a "
-                f"value inside ({max(self.lower_bound, 0.0):g}, {self.upper_bound:g}){unit}"
+                f"value inside ({low:g}, {self.upper_bound:g}){unit}"
             )
+
+    def to_search(self, value: float) -> float:
+        """Logarithm of a value, or value over `scale` [1]."""
+        if self.scale:
+            return value / self.scale
+        return float(np.log(value)) if value > 0.0 else -np.inf
+
+    def from_search(self, search_value: float) -> float:
+        """Value of a logarithm, or of a value over `scale`."""
+        with np.errstate(over="ignore"):
+            return search_value * self.scale if self.scale else float(np.exp(search_value))
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +98,10 @@ class Solution:
 
     @property
     def relative_deviations(self) -> dict[str, float]:
-        """{name: relative standard deviation [1]}, equal to the standard deviation of the logarithm."""
+        """{name: relative standard deviation [1]}, equal to the standard deviation of the logarithm.
+
+        For an unknown with a scale: standard deviation over this scale.
+        """
         root = np.sqrt(np.diag(self.covariance))
         return {u.name: float(d) for u, d in zip(self.unknowns, root, strict=True)}
 
@@ -103,6 +123,7 @@ def solve(
     noise: float | None = None,
     nuisance_count: int = 0,
     tolerance: float = CONVERGENCE_TOLERANCE,
+    difference_steps: float | Array = FINITE_DIFFERENCE_STEP,
 ) -> Solution:
     """Minimise the sum of squared residuals over the unknowns.
 
@@ -113,6 +134,7 @@ def solve(
     noise          : standard deviation of a residual [1]; estimated from the residuals if None
     nuisance_count : number of parameters that the residual function itself eliminates (for example an offset)
     tolerance      : relative change of cost or parameters at which the fit ends [1]
+    difference_steps : step of the central differences, in the logarithm of each parameter [1]
 
     Raises
     ------
@@ -121,7 +143,7 @@ def solve(
     """
     from scipy.optimize import least_squares
 
-    model = _LogarithmicModel(tuple(unknowns), residuals)
+    model = _LogarithmicModel(tuple(unknowns), residuals, difference_steps)
     logs = model.start
     first = residuals(model.values_by_name(logs))
     degrees_of_freedom = first.size - logs.size - nuisance_count
@@ -197,13 +219,16 @@ def _root_mean_square(residuals: Array) -> float:
 class _LogarithmicModel:
     """Residuals and regularisation as function of the logarithms (k); infinite if the model refuses them."""
 
-    def __init__(self, unknowns: tuple[Unknown, ...], residuals: Residuals) -> None:
+    def __init__(
+        self, unknowns: tuple[Unknown, ...], residuals: Residuals, difference_steps: float | Array
+    ) -> None:
+        self.unknowns = unknowns
         self.names = [u.name for u in unknowns]
-        self.start = np.log([u.start_value for u in unknowns])
-        with np.errstate(divide="ignore"):
-            self.low = np.log([max(u.lower_bound, 0.0) for u in unknowns]) + 1e-9
-            self.high = np.log([u.upper_bound for u in unknowns]) - 1e-9
+        self.start = np.array([u.to_search(u.start_value) for u in unknowns])
+        self.low = np.array([u.to_search(u.lower_bound) for u in unknowns]) + 1e-9
+        self.high = np.array([u.to_search(u.upper_bound) for u in unknowns]) - 1e-9
         self.residuals = residuals
+        self.difference_steps = np.broadcast_to(difference_steps, len(unknowns))
         self.ridge = 0.0
         self.size = 0
         self.refusal: str | None = None
@@ -211,8 +236,8 @@ class _LogarithmicModel:
 
     def values_by_name(self, log_values: Array) -> dict[str, float]:
         """Values {name: value} of the parameters, from their logarithms (k)."""
-        with np.errstate(over="ignore"):
-            return dict(zip(self.names, np.exp(log_values).tolist(), strict=True))
+        pairs = zip(self.unknowns, log_values.tolist(), strict=True)
+        return {unknown.name: unknown.from_search(value) for unknown, value in pairs}
 
     def __call__(self, log_values: Array) -> Array:
         try:
@@ -233,7 +258,7 @@ class _LogarithmicModel:
         columns = []
         for k in range(log_values.size):
             ends = np.clip(
-                log_values[k] + np.array([-FINITE_DIFFERENCE_STEP, FINITE_DIFFERENCE_STEP]),
+                log_values[k] + self.difference_steps[k] * np.array([-1.0, 1.0]),
                 self.low[k],
                 self.high[k],
             )

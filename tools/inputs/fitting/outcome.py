@@ -40,24 +40,31 @@ MIN_SINGULAR_VALUE_RATIO = 1e-5
 class ParameterCombination:
     """Combination prod name^exponent of parameters, statistically independent of the other combinations.
 
-    exponents          : {name: exponent}, the largest is 1
+    exponents          : {name: exponent}, the largest is 1; of a parameter with a scale: of exp(name/scale)
     relative_deviation : relative standard deviation [1]; infinite if the data contain no information about it
     is_determined      : whether the standard deviation is within the limit
+    scales             : {name: scale with its unit} of parameters with a scale
     """
 
     exponents: Mapping[str, float]
     relative_deviation: float
     is_determined: bool
+    scales: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
+        factors = {
+            name: f"exp({name}/{self.scales[name]})" if name in self.scales else name
+            for name in self.exponents
+        }
         return " ".join(
-            name if power == 1.0 else f"{name}^{power:.2g}" for name, power in self.exponents.items()
+            factors[name] if power == 1.0 else f"{factors[name]}^{power:.2g}"
+            for name, power in self.exponents.items()
         )
 
 
 def max_determined_deviation(unknown: Unknown) -> float:
     """Largest standard deviation of the logarithm [1] of a parameter that counts as determined."""
-    if unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
+    if unknown.scale or unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
         return MAX_PARAMETER_DEVIATION
     return min(
         MAX_PARAMETER_DEVIATION,
@@ -82,7 +89,12 @@ def find_parameter_combinations(solution: Solution) -> list[ParameterCombination
         has_no_effect = value <= MIN_SINGULAR_VALUE_RATIO * s[0]
         deviation = np.inf if has_no_effect else solution.noise / value
         independent.append(
-            ParameterCombination(exponents, float(deviation / abs(largest)), bool(deviation <= 1.0))
+            ParameterCombination(
+                exponents,
+                float(deviation / abs(largest)),
+                bool(deviation <= 1.0),
+                {u.name: f"{u.scale:.3g} {u.unit}" for u in solution.unknowns if u.scale},
+            )
         )
     return independent
 
@@ -162,17 +174,18 @@ class FitResult:
     doubt: str | None = None
 
     def unknown_rows(self) -> list[dict[str, Any]]:
-        """Table of the unknowns: name, value, unit, relative standard deviation, whether it is determined."""
+        """Table of the unknowns: name, value, start value, unit, relative deviation, whether determined."""
         undetermined, deviations = undetermined_names(self.solution), self.solution.relative_deviations
         return [
             {
                 "name": u.name,
                 "value": self.solution.values[u.name],
+                "start": u.start_value,
                 "unit": u.unit,
                 "relative_deviation": _finite_or_none(deviations[u.name]),
                 "determined": u.name not in undetermined,
                 **(
-                    {"interval": list(self.confidence_intervals[u.name])}
+                    {"interval": [*map(_finite_or_none, self.confidence_intervals[u.name])]}
                     if u.name in self.confidence_intervals
                     else {}
                 ),

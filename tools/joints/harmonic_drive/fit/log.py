@@ -17,6 +17,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
 
+from ....common.columns import parse_stated_headings
 from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution
 from ....inputs.fitting.outcome import FitFacts, FitPlot, FitResult, fitted_parameters, undetermined_names
 from ..catalogue import find_drive
@@ -37,7 +38,7 @@ from .log_friction import (
     refit_without_undetermined,
     select_parameters,
 )
-from .log_reading import MIN_SPEED_RANGE_RATIO, Samples, join_samples, make_log, parse_columns, read_table
+from .log_reading import COLUMN_UNITS, MIN_SPEED_RANGE_RATIO, Samples, join_samples, make_log, read_table
 from .log_ripple import add_ripples, find_ripple_terms, fitted_ripples
 
 CONFIDENCE_LEVEL = 0.95
@@ -79,7 +80,7 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
-    names = parse_columns(columns or ())
+    names = parse_stated_headings(columns or (), COLUMN_UNITS)
     tables = [read_table(path, names) for path in paths]
     file = _start_parameters(start_parameters, drive, rated_torque, ratio)
     logs = [make_log(table, torque_constant, file.values, torque_at) for table in tables]

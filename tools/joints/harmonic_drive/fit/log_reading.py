@@ -244,22 +244,6 @@ SPEED_OVER_DERIVATIVE_RANGE = (0.5, 2.0)
 """Allowed range of dq over the derivative of q [1]."""
 
 
-def parse_columns(column_texts: Sequence[str]) -> dict[str, tuple[str, str | None]]:
-    """Parse `NAME=HEADING` or `NAME=HEADING [UNIT]`: {column: (heading in the file, unit or None)}.
-
-    Raises ValueError for other text and unknown columns.
-    """
-    found = {}
-    for word in column_texts:
-        name, _, text = word.partition("=")
-        if name not in COLUMN_UNITS or not text.strip():
-            raise ValueError(
-                f"--columns {word!r}: expected NAME=HEADING with one of {', '.join(COLUMN_UNITS)}"
-            )
-        found[name] = columns.parse_heading(text)
-    return found
-
-
 @dataclass(frozen=True, slots=True)
 class MeasuredLog:
     """Log that is read from a file.

@@ -1,0 +1,1 @@
+"""Fit parameters of a system to measured time series."""

@@ -1,0 +1,102 @@
+"""Measured time series of a system: a table whose columns are named as variables of the system."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.joints.model import Model
+from jointfmu.quantity import Array
+from jointfmu.quantity.units import CELSIUS_UNIT, CELSIUS_ZERO_IN_KELVIN, UNITS, UnitSizes, unit_sizes
+
+from ...common import columns
+
+MIN_ROWS = 8
+"""Smallest number of rows of a record."""
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Measured time series, in SI units.
+
+    time            : (n) [s], increasing
+    inputs          : {input of the system: values (n)}, played in; the speed of a prescribed angle without a
+        column is the derivative of this angle
+    outputs         : {output of the system: values (n)}, compared
+    unused_headings : headings of other columns
+    """
+
+    path: Path
+    time: Array
+    inputs: Mapping[str, Array]
+    outputs: Mapping[str, Array]
+    unused_headings: Sequence[str]
+
+
+def read_record(path: Path, model: Model, stated_headings: Sequence[str] = ()) -> Record:
+    """Read a record.
+
+    model           : of the system
+    stated_headings : `NAME=HEADING` or `NAME=HEADING [UNIT]`, for columns with other headings
+
+    Raises ValueError, one line, as `columns.read_columns`, for a heading COMPONENT.VARIABLE that the system
+    does not have, for time that does not increase, and for a record without an output.
+    """
+    units = {"time": "s"} | {v.name: v.unit for v in (*model.inputs, *model.outputs)}
+    names = {name.lower(): name for name in units}
+    known = {lower: _accepted_units(units[name]) for lower, name in names.items()}
+    stated = columns.parse_stated_headings(stated_headings, units)
+    used = {*known, *(heading.lower() for heading, _ in stated.values())}
+    unused = [
+        heading
+        for heading in columns.read_column_names(path)
+        if heading not in used and not any(heading.startswith(f"{name}_") for name in known)
+    ]
+    for heading in unused:
+        if "." in heading:
+            raise ValueError(
+                f"{path}: column {heading!r} is no variable of the system, {describe_nearest(heading, units)}"
+            )
+    table = columns.read_columns(path, known, MIN_ROWS, stated_headings=stated)
+    time = table.require_column("time", known)
+    if np.any(backward := np.diff(time) <= 0.0):
+        row = int(np.argmax(backward))
+        raise ValueError(
+            f"{path}: line {table.line_numbers[row + 1]}: time = {time[row + 1]:g} s is not after "
+            f"{time[row]:g} s of line {table.line_numbers[row]}; expected increasing times"
+        )
+    values = {
+        names[lower]: column + (CELSIUS_ZERO_IN_KELVIN if table.units[lower] == CELSIUS_UNIT else 0.0)
+        for lower, column in table.columns.items()
+    }
+    inputs = {v.name: values[v.name] for v in model.inputs if v.name in values}
+    outputs = {v.name: values[v.name] for v in model.outputs if v.name in values}
+    for name in [*inputs]:
+        speed = f"{name.removesuffix('.phi_in')}.w_in"
+        if name.endswith(".phi_in") and speed not in inputs:  # prescribed motion
+            inputs[speed] = np.gradient(inputs[name], time)
+    if not outputs:
+        present = ", ".join(inputs) or "time alone"
+        bodies = ", ".join(v.name for v in model.outputs[: model.state_count])
+        raise ValueError(
+            f"{path}: has no column to compare ({present}); expected an output, such as {bodies}"
+        )
+    for name, column in outputs.items():
+        if np.ptp(column) == 0.0:
+            raise ValueError(f"{path}: {name} is {column[0]:g} in every row; expected a column that changes")
+    return Record(path, time, inputs, outputs, unused)
+
+
+def describe_nearest(name: str, known_names: Sequence[str] | Mapping[str, object]) -> str:
+    """Known names that are similar to a name, as text; all of them if none is similar."""
+    by_lower = {known.lower(): known for known in known_names}
+    nearest = [by_lower[text] for text in get_close_matches(name.lower(), by_lower, 3)] or [*known_names]
+    return f"{'nearest' if len(nearest) <= 3 else 'allowed'} are {', '.join(nearest)}"
+
+
+def _accepted_units(unit: str) -> UnitSizes:
+    """{unit: size in SI} of a column: the SI unit, and the units in which it is displayed."""
+    sizes = unit_sizes(unit, *UNITS[unit].display_factors)
+    return {**sizes, CELSIUS_UNIT: 1.0} if unit == "K" else sizes
