@@ -287,7 +287,8 @@ def test_no_equation_sums_over_a_function_that_returns_an_array(files: dict[str,
 
 def test_the_parts_of_a_sliders_path_read_no_array(files: dict[str, str]):
     inner = files["Functions/slide.mo"].partition("for i in 1:parts loop")[2].partition("end for;")[0]
-    assert "carries" in inner and "[" not in inner
+    assert "carries" in inner
+    assert "[" not in inner
 
 
 @pytest.mark.parametrize(

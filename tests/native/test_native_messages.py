@@ -84,7 +84,7 @@ def test_each_way_of_leaving_the_tables_is_warned_of_once_as_in_the_package(
 def test_an_input_at_zero_in_place_of_its_start_value_is_warned_of_once(
     host: Host, fmu: Host, version: str
 ) -> None:
-    """As tools leave it that set all inputs to 0 before a run: no second warning tells of that temperature."""
+    """As tools leave it that set all inputs to 0 before a run; no second warning names that temperature."""
     name = "HarmonicDriveSpring"
     zeros = dict.fromkeys((v.name for v in MODELS[name].inputs), 0.0)
     for instance in (host(name, version), fmu(name)):

@@ -129,7 +129,7 @@ class System:
     def with_joint(self, file: ParameterFile) -> "System":
         """Copy of the system with another parameter file for all joints of its kind without their own FMU.
 
-        The bodies and loads at their flanges are scaled to the new joint, so that it moves as the old one did.
+        The bodies and loads at their flanges are scaled to the new joint: it moves as the old one did.
         """
         components = dict(self.components)
         for name, joint in self.joints.items():

@@ -43,8 +43,8 @@ class TabulatedJoint(Protocol):
 
 
 MINIMUM_MARGIN_RATIO = 1e-5
-"""Margin below the minimum of an input over its nominal value [1]. Solvers form derivatives with steps of 1.5e-8
-to 6e-6 of a value: the square root and the cubic root of the precision of doubles."""
+"""Margin below the minimum of an input over its nominal value [1]. Solvers form derivatives with steps of
+1.5e-8 to 6e-6 of a value: the square root and the cubic root of the precision of doubles."""
 
 
 @dataclass(frozen=True, slots=True)
