@@ -75,6 +75,8 @@ MUTATIONS = dict.fromkeys([*MODELS, SYSTEM], 5_000) | {
 13 % fewer branches."""
 ELASTIC = "BoltedJoint with elastic sides"
 """Of the fixture `elastic_joint`."""
+CATALOGUE_DRIVE = "HarmonicDriveSpring of law catalogue"
+"""As in systems with drives of the catalogue."""
 ELASTIC_MUTATIONS = 300
 """Each costs ten times one of BoltedJoint."""
 
@@ -135,9 +137,9 @@ ELASTIC_FILES: list[ParameterFile] = []
 @cache
 def c_of(name: str) -> Sources:
     """The sources of an FMU, or of the joint in a folder of tests/native/hosts."""
-    if name == ELASTIC:
-        (file,) = ELASTIC_FILES
-        model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
+    if name in (ELASTIC, CATALOGUE_DRIVE):
+        file = ELASTIC_FILES[0] if name == ELASTIC else load_default("harmonic_drive", "catalogue")
+        model = MODELS[name.split()[0]].with_parameters(file.joint, file.values)
         files = generate_sources(model.name, file)
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if model := (MODELS | PARTNERS).get(name):
@@ -270,14 +272,14 @@ every_joint = pytest.mark.parametrize("name", [*MODELS, *ALONE])
 every_version = pytest.mark.parametrize("version", VERSIONS)
 
 
-@pytest.mark.parametrize("name", [*MODELS, *FEW_PARTNERS, *ALONE])
+@pytest.mark.parametrize("name", [*MODELS, *FEW_PARTNERS, *ALONE, CATALOGUE_DRIVE, SYSTEM])
 def test_no_warning(sanitizing: str, builder: Builder, name: str) -> None:
     """Of clang, or of zig, which is clang: the objects are those that run below."""
     assert builder.objects(sanitizing, name, *sanitized(sanitizing))
 
 
 @needs("gcc")
-@pytest.mark.parametrize("name", ["BoltedJoint", "GearMesh", "HarmonicDriveSpring"])
+@pytest.mark.parametrize("name", ["BoltedJoint", "GearMesh", "HarmonicDriveSpring", CATALOGUE_DRIVE, SYSTEM])
 def test_gcc_does_not_warn(builder: Builder, name: str) -> None:
     assert builder.objects("gcc", name, *PLAIN["gcc"])
 

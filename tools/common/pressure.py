@@ -25,7 +25,7 @@ class NominalPressureModel:
     peak_pressure   : (parameter set, load) -> greatest nominal pressure [Pa]
     stiffness_ratio : (parameter set, load) -> joint stiffness over stiffness of the interface law at the mean
                       pressure [1]
-    load_capacity   : parameter file -> (largest load [SI] of the loaded parts, name of this limit), or None if
+    load_capacity   : parameter file -> (largest load [SI] of the loaded parts, its name), or None if
                       not known
     """
 
