@@ -17,7 +17,7 @@ MODEL = """
 model Link
   extends Modelica.Icons.Example;
   Modelica.Mechanics.Rotational.Components.Fixed motor;
-  JointStiffness.Components.HarmonicDriveSpring drive(stateSelect=StateSelect.default);
+  JointStiffness.Components.HarmonicDriveSpring drive;
   Modelica.Mechanics.Rotational.Components.Inertia link(J=0.05, phi(fixed=true, start=2e-3), w(fixed=true));
 equation
   connect(motor.flange, drive.flange_a);

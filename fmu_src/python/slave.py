@@ -33,6 +33,8 @@ from jointfmu.version import __version__
 Result = TypeVar("Result")
 MAX_LISTED_INPUTS = 4
 """Largest number of inputs in a refusal."""
+LOST_START_VALUE_KEY = -1
+"""Key, in `warned_keys`, of the warning of inputs at 0 in place of their start values."""
 
 
 class AcceptedStep(NamedTuple):
@@ -92,11 +94,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.start = dict(file.values_by_name)
         self.listed_variables = list_variables(self.model, file)
         self.fields = self.model.parameter_fields()
-        self.values: dict[str, Any] = {
-            **self.start,
-            **{v.name: file.start_value(v.name) for v in self.model.inputs},
-        }
+        self.input_starts = {v.name: file.start_value(v.name) for v in self.model.inputs}
+        self.values: dict[str, Any] = {**self.start, **self.input_starts}
         self.initialized = False
+        self.start_time = 0.0
         self.warned_keys: set[int] = set()
         self.accepted_step: AcceptedStep | None = None
         self._spring: TabulatedJoint | None = None
@@ -144,6 +145,8 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
 
     def evaluate(self) -> dict[str, float]:
         """Evaluate all outputs at the current inputs; fails if an input is not finite or out of range."""
+        for v in self.model.inputs:
+            self.values[v.name] = v.round_to_minimum(self.values[v.name])
         inputs = self.get_inputs()
         for v in self.model.inputs:
             if not v.interval.contains(inputs[v.name]):
@@ -162,13 +165,41 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             if more := len(largest) - len(listed):
                 inputs_text += f" and {more} more"
             self.log_and_raise(f"{inputs_text}: too large, {not_finite[0]} is not finite")
-        for key, message in self.model.find_warnings(
-            self.get_tabulated_joint(), {**inputs, **outputs}
-        ).items():
-            if key not in self.warned_keys:
-                self.warned_keys.add(key)
-                self.log(message, Fmi2Status.warning, "logStatusWarning")
+        self.log_warnings(inputs, outputs)
         return outputs
+
+    def log_warnings(self, inputs: Mapping[str, float], outputs: Mapping[str, float]) -> None:
+        """Log each warning once. A warning that a lost start value causes is replaced by one of the loss."""
+        joint, variables = self.get_tabulated_joint(), {**inputs, **outputs}
+        found = self.model.find_warnings(joint, variables)
+        lost = self.find_lost_start_values()
+        kept = self.model.find_warnings(joint, variables | lost) if found and lost else found
+        if found.keys() - kept.keys() - self.warned_keys:
+            self.warn_of_lost_start_values()
+        for key, message in found.items():
+            if key not in self.warned_keys and key in kept:
+                self.log(message, Fmi2Status.warning, "logStatusWarning")
+        self.warned_keys |= found.keys()
+
+    def find_lost_start_values(self) -> dict[str, float]:
+        """{input: start value} of inputs that the host has set to 0, although their start value is not 0."""
+        return {
+            name: start for name, start in self.input_starts.items() if start and self.values[name] == 0.0
+        }
+
+    def warn_of_lost_start_values(self) -> None:
+        """Warn once of inputs that the host has set to 0, if their start values are not 0."""
+        lost = self.find_lost_start_values()
+        if not lost or LOST_START_VALUE_KEY in self.warned_keys:
+            return
+        self.warned_keys.add(LOST_START_VALUE_KEY)
+        units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in self.model.inputs}
+        listed = ", ".join(
+            f"{name} = 0{units[name]} in place of its start value = {start:.6g}{units[name]}"
+            for name, start in lost.items()
+        )
+        text = f"{listed}: some tools set all inputs to 0; connect the input, or set its value"
+        self.log(text, Fmi2Status.warning, "logStatusWarning")
 
     def get_inputs(self) -> dict[str, float]:
         """{input: current value}."""
@@ -215,16 +246,23 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.log(message, Fmi2Status.error, "logStatusError")
         raise ValueError(message)
 
+    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        """Keep the start time: the first step begins there."""
+        self.start_time = start_time
+
     @protect_references
     def exit_initialization_mode(self) -> None:
         """End initialization: check the parameters, tabulate the joint, evaluate the outputs."""
         self.accept_step()
+        self.warn_of_lost_start_values()
         self.initialized = True
 
     @protect_references
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Evaluate the outputs at the current inputs and accept the load step; fails for invalid inputs."""
         self.accept_step()
+        if current_time <= self.start_time:
+            self.warn_of_lost_start_values()  # set to 0 between initialization and the first step
         return True
 
     get_real, set_real = protect_references(Fmi2Slave.get_real), protect_references(Fmi2Slave.set_real)

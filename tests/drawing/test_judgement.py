@@ -9,7 +9,7 @@ from jointfmu_tools.common.judgement import MAX_STIFFNESS_RATIO, assess_law_stif
 from jointfmu_tools.common.pressure import find_nominal_pressure_model, judge_joint_stiffness
 from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.inputs.drawing.tables import read_threads
-from jointfmu_tools.inputs.drawing.vdi2230 import proof_load, stress_area
+from jointfmu_tools.inputs.drawing.vdi2230 import describe_stated_bolt, proof_load, stress_area
 from jointfmu_tools.inputs.fields.nodal_result import ContactField
 
 from jointfmu.contact.interface import evaluate_at_pressure, find_validity_violations
@@ -138,6 +138,15 @@ def test_bolts_of_iso_898_1(d, area, proof):
     load, name = proof_load(1e-3 * (d + 1.5))
     assert load == pytest.approx(proof, rel=4e-3)
     assert f"M{d}, class 12.9" in name
+
+
+def test_a_stated_bolt_has_its_own_proof_load():
+    """ISO 898-1: 580 MPa of class 8.8 times 84.3 mm2, and 92.1 mm2 of the fine thread."""
+    for name, expected in (("M12", 48.9e3), ("M12x1.25", 53.4e3)):
+        source = f"stated on the drawing; {describe_stated_bolt(name, '8.8')}"
+        load, title = proof_load(18e-3, source)
+        assert load == pytest.approx(expected, rel=2e-3)
+        assert title == f"the proof load of {name}-8.8 (ISO 898-1)"
 
 
 def test_holes_of_no_bolt():

@@ -74,6 +74,8 @@ MUTATIONS = dict.fromkeys([*MODELS, SYSTEM], 5_000) | {
 """Number of changed serialized states of each version, the same in every run."""
 ELASTIC = "BoltedJoint with elastic sides"
 """Name of the FMU of the fixture `elastic_joint`."""
+CATALOGUE_DRIVE = "HarmonicDriveSpring of law catalogue"
+"""Name of a drive as systems have it: with the law `catalogue`."""
 ELASTIC_MUTATIONS = 300
 """Number of changed states of ELASTIC; one costs ten times as much as for BoltedJoint."""
 
@@ -134,9 +136,9 @@ ELASTIC_FILES: list[ParameterFile] = []
 @cache
 def c_of(name: str) -> Sources:
     """Sources of an FMU, or of the joint in a folder of tests/native/hosts."""
-    if name == ELASTIC:
-        (file,) = ELASTIC_FILES
-        model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
+    if name in (ELASTIC, CATALOGUE_DRIVE):
+        file = ELASTIC_FILES[0] if name == ELASTIC else load_default("harmonic_drive", "catalogue")
+        model = MODELS[name.split()[0]].with_parameters(file.joint, file.values)
         files = generate_sources(model.name, file)
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if model := (MODELS | PARTNERS).get(name):
@@ -231,7 +233,8 @@ class Builder:
 
 @pytest.fixture(scope="module")
 def builder(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Builder:
-    return Builder(tmp_path_factory.mktemp("c"), pytestconfig.cache.mkdir("objects"))
+    work, cache = tmp_path_factory.mktemp("c"), getattr(pytestconfig, "cache", None)
+    return Builder(work, cache.mkdir("objects") if cache else work)  # no cache with -p no:cacheprovider
 
 
 @pytest.fixture(scope="module")
@@ -268,14 +271,14 @@ every_joint = pytest.mark.parametrize("name", [*MODELS, *ALONE])
 every_version = pytest.mark.parametrize("version", VERSIONS)
 
 
-@pytest.mark.parametrize("name", [*MODELS, *FEW_PARTNERS, *ALONE])
+@pytest.mark.parametrize("name", [*MODELS, *FEW_PARTNERS, *ALONE, CATALOGUE_DRIVE, SYSTEM])
 def test_no_warning(sanitizing: str, builder: Builder, name: str) -> None:
     """Warnings of clang, or of zig, which is clang; the objects are those of the tests below."""
     assert builder.objects(sanitizing, name, *sanitized(sanitizing))
 
 
 @needs("gcc")
-@pytest.mark.parametrize("name", ["BoltedJoint", "GearMesh", "HarmonicDriveSpring"])
+@pytest.mark.parametrize("name", ["BoltedJoint", "GearMesh", "HarmonicDriveSpring", CATALOGUE_DRIVE, SYSTEM])
 def test_gcc_does_not_warn(builder: Builder, name: str) -> None:
     assert builder.objects("gcc", name, *PLAIN["gcc"])
 

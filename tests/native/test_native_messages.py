@@ -81,6 +81,30 @@ def test_each_way_of_leaving_the_tables_is_warned_of_once_as_in_the_package(
     assert {m.category for m in instance.messages if m.status == 1} == {"logStatusWarning"}
 
 
+def test_an_input_at_zero_in_place_of_its_start_value_is_warned_of_once(
+    host: Host, fmu: Host, version: str
+) -> None:
+    """As tools leave it that set all inputs to 0 before a run; no second warning names that temperature."""
+    name = "HarmonicDriveSpring"
+    zeros = dict.fromkeys((v.name for v in MODELS[name].inputs), 0.0)
+    for instance in (host(name, version), fmu(name)):
+        instance.start().step()
+        assert not instance.warnings
+        instance.reset()
+        instance.start(zeros)
+        instance.get()
+        instance.step()
+        assert instance.warnings == [
+            "temperature = 0 K in place of its start value = 293.15 K: some tools set all inputs to 0; "
+            "connect the input, or set its value"
+        ]
+        instance.reset()
+        instance.start()
+        instance.set_values(zeros)  # between initialization and the first step
+        instance.step()
+        assert len(instance.warnings) == 2
+
+
 # Refusals
 
 
@@ -134,6 +158,20 @@ def test_a_refusal_reads_the_same_in_every_flavour(
             instance.set_values({k: start.get(k, 0.0) for k in values} | GOOD[name])
             instance.fmu.exitInitializationMode()  # a right value may come
             assert instance.get() == before
+
+
+def test_round_off_below_a_minimum_counts_as_the_minimum_in_every_flavour(
+    host: Host, fmu: Host, version: str, exchange: bool
+) -> None:
+    """A solver that varies an input at its minimum goes on."""
+    bounded = [(m, v) for m in NAMES for v in MODELS[m].inputs if math.isfinite(v.minimum)]
+    assert {v.name for _, v in bounded} >= {"preload", "temperature"}
+    for name, variable in bounded:
+        for instance in (host(name, version, exchange=exchange), fmu(name)):
+            expected = instance.start(GOOD[name]).at({variable.name: variable.minimum})
+            assert instance.at({variable.name: variable.minimum - 1e-8}) == expected
+            instance.set_values({variable.name: variable.minimum - 2.0 * variable.minimum_margin})
+            assert f"{variable.name} = -" in instance.refused(instance.get)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])

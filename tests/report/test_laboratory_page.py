@@ -308,6 +308,8 @@ def test_a_measured_curve_stands_beside_the_curves_that_measure_the_same(shown: 
         assert x == pytest.approx(factor * first[units.index(base)])
     assert "expected one in" in drop(shown, "loop.csv", "time [s], voltage [V]\n0, 1\n")
     assert "is not a number" in drop(shown, "loop.csv", "angle [rad], torque [N.m]\n0, x\n")
+    assert "fit log" in drop(shown, "log.csv", "q [rad], dq [rad/s], tau [N.m]\n0, 1, 2\n1, 1, 3\n")
+    assert "spans more than 0.5 rad" in drop(shown, "log.csv", "angle [deg], torque [N.m]\n0, 0\n90, 1\n")
 
 
 @needed

@@ -466,3 +466,22 @@ def test_the_systems_replace_no_joint_of_the_user(tmp_path, monkeypatch, is_own)
         assert str(error.value).startswith(f"{path}: ")
         monkeypatch.setattr(ssp, "map_jobs", lambda *_: [])
     ssp.build_systems(tmp_path, column, overwrite=is_own)
+
+
+def test_a_system_is_scaled_to_another_joint():
+    """The shipped load of the small drive is below the friction of a large one, which would not turn."""
+    system, small = load_system("robot_joint"), load_default("harmonic_drive")
+    assert system.with_joint(small).list_values == system.list_values
+    large = replaced(
+        small.values, {"rated_torque": 87.0, "ratio": -50.0, "friction_coulomb": 0.07, "load_loss": 0.1}
+    )
+    file = dataclasses.replace(small, values=large, name="large")
+    scaled = system.with_joint(file)
+    before, after = system.list_values, scaled.list_values
+    rated = 87.0 / 5.0
+    assert after["link.m"] == pytest.approx(rated * before["link.m"])
+    assert after["link.l"] == before["link.l"]
+    assert after["motor.J"] == pytest.approx(4.0 * rated * before["motor.J"])
+    assert after["load.pulse_height"] == pytest.approx(2.0 * rated * before["load.pulse_height"])
+    assert after["load.ramp_height"] == pytest.approx(2.0 * rated * before["load.ramp_height"] + 0.07)
+    assert scaled.components["motor"].sources["J"].endswith("; scaled to large")

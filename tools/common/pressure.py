@@ -25,7 +25,7 @@ class NominalPressureModel:
     peak_pressure   : (parameter set, load) -> greatest nominal pressure [Pa]
     joint_to_law_stiffness_ratio : (parameter set, load) -> joint stiffness over stiffness of the interface
                       law at the mean pressure [1]
-    load_capacity   : parameter set -> (largest load [SI] of the loaded parts, name of this limit), or None if
+    load_capacity   : parameter file -> (largest load [SI] of the loaded parts, name of this limit), or None if
                       not known
     """
 
@@ -34,7 +34,7 @@ class NominalPressureModel:
     mean_pressure: Callable[..., float]
     peak_pressure: Callable[..., float]
     joint_to_law_stiffness_ratio: Callable[..., float] = lambda parameters, load: 1.0
-    load_capacity: Callable[..., tuple[float, str] | None] = lambda parameters: None
+    load_capacity: Callable[..., tuple[float, str] | None] = lambda parameter_file: None
 
 
 def pressure_over_area(parameters: Any, load: float) -> float:
@@ -88,7 +88,7 @@ def judge_joint_stiffness(
         [nominal.joint_to_law_stiffness_ratio(parameter_file.values, load) for load in loads],
         limits,
     )
-    capacity = nominal.load_capacity(parameter_file.values)
+    capacity = nominal.load_capacity(parameter_file)
     return judgement.with_warnings(warn_overload(nominal.load_variable, max(loads, default=0.0), capacity))
 
 

@@ -24,7 +24,8 @@ from typing import Any
 from jointfmu_fmu_src.naming import FMU_NAME_RULE, is_identifier
 from jointfmu_fmu_src.partners import PARTNERS
 
-from jointfmu.joints import MODELS
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.kind import FlangeRating
 from jointfmu.parameters import ParameterFile, load_default, read_document, read_entries
 from jointfmu.quantity import find_problem, flatten_fields, quantity_field
 
@@ -126,7 +127,10 @@ class System:
         }
 
     def with_joint(self, file: ParameterFile) -> "System":
-        """Copy of the system with another parameter file for all joints of its kind without their own FMU."""
+        """Copy of the system with another parameter file for all joints of its kind without their own FMU.
+
+        The bodies and loads at their flanges are scaled to the new joint: it moves as the old one did.
+        """
         components = dict(self.components)
         for name, joint in self.joints.items():
             if joint.joint_kind == file.joint and not joint.has_own_fmu:
@@ -135,7 +139,47 @@ class System:
                 }
                 changed_file = file.with_values(changes, "user", f"system {self.name}")
                 components[name] = replace(joint, base_file=file, parameter_file=changed_file)
+                find_ratings = KINDS[file.joint].find_flange_ratings
+                assert joint.base_file
+                before, after = find_ratings(joint.base_file.values), find_ratings(file.values)
+                for flange in before:
+                    for partner in self._partners_at(f"{name}.{flange}"):
+                        components[partner] = _scale_partner(
+                            components[partner], before[flange], after[flange], file.name
+                        )
         return replace(self, components=components)
+
+    def _partners_at(self, flange: str) -> list[str]:
+        """Names of the bodies and loads that are connected to a flange of a joint, not through a joint."""
+        found, new = set(), {flange}
+        while new:
+            beside = {end for pair in self.connections if new & {*pair} for end in pair}
+            names = {end.partition(".")[0] for end in beside} & self.components.keys() - self.joints.keys()
+            new = {end for pair in self.connections for end in pair if end.partition(".")[0] in names - found}
+            found |= names
+        return sorted(found)
+
+
+def _scale_partner(
+    partner: Component, before: FlangeRating, after: FlangeRating, joint_name: str
+) -> Component:
+    """Body or load scaled from the rated values of one joint to those of another one.
+
+    Loads scale with the rated load, inertias with the rated load over the motion of the flange. A load that
+    stays, `ramp_height`, is increased by the friction of the new joint.
+    """
+    load = after.load / before.load
+    inertia = load * before.motion / after.motion
+    if (load, inertia, after.friction) == (1.0, 1.0, before.friction):
+        return partner
+    values, sources = dict(partner.values), dict(partner.sources)
+    for name, unit in partner.units.items():
+        if factor := {"N.m": load, "N": load, "kg.m2": inertia, "kg": inertia}.get(unit):
+            values[name] = factor * values[name]
+            if name == "ramp_height":
+                values[name] += after.friction - before.friction
+            sources[name] += f"; scaled to {joint_name}"
+    return replace(partner, values=values, sources=sources)
 
 
 def list_system_names() -> tuple[str, ...]:

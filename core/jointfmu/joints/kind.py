@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from .model import Model, Variable
 
@@ -20,6 +20,19 @@ class RoughSurface:
     parameter_prefix: str
     is_areal: bool = False
     direction: str | None = None
+
+
+class FlangeRating(NamedTuple):
+    """Rated values at a flange of a joint, to scale the bodies and loads of a system to the joint.
+
+    load     : rated force or torque [N or N.m]
+    motion   : motion of the flange over that of the joint's output flange [1]
+    friction : dry friction at rest [N or N.m]
+    """
+
+    load: float
+    motion: float
+    friction: float
 
 
 def use_parameters_as_law(parameters: object) -> object:
@@ -49,6 +62,7 @@ class JointKind:
                     always required
     find_contradictions : function, parameter set -> one message per parameter that contradicts another one;
                     a parameter file with contradictions is an error
+    find_flange_ratings : function, parameter set -> {flange: rated values}; empty if none are known
     """
 
     name: str
@@ -61,6 +75,7 @@ class JointKind:
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
     find_contradictions: Callable[..., Iterable[str]] = find_no_contradictions
+    find_flange_ratings: Callable[..., Mapping[str, FlangeRating]] = lambda parameters: {}
 
     @property
     def title(self) -> str:

@@ -42,6 +42,11 @@ class TabulatedJoint(Protocol):
         """Table of load over displacement, from which the outputs are interpolated."""
 
 
+MINIMUM_MARGIN_RATIO = 1e-5
+"""Margin below the minimum of an input over its nominal value [1]. Solvers form derivatives with steps of
+1.5e-8 to 6e-6 of a value: the square root and the cubic root of the precision of doubles."""
+
+
 @dataclass(frozen=True, slots=True)
 class Variable:
     """Input or output of a model.
@@ -62,6 +67,15 @@ class Variable:
     def interval(self) -> Interval:
         """Allowed values of an input: finite, and at least `minimum`."""
         return Interval.from_bounds(ge=self.minimum)
+
+    @property
+    def minimum_margin(self) -> float:
+        """Largest amount below `minimum`, in the unit, at which the input counts as `minimum`."""
+        return MINIMUM_MARGIN_RATIO * self.nominal if math.isfinite(self.minimum) else 0.0
+
+    def round_to_minimum(self, value: float) -> float:
+        """Value of an input: `minimum`, if it is below by at most `minimum_margin`."""
+        return self.minimum if self.minimum - self.minimum_margin <= value < self.minimum else value
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,7 +38,7 @@ static bool tabulate_midline(Joint *joint, Text *reason)
 }
 #elif defined MIDLINE_NODES
 enum { N_MIDLINE_NODES = (int)MIDLINE_NODES };
-_Static_assert(CURVE_NODES >= N_MIDLINE_NODES, "room for all nodes");
+_Static_assert((int)CURVE_NODES >= (int)N_MIDLINE_NODES, "room for all nodes");
 
 static bool tabulate_midline(Joint *joint, Text *reason)
 {

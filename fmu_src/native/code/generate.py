@@ -145,7 +145,9 @@ enum {{
 def format_variables_c(model: Model) -> str:
     """Text of variables.c: variables with their intervals, and the inputs that each output depends on."""
     rows = [_format_variable("time", "s", "time", Interval())]
-    rows += [_format_variable(v.name, v.unit, v.doc, v.interval) for v in model.inputs]
+    rows += [
+        _format_variable(v.name, v.unit, v.doc, v.interval, margin=v.minimum_margin) for v in model.inputs
+    ]
     rows += [_format_variable(v.name, v.unit, v.doc, Interval()) for v in model.outputs]
     for name, item in model.parameter_fields().items():
         meta = item.metadata
@@ -183,12 +185,13 @@ def _format_variable(
     interval: Interval,
     is_integer: bool = False,
     is_boolean: bool = False,
+    margin: float = 0.0,
 ) -> str:
     """C initializer of one variable."""
     flags = ", ".join(
         str(int(flag)) for flag in (interval.low_open, interval.high_open, is_integer, is_boolean)
     )
-    numbers = ", ".join(format_number(x) for x in (interval.low, interval.high))
+    numbers = ", ".join(format_number(x) for x in (interval.low, interval.high, margin))
     allowed = "" if is_boolean else str(interval)
     texts = ", ".join(format_string(x) for x in (name, "" if unit == "1" else unit, doc, allowed))
     return f"{{{texts}, {numbers}, {flags}}}"

@@ -70,7 +70,7 @@ def parameters(law: HarmonicDriveSpring, names: Mapping[str, float]) -> dict[str
 def component(law: HarmonicDriveSpring, names: Mapping[str, float]) -> str:
     """Declaration of the component with parameters of the package's drive."""
     values = ", ".join(f"{name}={value!r}" for name, value in parameters(law, names).items())
-    return f"JointStiffness.Components.HarmonicDriveSpring drive({values}, stateSelect=StateSelect.default);"
+    return f"JointStiffness.Components.HarmonicDriveSpring drive({values});"
 
 
 def once(found: Any, *names: str) -> tuple[Array, ...]:

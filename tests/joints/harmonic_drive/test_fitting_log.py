@@ -547,6 +547,22 @@ def test_a_ripple_in_a_log_is_found_by_the_angle_of_the_joint(tmp_path, ratio):
     assert values["friction_coulomb"] == pytest.approx(0.116, rel=0.1)
 
 
+def test_the_deviation_of_the_rotor_inertia_widens_intervals_beside_a_ripple(tmp_path, monkeypatch):
+    """As without a ripple: the fit is repeated with the ripple, and its intervals are printed."""
+    log_columns = rippled_log(-100.0, friction_1=0.03, friction_1_phase=0.7)
+    log_columns["q_motor"] = -100.0 * log_columns["q"]
+    path = save_log(tmp_path / "log.csv", log_columns, "time", "q", "dq", "i", "q_motor")
+    monkeypatch.setattr(log, "_fit_stiffness", lambda *arguments: (None, []))
+    names, widths = ("friction_coulomb", "friction_viscous", "load_loss"), []
+    for deviation in (1e-9, 0.3):
+        monkeypatch.setattr(log, "_fit_rotor_inertia", lambda *_, d=deviation: (ROTOR, d * ROTOR))
+        found = log.fit([path], size_32_file(), names, torque_constant=CONSTANT)
+        assert "friction_1" in found.facts
+        low, high = found.confidence_intervals["load_loss"]
+        widths.append(math.log(high / low))
+    assert widths[1] > 1.3 * widths[0]
+
+
 def test_no_ripple_is_found_where_there_is_none(tmp_path):
     path = save_log(tmp_path / "log.csv", rippled_log(-100.0), "time", "q", "dq", "i")
     found = log.fit([path], size_32_file(), torque_constant=CONSTANT)

@@ -164,10 +164,10 @@ static inline void note(Log *log, int status, const char *category, const char *
     CHECK(line[0] != '\0', log);
     for (const char *c = line; *c; c++)
         CHECK((unsigned char)*c >= ' ', log); /* one line, no control characters */
-    if (status == ERROR) {
+    if (status == ERROR || status == DISCARD) {
         CHECK(strcmp(category, "logStatusError") == 0, log);
         log->errors++;
-    } else if (status == WARNING || status == DISCARD) {
+    } else if (status == WARNING) {
         CHECK(strcmp(category, "logStatusWarning") == 0, log);
         log->warnings++;
     } else {

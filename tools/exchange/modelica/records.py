@@ -210,6 +210,7 @@ class ModelicaComponent:
     flanges        : names of its flanges
     system_parameters         : parameter file -> {parameter of the component: text} that a system sets in
                                 addition to the record
+    system_parameter_units    : {parameter of `system_parameters`: unit}
     fixed_input_parameters    : {input of the joint: parameter of the component}, for inputs that a system may
                                 hold constant
     component_only_parameters : parameters of the joint that do not change the table of the record
@@ -224,6 +225,7 @@ class ModelicaComponent:
     package_note: str = ""
     flanges: Sequence[str] = ("flange_a", "flange_b")
     system_parameters: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
+    system_parameter_units: Mapping[str, str] = field(default_factory=dict)
     fixed_input_parameters: Mapping[str, str] = field(default_factory=dict)
     component_only_parameters: Sequence[str] = ()
 

@@ -20,6 +20,8 @@ _MECHANICS_PACKAGE = "Modelica.Mechanics"
 _COMPONENT_PACKAGE = "JointStiffness.Components"
 _NOMINAL_STATE_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
+_WEIGHT_PARAMETERS = ("m", "l")
+"""Parameters of a rotational inertia that are those of a component `LinkWeight`."""
 _COLUMN_SPACING, _ROW_SPACING = 30, 30
 """Distances on the diagram: between columns of components, and between rows."""
 
@@ -177,16 +179,23 @@ DeclareFunction = Callable[..., None]
 ConnectFunction = Callable[[str, str], None]
 
 
+def _has_weight(inertia: Part) -> bool:
+    """Whether a rotational inertia has a weight beside its axis."""
+    return all(inertia.values.get(name, 0.0) for name in _WEIGHT_PARAMETERS)
+
+
 def _declare_inertia(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
     declare(
         f"{_MECHANICS_PACKAGE}.Rotational.Components.Inertia",
         system_component.name,
         [*_format_numbers(system_component.values, ("J",)), *_format_state_modifications("phi", "w")],
     )
-    weight = {key: system_component.values.get(key, 0.0) for key in ("m", "l")}
-    if all(weight.values()):
-        name = f"{system_component.name}_weight"
-        declare(f"{_COMPONENT_PACKAGE}.LinkWeight", name, _format_numbers(weight), system_component.name)
+    if _has_weight(system_component):
+        name, weight = (
+            f"{system_component.name}_weight",
+            _format_numbers(system_component.values, _WEIGHT_PARAMETERS),
+        )
+        declare(f"{_COMPONENT_PACKAGE}.LinkWeight", name, weight, system_component.name)
         connect(f"{system_component.name}.flange_b", f"{name}.flange")
 
 
@@ -250,9 +259,32 @@ def _diagram_positions(
 def _format_value_sources(system: System) -> str:
     """HTML table of the parameters of all components of a system, with value, unit and source."""
     rows = "".join(
-        f"<tr><td><code>{part.name}.{name}</code></td><td>{format_number(value)} "
-        f"{part.units[name].replace('.', ' ')}</td><td>{escape_html(part.sources[name])}</td></tr>\n"
+        f"<tr><td><code>{path}</code></td><td>{value}</td><td>{escape_html(source)}</td></tr>\n"
         for part in system.components.values()
-        for name, value in part.values.items()
+        for path, (value, source) in _find_value_sources(part).items()
     )
     return f"<table>\n<tr><th>number</th><th>value</th><th>source</th></tr>\n{rows}</table>"
+
+
+def _find_value_sources(part: Part) -> dict[str, tuple[str, str]]:
+    """{parameter as the Modelica model names it: (value with unit, source)} of a component."""
+    rows: dict[str, tuple[str, str]] = {}
+    for name, value in part.values.items():
+        text, source = f"{format_number(value)} {part.units[name].replace('.', ' ')}", part.sources[name]
+        if part.parameter_file:
+            component = _modelica_component(part)
+            if name in component.component_only_parameters:
+                for parameter, number in component.system_parameters(part.parameter_file).items():
+                    computed = f"{number} {component.system_parameter_units[parameter].replace('.', ' ')}"
+                    rows[f"{part.name}.{parameter}"] = (computed, f"from {name} = {text}: {source}")
+                continue
+            in_record = name in KINDS[part.joint_kind].working_point
+            path = f"data.{name}" if in_record else component.fixed_input_parameters.get(name, name)
+            rows[f"{part.name}.{path}"] = (text, source)
+        elif part.model_name == "RotationalInertia" and name in _WEIGHT_PARAMETERS:
+            if _has_weight(part):
+                rows[f"{part.name}_weight.{name}"] = (text, source)
+        else:
+            path = f"p[{name[1:]}]" if name[1:].isdigit() else name
+            rows[f"{part.name}.{path}"] = (text, source)
+    return rows

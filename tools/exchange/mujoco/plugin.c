@@ -134,7 +134,7 @@ static int count_unused_history(Coupling *c, const mjModel *m, int instance)
         return 0;
     c->instance->state.values[FIRST_INPUT + PHI1] = 1e-6;
     c->instance->outputs_outdated = true;
-    if (instance_evaluate(c->instance) != OK)
+    if (instance_evaluate(c->instance, ERROR) != OK)
         return 0;
     while (n < N_HISTORY && c->instance->trial_history[n] == 0.0)
         n++;
@@ -205,7 +205,7 @@ static const double *evaluate(const mjModel *m, mjData *d, int instance, bool ac
     read_path(c, state);
     accept |= !fmu->state.path.has_accepted_inputs;
 #endif
-    if ((accept ? instance_accept_inputs(fmu) : instance_evaluate(fmu)) != OK)
+    if ((accept ? instance_accept_inputs(fmu) : instance_evaluate(fmu, ERROR)) != OK)
         mju_error("%s: %s", fmu->name, c->error_message);
 #if N_HISTORY
     if (accept)

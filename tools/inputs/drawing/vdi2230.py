@@ -4,6 +4,7 @@ Valid for concentrically clamped joints with one bolt. Lengths in m, moduli and 
 in m/N.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from . import tables
-from .tables import Thread, Washer, property_class_strength, read_threads
+from .tables import Thread, Washer, find_thread, property_class_strength, read_threads
 
 E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
@@ -238,13 +239,27 @@ STRONGEST_PROPERTY_CLASS = "12.9"
 """The strongest property class of ISO 898-1."""
 
 
-def proof_load(hole_diameter: float) -> tuple[float, str] | None:
-    """Proof load [N] of the largest bolt that passes a hole [m], and its description.
+def describe_stated_bolt(thread_name: str, property_class: str) -> str:
+    """Part of a source that states the bolt; `proof_load` reads it."""
+    return f"bolts {thread_name}-{property_class} as stated"
 
-    None if no bolt of the tables fits the hole.
+
+def proof_load(hole_diameter: float, preload_source: str = "") -> tuple[float, str] | None:
+    """Proof load [N] of the bolts that the source of the preload states, and its description.
+
+    Without a stated bolt: that of the largest bolt, of the strongest class, that passes a hole [m]. None if
+    no bolt of the tables fits the hole.
     """
-    fitting = [thread for thread in read_threads().values() if thread.nominal_diameter < hole_diameter]
-    largest = max(read_threads().values(), key=lambda thread: thread.nominal_diameter)
+    threads = read_threads()
+    stated = re.search(
+        describe_stated_bolt(r"(M[\d.]+)(?:x([\d.]+))?", r"(8\.8|10\.9|12\.9)"), preload_source
+    )
+    if stated and stated[1] in threads:
+        bolt = find_thread(stated[1], float(stated[2]) * 1e-3 if stated[2] else None)
+        load = property_class_strength(stated[3], "proof", bolt) * stress_area(bolt)
+        return load, f"the proof load of {bolt.name}-{stated[3]} (ISO 898-1)"
+    fitting = [thread for thread in threads.values() if thread.nominal_diameter < hole_diameter]
+    largest = max(threads.values(), key=lambda thread: thread.nominal_diameter)
     if not fitting or hole_diameter > 1.2 * largest.nominal_diameter:
         return None
     bolt = max(fitting, key=lambda thread: thread.nominal_diameter)

@@ -76,13 +76,14 @@ def _peak_pressure(joint: AnyBoltedJoint, preload: float) -> float:
 
 def _default_preload(joint: AnyBoltedJoint) -> float:
     """Typical preload [N] of a bolt: 30 kN (M16), or 70 % of the proof load of a smaller bolt."""
-    borne = _proof_load(joint)
+    hole = PlaneLayout.from_joint(joint).hole_diameter
+    borne = proof_load(hole) if hole else None
     return 30e3 if borne is None else min(30e3, 0.7 * borne[0])
 
 
-def _proof_load(joint: AnyBoltedJoint) -> tuple[float, str] | None:
-    hole = PlaneLayout.from_joint(joint).hole_diameter
-    return proof_load(hole) if hole else None
+def _proof_load(file: ParameterFile) -> tuple[float, str] | None:
+    hole = PlaneLayout.from_joint(file.values).hole_diameter
+    return proof_load(hole, file.sources.get("inputs.preload", "")) if hole else None
 
 
 NOMINAL_PRESSURE = NominalPressureModel(

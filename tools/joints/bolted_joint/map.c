@@ -14,7 +14,7 @@ __attribute__((visibility("default"))) int lab_map_size(void)
 __attribute__((visibility("default"))) const double *lab_map(Instance *m)
 {
     static double map[MAX_POINTS][4];
-    if (instance_evaluate(m) != OK)
+    if (instance_evaluate(m, ERROR) != OK)
         return NULL;
     const double *inputs = m->state.values + FIRST_INPUT;
     const Contact *contact = &m->joint->model.contact;

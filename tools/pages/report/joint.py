@@ -332,7 +332,7 @@ def _describe_range(load_history: LoadHistory) -> str:
     """Describe the range of loads: the end of the law, or the load capacity of the parts if it is less."""
     ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
     nominal = find_nominal_pressure_model(KINDS[load_history.file.joint])
-    capacity = nominal.load_capacity(load_history.file.values) if nominal else None
+    capacity = nominal.load_capacity(load_history.file) if nominal else None
     if nominal and capacity and nominal.load_variable == ramped.name:
         largest, name = capacity
         if load_history.law_limit is None or largest < load_history.law_limit[0]:

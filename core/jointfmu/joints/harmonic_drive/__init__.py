@@ -1,9 +1,22 @@
 """Harmonic drive: torsional stiffness, hysteresis, friction, lost motion and kinematic error."""
 
-from ..kind import JointKind, RoughSurface
+from ..kind import FlangeRating, JointKind, RoughSurface
+from .drive import DriveParameters
+from .friction import friction_limits
 from .law import HarmonicDriveParameters, RoughHarmonicDriveParameters
 from .prescribed_midline import CatalogueDriveParameters, TableDriveParameters
 from .variables import MODELS
+
+
+def _find_flange_ratings(drive: DriveParameters) -> dict[str, FlangeRating]:
+    """Rated values at the wave generator (flange1) and at the output (flange2)."""
+    ratio = abs(drive.ratio)
+    friction = float(max(friction_limits(drive, 0.0, 0.0)))
+    return {
+        "flange1": FlangeRating(drive.rated_torque / ratio, ratio, friction),
+        "flange2": FlangeRating(drive.rated_torque, 1.0, 0.0),
+    }
+
 
 KIND = JointKind(
     name="harmonic_drive",
@@ -19,4 +32,5 @@ KIND = JointKind(
     laws_without_interface=("catalogue", "table"),
     models=MODELS,
     surfaces=(RoughSurface("surface", is_areal=True),),
+    find_flange_ratings=_find_flange_ratings,
 )

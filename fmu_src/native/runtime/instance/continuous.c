@@ -84,11 +84,12 @@ Status instance_get_continuous_states(Instance *m, const char *function, double 
 
 Status instance_get_state_derivatives(Instance *m, const char *function, double x[], size_t n)
 {
-    if (!check_states_array(m, function, READABLE, x, n) || (n && instance_evaluate(m) != OK))
+    if (!check_states_array(m, function, READABLE, x, n))
         return ERROR;
-    if (n)
+    const Status status = n ? instance_evaluate(m, trial_refusal(m, false)) : OK;
+    if (n && status == OK)
         memcpy(x, m->state.values + FIRST_OUTPUT + N_BODIES, n * sizeof *x);
-    return OK;
+    return status;
 }
 
 Status instance_get_nominals(Instance *m, const char *function, unsigned allowed_modes, double x[], size_t n)

@@ -5,10 +5,10 @@
 
 /* Errors in values: the message has name, value and allowed values. */
 
-static Status log_refusal(const Instance *m, const Text *reason)
+static Status log_refusal(const Instance *m, Status refusal, const Text *reason)
 {
-    instance_log(m, ERROR, LOG_ERRORS, reason->line);
-    return ERROR;
+    instance_log(m, refusal, LOG_ERRORS, reason->line);
+    return refusal;
 }
 
 /* Whether a variable has an allowed value. */
@@ -57,7 +57,7 @@ static bool update_tables(Instance *m)
     if (are_allowed)
         m->tables_are_valid = joint_tabulate(m->joint, parameters, &reason);
     if (!are_allowed || !m->tables_are_valid)
-        return log_refusal(m, &reason) == OK;
+        return log_refusal(m, ERROR, &reason) == OK;
     memcpy(m->tabulated_parameters, parameters, sizeof m->tabulated_parameters);
     m->parameters_changed = false;
     if (had_tables)
@@ -67,12 +67,12 @@ static bool update_tables(Instance *m)
 
 /* Outputs */
 
-static Status log_input_refusal(const Instance *m, size_t i)
+static Status log_input_refusal(const Instance *m, Status refusal, size_t i)
 {
     Text reason;
     text_clear(&reason);
     append_outside_interval(&reason, &variables[FIRST_INPUT + i], m->state.values[FIRST_INPUT + i], 6);
-    return log_refusal(m, &reason);
+    return log_refusal(m, refusal, &reason);
 }
 
 /* Largest number of inputs in a refusal: a system has hundreds, and the reason must fit. */
@@ -87,7 +87,7 @@ static size_t magnitude_rank(const double *inputs, size_t i)
     return rank;
 }
 
-static Status log_output_refusal(const Instance *m)
+static Status log_output_refusal(const Instance *m, Status refusal)
 {
     Text reason;
     text_clear(&reason);
@@ -108,14 +108,50 @@ static Status log_output_refusal(const Instance *m)
     if (omitted)
         text_append_format(&reason, " and %zu more", omitted);
     text_append_format(&reason, ": too large, %s is not finite", variables[FIRST_OUTPUT + first_infinite].name);
-    return log_refusal(m, &reason);
+    return log_refusal(m, refusal, &reason);
+}
+
+/* Whether the host has set an input to 0 whose start value is not 0. */
+static bool has_lost_start_value(const Instance *m, size_t i)
+{
+    return m->state.values[i] == 0.0 && data.start[i] != 0.0;
+}
+
+void instance_warn_of_lost_start_values(Instance *m)
+{
+    Text text;
+    text_clear(&text);
+    for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
+        if (has_lost_start_value(m, i)) {
+            text_append(&text, text.length ? ", " : "");
+            text_append_quantity(&text, variables[i].name, 0.0, 6, variables[i].unit);
+            text_append_quantity(&text, " in place of its start value", data.start[i], 6, variables[i].unit);
+        }
+    if (text.length == 0 || (m->state.reported_warnings & LOST_START_VALUE))
+        return;
+    text_append(&text, ": some tools set all inputs to 0; connect the input, or set its value");
+    instance_log(m, WARNING, LOG_WARNINGS, text.line);
+    m->state.reported_warnings |= LOST_START_VALUE;
+}
+
+/* Those of the warnings that would not exist with the start values of inputs that the host has set to 0. */
+static unsigned find_warnings_of_lost_start_values(Instance *m, unsigned warning_bits)
+{
+    double inputs[N_INPUTS + 1]; /* C has no empty arrays */
+    for (size_t i = 0; i < N_INPUTS; i++)
+        inputs[i] = has_lost_start_value(m, FIRST_INPUT + i) ? data.start[FIRST_INPUT + i]
+                                                             : m->state.values[FIRST_INPUT + i];
+    return warning_bits & ~joint_find_warnings(m->joint, inputs, m->state.values + FIRST_OUTPUT);
 }
 
 static void log_warnings(Instance *m, unsigned warning_bits)
 {
     const double *values = m->state.values;
+    const unsigned lost_bits = find_warnings_of_lost_start_values(m, warning_bits);
+    if (lost_bits)
+        instance_warn_of_lost_start_values(m);
     for (unsigned bit = 1; bit && bit <= warning_bits; bit <<= 1)
-        if (warning_bits & bit) {
+        if (warning_bits & ~lost_bits & bit) {
             Text text = {0};
             joint_describe_warning(m->joint, values + FIRST_INPUT, values + FIRST_OUTPUT, bit, &text);
             instance_log(m, WARNING, LOG_WARNINGS, text.line);
@@ -123,7 +159,18 @@ static void log_warnings(Instance *m, unsigned warning_bits)
     m->state.reported_warnings |= warning_bits;
 }
 
-Status instance_evaluate(Instance *m)
+/* Round inputs up to their minimum if they are below it by at most the margin: solvers vary inputs a little to form
+ * derivatives, and their results have round-off. */
+static void round_inputs(double inputs[])
+{
+    for (size_t i = 0; i < N_INPUTS; i++) {
+        const Variable *v = &variables[FIRST_INPUT + i];
+        if (inputs[i] < v->low && inputs[i] >= v->low - v->margin)
+            inputs[i] = v->low;
+    }
+}
+
+Status instance_evaluate(Instance *m, Status refusal)
 {
     if (!m->outputs_outdated)
         return OK;
@@ -131,18 +178,19 @@ Status instance_evaluate(Instance *m)
         return ERROR;
     const double *inputs = m->state.values + FIRST_INPUT;
     double *outputs = m->state.values + FIRST_OUTPUT;
+    round_inputs(m->state.values + FIRST_INPUT);
     for (size_t i = 0; i < N_INPUTS; i++)
         if (!is_inside(&variables[FIRST_INPUT + i], inputs[i]))
-            return log_input_refusal(m, i);
+            return log_input_refusal(m, refusal, i);
     Text reason;
     text_clear(&reason);
     if (!joint_evaluate(m->joint, inputs, path_start_history(m), m->trial_history, outputs, &reason))
-        return log_refusal(m, &reason);
+        return log_refusal(m, refusal, &reason);
     bool all_finite = true;
     for (size_t i = 0; i < N_OUTPUTS; i++)
         all_finite &= fabs(outputs[i]) < INFINITY;
     if (!all_finite)
-        return log_output_refusal(m);
+        return log_output_refusal(m, refusal);
     const unsigned warning_bits = joint_find_warnings(m->joint, inputs, outputs) & ~m->state.reported_warnings;
     if (warning_bits)
         log_warnings(m, warning_bits);

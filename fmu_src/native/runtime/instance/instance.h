@@ -158,8 +158,21 @@ Status instance_adjoint_derivative(Instance *m, const char *function, const uint
 
 /* Outputs, tables and the accepted path: evaluate.c */
 
-/* Evaluate tables and outputs if they are outdated; logs an error and returns ERROR if the joint refuses. */
-Status instance_evaluate(Instance *m);
+/* Evaluate tables and outputs if they are outdated. Refused parameters are logged and give ERROR, refused inputs are
+ * logged with the status `refusal`, which is returned. */
+Status instance_evaluate(Instance *m, Status refusal);
+
+/* Warn once of inputs that the host has set to 0, if their start values are not 0. */
+void instance_warn_of_lost_start_values(Instance *m);
+
+/* Status of a call that evaluates the present inputs without accepting them, if they are refused: DISCARD, where the
+ * standard has it. A solver may then try other inputs. FMI 2 has it in model exchange, except for derivatives of
+ * outputs. */
+static inline Status trial_refusal(const Instance *m, bool is_derivative)
+{
+    const bool has_discard = m->fmi_version == 3 || (m->state.interface_type == MODEL_EXCHANGE && !is_derivative);
+    return has_discard ? DISCARD : ERROR;
+}
 
 /* Joints with history variables (N_HISTORY > 0): their outputs depend on the path of the inputs.
  *

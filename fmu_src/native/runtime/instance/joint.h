@@ -35,6 +35,9 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result);
 
+/* Bit of a warning that is no validity limit: inputs at 0 in place of their start values. */
+#define LOST_START_VALUE (1u << 31)
+
 /* Validity limits that the last evaluation exceeds, one bit each; 0: none. */
 unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *outputs);
 

@@ -5,7 +5,7 @@
 
 Status instance_accept_inputs(Instance *m)
 {
-    if (instance_evaluate(m) != OK)
+    if (instance_evaluate(m, ERROR) != OK)
         return ERROR;
     path_accept_inputs(m);
     return OK;
@@ -15,6 +15,7 @@ Status instance_initialize(Instance *m, const char *function)
 {
     if (!instance_check_mode(m, function, BOTH_INTERFACES | INITIALIZATION) || instance_accept_inputs(m) != OK)
         return ERROR;
+    instance_warn_of_lost_start_values(m);
     instance_set_mode(m, m->state.interface_type == MODEL_EXCHANGE ? EVENT : STEP);
     return OK;
 }
@@ -64,7 +65,7 @@ static Status advance(Instance *m, double size, double end, bool inputs_move)
     for (size_t i = 0; i < N_INPUTS && inputs_move; i++)
         state->values[FIRST_INPUT + i] += state->input_derivatives[i] * size;
     m->outputs_outdated |= IS_TIME_DEPENDENT || inputs_move;
-    if (instance_evaluate(m) != OK)
+    if (instance_evaluate(m, ERROR) != OK)
         return ERROR;
     if (inputs_move)
         memset(state->input_derivatives, 0, sizeof state->input_derivatives);
@@ -105,5 +106,7 @@ Status instance_do_step(Instance *m, const char *function, double time, double s
         return ERROR;
     }
     path_accept_inputs(m);
+    if (time <= state->start_time)
+        instance_warn_of_lost_start_values(m); /* set to 0 between initialization and the first step */
     return state->last_step_status = OK;
 }

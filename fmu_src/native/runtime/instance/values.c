@@ -140,41 +140,39 @@ Status instance_set_input_derivatives(Instance *m, const char *function, const u
 
 /* Get */
 
-static bool check_get(Instance *m, const char *function, const uint32_t refs[], size_t n, const void *values,
-                      bool is_boolean)
+static Status check_get(Instance *m, const char *function, const uint32_t refs[], size_t n, const void *values,
+                        bool is_boolean)
 {
     if (!instance_check_mode(m, function, BOTH_INTERFACES | READABLE) || !check_arrays(m, function, n, refs, values))
-        return false;
+        return ERROR;
     bool has_output = false;
     for (size_t i = 0; i < n; i++) {
         if (!check_reference(m, function, refs[i]) || !check_type(m, function, refs[i], is_boolean))
-            return false;
+            return ERROR;
         has_output |= is_in_range(refs[i], FIRST_OUTPUT, N_OUTPUTS);
     }
-    return !has_output || instance_evaluate(m) == OK;
+    return has_output ? instance_evaluate(m, trial_refusal(m, false)) : OK;
 }
 
 Status instance_get_values(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[])
 {
     const bool is_fast_path = m && !m->outputs_outdated && (m->state.mode & READABLE) && refs && values &&
                               all_in_range(refs, n, FIRST_OUTPUT, N_OUTPUTS);
-    if (!is_fast_path && !check_get(m, function, refs, n, values, false))
-        return ERROR;
-    for (size_t i = 0; i < n; i++)
+    const Status status = is_fast_path ? OK : check_get(m, function, refs, n, values, false);
+    for (size_t i = 0; i < n && status == OK; i++)
         values[i] = m->state.values[refs[i]];
-    return OK;
+    return status;
 }
 
 Status instance_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n, void *values)
 {
-    if (!check_get(m, function, refs, n, values, true))
-        return ERROR;
-    for (size_t i = 0; i < n; i++)
+    const Status status = check_get(m, function, refs, n, values, true);
+    for (size_t i = 0; i < n && status == OK; i++)
         if (m->fmi_version == 2)
             ((int *)values)[i] = m->state.values[refs[i]] != 0.0;
         else
             ((bool *)values)[i] = m->state.values[refs[i]] != 0.0;
-    return OK;
+    return status;
 }
 
 Status instance_check_empty(const Instance *m, const char *function, unsigned allowed_modes, const char *name, size_t n)
@@ -199,28 +197,33 @@ static bool check_finite(const Instance *m, const char *function, const uint32_t
 
 /* Check the arguments of a derivative and evaluate the outputs. The unknowns must be outputs, the knowns inputs or
  * states; the seed has one finite number for each of the n `seed_variables`. */
-static bool check_derivative_arguments(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
-                                       const uint32_t knowns[], size_t n_knowns, const uint32_t seed_variables[],
-                                       size_t n, const double seed[], const double result[])
+static Status check_derivative_arguments(Instance *m, const char *function, const uint32_t unknowns[],
+                                         size_t n_unknowns, const uint32_t knowns[], size_t n_knowns,
+                                         const uint32_t seed_variables[], size_t n, const double seed[],
+                                         const double result[])
 {
     if (!instance_check_mode(m, function, BOTH_INTERFACES | READABLE) ||
         (n_unknowns && !instance_check_pointer(m, function, "the array of unknowns", unknowns)) ||
         (n_knowns && !instance_check_pointer(m, function, "the array of knowns", knowns)))
-        return false;
+        return ERROR;
     for (size_t i = 0; i < n_unknowns; i++)
         if (!check_reference(m, function, unknowns[i]) ||
             !(is_in_range(unknowns[i], FIRST_OUTPUT, N_OUTPUTS) ||
               log_variable_error(m, function, unknowns[i], " is among the unknowns; expected outputs")))
-            return false;
+            return ERROR;
     for (size_t i = 0; i < n_knowns; i++)
         if (!check_reference(m, function, knowns[i]) ||
             !(is_in_range(knowns[i], FIRST_INPUT, N_INPUTS) || is_in_range(knowns[i], FIRST_OUTPUT, N_STATES) ||
               log_variable_error(m, function, knowns[i], " is among the knowns; expected inputs")))
-            return false;
+            return ERROR;
     const size_t n_results = n_unknowns + n_knowns - n;
-    return instance_evaluate(m) == OK && (n == 0 || instance_check_pointer(m, function, "the seed", seed)) &&
-           (n_results == 0 || instance_check_pointer(m, function, "the array of sensitivities", result)) &&
-           check_finite(m, function, seed_variables, n, seed);
+    const Status status = instance_evaluate(m, trial_refusal(m, true));
+    if (status != OK)
+        return status;
+    const bool is_valid = (n == 0 || instance_check_pointer(m, function, "the seed", seed)) &&
+                          (n_results == 0 || instance_check_pointer(m, function, "the array of sensitivities", result)) &&
+                          check_finite(m, function, seed_variables, n, seed);
+    return is_valid ? OK : ERROR;
 }
 
 /* Derivatives of all outputs along m->seed. */
@@ -233,9 +236,10 @@ static void update_sensitivity(Instance *m)
 Status instance_directional_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
                                        const uint32_t knowns[], size_t n_knowns, const double seed[], double result[])
 {
-    if (!check_derivative_arguments(m, function, unknowns, n_unknowns, knowns, n_knowns, knowns, n_knowns, seed,
-                                    result))
-        return ERROR;
+    const Status status = check_derivative_arguments(m, function, unknowns, n_unknowns, knowns, n_knowns, knowns,
+                                                     n_knowns, seed, result);
+    if (status != OK)
+        return status;
     memset(m->seed, 0, sizeof m->seed);
     for (size_t i = 0; i < n_knowns; i++)
         m->seed[knowns[i] - FIRST_INPUT] += seed[i];
@@ -248,9 +252,10 @@ Status instance_directional_derivative(Instance *m, const char *function, const 
 Status instance_adjoint_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
                                    const uint32_t knowns[], size_t n_knowns, const double seed[], double result[])
 {
-    if (!check_derivative_arguments(m, function, unknowns, n_unknowns, knowns, n_knowns, unknowns, n_unknowns, seed,
-                                    result))
-        return ERROR;
+    const Status status = check_derivative_arguments(m, function, unknowns, n_unknowns, knowns, n_knowns, unknowns,
+                                                     n_unknowns, seed, result);
+    if (status != OK)
+        return status;
     for (size_t j = 0; j < n_knowns; j++) {
         memset(m->seed, 0, sizeof m->seed);
         m->seed[knowns[j] - FIRST_INPUT] = 1.0;

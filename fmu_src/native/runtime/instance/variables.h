@@ -39,6 +39,7 @@ typedef struct {
     const char *doc;
     const char *interval;              /* allowed values as text, such as "(0, 1]" */
     double low, high;                  /* bounds of the allowed values */
+    double margin;                     /* of an input: at most this much below `low` counts as `low` */
     unsigned char low_open, high_open; /* 1: the bound itself is not allowed */
     unsigned char is_integer;          /* 1: only integers are allowed */
     unsigned char is_boolean;          /* 1: Boolean, 0 or 1 */

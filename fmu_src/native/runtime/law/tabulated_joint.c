@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-_Static_assert(N_VALIDITY_LIMITS <= 32, "joint_find_warnings has a bit for each");
+_Static_assert(N_VALIDITY_LIMITS <= 31, "joint_find_warnings has a bit for each, below LOST_START_VALUE");
 
 size_t joint_size(void)
 {

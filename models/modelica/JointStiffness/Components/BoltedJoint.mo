@@ -40,6 +40,7 @@ protected
   Real c "Approach from the tightened state [m]";
   Real v_c "Rate of c [m/s]";
   Real bend "Derivative of the normal stiffness [N/m2]";
+  Real F "Change of the normal force since tightening [N]";
   Real G "Normal force of the interface [N]";
   Real S[n] "Normal stiffness of the springs of a pair [N/m]";
   Real grow[n] "Derivative of S with respect to the approach [N/m2]";
@@ -68,7 +69,8 @@ equation
   c = -s_rel[3];
   v_c = -v_rel[3];
   bend = JointStiffness.Functions.bend(c, data.table);
-  G = data.tight + JointStiffness.Functions.load(c, data.table);
+  F = JointStiffness.Functions.load(c, data.table);
+  G = data.tight + F;
   for i in 1:n loop
     S[i] = noEvent(if c > h[i] then max(min(K_n, k[i + 1]) - k[i], 0) else 0);
     grow[i] = noEvent(if c > h[i] and c < h[i + 1] then bend else 0);
@@ -108,9 +110,9 @@ equation
   s_rel[2] = flange_y.s;
   s_rel[3] = flange_z.s;
   v_rel = der(s_rel);
-  K_n = JointStiffness.Functions.stiffness(-s_rel[3], data.table);
+  K_n = JointStiffness.Functions.stiffness(c, data.table);
   K_t = data.shear*K_n;
-  eta_n = JointStiffness.Functions.linear(-s_rel[3], data.eta_n);
+  eta_n = JointStiffness.Functions.linear(c, data.eta_n);
   // repeats mindlin.viscous_equivalent and spring.motion of the package; tests hold both together
   C_n = if damping and plastic_damping then eta_n*sqrt(mass*max(K_n, 0)) else 0;
   C_t = if damping then data.eta_t*sqrt(mass*max(K_t, 0)) else 0;
@@ -120,9 +122,7 @@ equation
   for j in 1:b loop
     pull[j] = noEvent(max(data.bolts/b*s_rel[3], -data.bolt_forces[j]));
   end for;
-  f[3] = JointStiffness.Functions.load(-s_rel[3], data.table)
-    + (if memory then 0 else data.shear*bend*square/(R*(1 + R)))
-    - sum(pull) - C_n*v_rel[3];
+  f[3] = F + (if memory then 0 else data.shear*bend*square/(R*(1 + R))) - sum(pull) - C_n*v_rel[3];
   flange_x.f = -f[1];
   flange_y.f = -f[2];
   flange_z.f = -f[3];
@@ -169,8 +169,8 @@ equation
 <li><b>Closing contact.</b> Below 4 kPa (default parameters) the law gives almost no stiffness; the curve continues smoothly to zero and departs from the law.</li>
 <li><b>Normal damping is off.</b> η<sub>n</sub> is the plastic work of first loading. A joint in service has been loaded before and does not dissipate this work again in each vibration; <code>plastic_damping</code> = true activates the paper's value.</li>
 <li><b>Trend.</b> An elastic boundary-element solution of rough surfaces finds a stiffness close to proportional to the pressure and hardly dependent on D. The fractal law has lower powers of the pressure, which depend on D.</li>
-<li><b>Range.</b> After separation only the stiffness of the bolts remains. Above the hardness the curve of the pressure continues with its last tangent. If a moment would need a negative bolt force, the contact opens there and a warning is logged.</li>
-<li><b>Not included:</b> slip (the tangential force is not limited to μP), hysteresis in the force, the compliance of the clamped parts, the flanges' bending. Damping is the viscous equivalent at the resonance of <code>mass</code>.</li>
+<li><b>Range.</b> After separation only the stiffness of the bolts remains. If the mean pressure exceeds the hardness, the curve continues with its last tangent. If a moment would need a negative bolt force, the contact opens there and a warning is logged.</li>
+<li><b>Not included:</b> rotation of side 2, the compliance of the clamped members, bending of the flanges, shear of the bolts, wear, increase of the friction with time at rest. Damping is the viscous equivalent at the resonance of <code>mass</code>.</li>
 </ul>
 <p>Y. Zhao, C. Yang, L. Cai, W. Shi, Y. Hong: <em>Stiffness and Damping Model of Bolted Joints with Uneven Surface Contact Pressure Distribution.</em> 2018.</p>
 </html>"));

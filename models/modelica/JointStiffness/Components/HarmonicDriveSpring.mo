@@ -54,7 +54,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Kinematic error"));
   parameter Boolean use_damping = true "false: the wind-up follows the torque without delay; no damping, hysteresis or friction"
     annotation (Evaluate=true, Dialog(tab="Advanced"));
-  parameter StateSelect stateSelect=if use_damping then StateSelect.prefer else StateSelect.default "Priority to use phi_rel and w_rel as states"
+  parameter StateSelect stateSelect=StateSelect.default "Priority to use phi_rel and w_rel as states"
     annotation (HideResult=true, Dialog(tab="Advanced"));
   Modelica.Mechanics.Rotational.Interfaces.Flange_a flange_a "Wave generator (motor)"
     annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
@@ -100,6 +100,7 @@ protected
   Boolean behind(start=false, fixed=true) "The wind-up decreases";
   Modelica.Units.SI.Torque stuck_h[n] "Torques of the hysteresis sliders if they stick since the last reversal";
   Modelica.Units.SI.Torque held_h[n] "Torques of the hysteresis sliders, within their friction limits";
+  Modelica.Units.SI.Torque begun_h[n] "Torques of the hysteresis sliders after a straight path from rest to the present wind-up";
   Modelica.Units.SI.Power heat_h[n] "Power dissipated by the hysteresis sliders";
   parameter Integer m=size(brakes, 1) "Number of sliders of the friction at the wave generator";
   parameter Real loss_back(unit="1")=if load_loss_back < 0 then load_loss else load_loss_back "Value of load_loss when the load drives the motor";
@@ -142,6 +143,7 @@ equation
   for i in 1:n loop
     stuck_h[i] = q_h[i] + K_h[i]*(phi_rel - phi_h);
     held_h[i] = noEvent(min(max(stuck_h[i], -M_h[i]), M_h[i]));
+    begun_h[i] = noEvent(min(max(K_h[i]*phi_rel, -M_h[i]), M_h[i]));
     heat_h[i] = noEvent(if abs(stuck_h[i]) > M_h[i] then M_h[i]*abs(w_rel) else 0);
   end for;
   ahead = (if hysteresis_friction > 0 then w_rel else 0) > still;
@@ -151,7 +153,7 @@ equation
     phi_h = phi_rel;
   end when;
   tau_h = if use_damping then sum(held_h) else 0;
-  tau_begun = tau_c + d*w_rel + sum(JointStiffness.Functions.limited(K_h*phi_rel, M_h));
+  tau_begun = tau_c + d*w_rel + sum(begun_h);
   if not useHeatPort then
     temperature = T;
   end if;

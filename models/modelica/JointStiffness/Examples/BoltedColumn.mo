@@ -36,8 +36,8 @@ equation
 <tr><td><code>load.pulse_rise</code></td><td>5e-05 s</td><td>a tenth of the period, and of its fall</td></tr>
 <tr><td><code>load.pulse_hold</code></td><td>0.00015 s</td><td>with rise and fall half of the period of 0.5 ms</td></tr>
 <tr><td><code>column.m</code></td><td>100 kg</td><td>mass of the joint's parameter file</td></tr>
-<tr><td><code>joint.preload</code></td><td>15000 N</td><td>Zhao 2018, Table 3: 15 kN per bolt</td></tr>
-<tr><td><code>joint.moment</code></td><td>0 N m</td><td>Zhao 2018, Table 3: no moment</td></tr>
+<tr><td><code>joint.data.preload</code></td><td>15000 N</td><td>Zhao 2018, Table 3: 15 kN per bolt</td></tr>
+<tr><td><code>joint.data.moment</code></td><td>0 N m</td><td>Zhao 2018, Table 3: no moment</td></tr>
 </table>
 </html>"));
 end BoltedColumn;

@@ -8,7 +8,7 @@ model RobotJoint "Robot joint with a harmonic drive"
     annotation (Placement(transformation(extent={{-60,70},{-40,90}})));
   Modelica.Mechanics.Rotational.Components.Inertia motor(J=1e-05, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{-30,70},{-10,90}})));
-  JointStiffness.Components.HarmonicDriveSpring drive(data=JointStiffness.Data.CD_14_100_of_Hu_2023(), hysteresis_friction=0.3087866035, hysteresis_stiffness=2058.692157, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring drive(data=JointStiffness.Data.CD_14_100_of_Hu_2023(), hysteresis_friction=0.3087866035, hysteresis_stiffness=2058.692157)
     annotation (Placement(transformation(extent={{30,70},{50,90}})));
   Modelica.Mechanics.Rotational.Components.Inertia link(J=0.05, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{90,70},{110,90}})));
@@ -39,10 +39,11 @@ equation
 <tr><td><code>load.pulse_rise</code></td><td>0.002 s</td><td>an eighth of the joint's period, and of its fall</td></tr>
 <tr><td><code>load.pulse_hold</code></td><td>0.006 s</td><td>with rise and fall half of the joint's period</td></tr>
 <tr><td><code>motor.J</code></td><td>1e-05 kg m2</td><td>rotor of a small servo motor and the wave generator; 0.1 kg m2 at the output</td></tr>
-<tr><td><code>drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>drive.hysteresis_friction</code></td><td>0.3087866035 N m</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>drive.hysteresis_stiffness</code></td><td>2058.692157 N m/rad</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>link.J</code></td><td>0.05 kg m2</td><td>m l^2 and 0.01 kg m2 of its own; the inertia behind the drive's damping d</td></tr>
-<tr><td><code>link.m</code></td><td>1 kg</td><td>a light forearm; 1.96 N m of weight at 90 deg, below the rated 5 N m</td></tr>
-<tr><td><code>link.l</code></td><td>0.2 m</td><td>from the axis to the centre of mass</td></tr>
+<tr><td><code>link_weight.m</code></td><td>1 kg</td><td>a light forearm; 1.96 N m of weight at 90 deg, below the rated 5 N m</td></tr>
+<tr><td><code>link_weight.l</code></td><td>0.2 m</td><td>from the axis to the centre of mass</td></tr>
 </table>
 </html>"));
 end RobotJoint;

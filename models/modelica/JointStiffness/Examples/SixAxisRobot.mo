@@ -502,7 +502,7 @@ model SixAxisRobot "Robot with six axes"
 
   JointStiffness.Components.AngleProfile base_motor(start=0.1, duration=1, height=-122.2)
     annotation (Placement(transformation(extent={{-90,70},{-70,90}})));
-  JointStiffness.Components.HarmonicDriveSpring base_drive(data=Base_driveData(), hysteresis_friction=9.815204504, hysteresis_stiffness=67000, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring base_drive(data=Base_driveData(), hysteresis_friction=9.815204504, hysteresis_stiffness=67000)
     annotation (Placement(transformation(extent={{-30,70},{-10,90}})));
   Modelica.Mechanics.Rotational.Components.Inertia base_link(J=7.40718819165282, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{30,70},{50,90}})));
@@ -512,7 +512,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{120,70},{140,90}})));
   JointStiffness.Components.AngleProfile shoulder_motor(start=0.1, duration=1, height=-87.27)
     annotation (Placement(transformation(extent={{-90,40},{-70,60}})));
-  JointStiffness.Components.HarmonicDriveSpring shoulder_drive(data=Shoulder_driveData(), hysteresis_friction=18.99504381, hysteresis_stiffness=130000, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring shoulder_drive(data=Shoulder_driveData(), hysteresis_friction=18.99504381, hysteresis_stiffness=130000)
     annotation (Placement(transformation(extent={{-30,40},{-10,60}})));
   Modelica.Mechanics.Rotational.Components.Inertia shoulder_link(J=8.14835487753431, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{30,40},{50,60}})));
@@ -522,7 +522,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{120,40},{140,60}})));
   JointStiffness.Components.AngleProfile elbow_motor(start=0.1, duration=1, height=-104.7)
     annotation (Placement(transformation(extent={{-90,10},{-70,30}})));
-  JointStiffness.Components.HarmonicDriveSpring elbow_drive(data=Elbow_driveData(), hysteresis_friction=4.525004676, hysteresis_stiffness=31000, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring elbow_drive(data=Elbow_driveData(), hysteresis_friction=4.525004676, hysteresis_stiffness=31000)
     annotation (Placement(transformation(extent={{-30,10},{-10,30}})));
   Modelica.Mechanics.Rotational.Components.Inertia elbow_link(J=2.23554092189438, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{30,10},{50,30}})));
@@ -532,7 +532,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{120,10},{140,30}})));
   JointStiffness.Components.AngleProfile forearm_motor(start=0.1, duration=1, height=78.54)
     annotation (Placement(transformation(extent={{-90,-20},{-70,0}})));
-  JointStiffness.Components.HarmonicDriveSpring forearm_drive(data=Forearm_driveData(), hysteresis_friction=2.32769437, hysteresis_stiffness=16000, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring forearm_drive(data=Forearm_driveData(), hysteresis_friction=2.32769437, hysteresis_stiffness=16000)
     annotation (Placement(transformation(extent={{-30,-20},{-10,0}})));
   Modelica.Mechanics.Rotational.Components.Inertia forearm_link(J=0.0697886093001334, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{30,-20},{50,0}})));
@@ -542,7 +542,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{120,-20},{140,0}})));
   JointStiffness.Components.AngleProfile wrist_motor(start=0.1, duration=1, height=-69.81)
     annotation (Placement(transformation(extent={{-90,-50},{-70,-30}})));
-  JointStiffness.Components.HarmonicDriveSpring wrist_drive(data=Wrist_driveData(), hysteresis_friction=1.453788876, hysteresis_stiffness=10000, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring wrist_drive(data=Wrist_driveData(), hysteresis_friction=1.453788876, hysteresis_stiffness=10000)
     annotation (Placement(transformation(extent={{-30,-50},{-10,-30}})));
   Modelica.Mechanics.Rotational.Components.Inertia wrist_link(J=0.15, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{30,-50},{50,-30}})));
@@ -552,7 +552,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{120,-50},{140,-30}})));
   JointStiffness.Components.AngleProfile hand_motor(start=0.1, duration=1, height=-157.1)
     annotation (Placement(transformation(extent={{-90,-80},{-70,-60}})));
-  JointStiffness.Components.HarmonicDriveSpring hand_drive(data=Hand_driveData(), hysteresis_friction=0.6925001349, hysteresis_stiffness=4700, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring hand_drive(data=Hand_driveData(), hysteresis_friction=0.6925001349, hysteresis_stiffness=4700)
     annotation (Placement(transformation(extent={{-30,-80},{-10,-60}})));
   Modelica.Mechanics.Rotational.Components.Inertia hand_link(J=0.0032, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{30,-80},{50,-60}})));
@@ -619,164 +619,158 @@ equation
 <tr><td><code>base_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_motor.height</code></td><td>-122.2 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_drive.d</code></td><td>28 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>base_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>base_drive.hysteresis_friction</code></td><td>9.815204504 N m</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>base_drive.hysteresis_stiffness</code></td><td>67000 N m/rad</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>base_link.J</code></td><td>7.40718819165282 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_load.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_load.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p1</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p2</code></td><td>33.41272944 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p3</code></td><td>53.77335739 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p4</code></td><td>63.27751978 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p5</code></td><td>44.46427224 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p6</code></td><td>144.73957609 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p7</code></td><td>-282.36446663 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p8</code></td><td>748.13069055 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p9</code></td><td>-1502.38433012 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p10</code></td><td>1205.32670067 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p11</code></td><td>-748.18709252 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p12</code></td><td>347.22481868 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p13</code></td><td>-121.71798362 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p14</code></td><td>25.046662 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p15</code></td><td>-8.75270292 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p16</code></td><td>-1.98784148 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_load.p17</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[1]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[2]</code></td><td>33.41272944 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[3]</code></td><td>53.77335739 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[4]</code></td><td>63.27751978 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[5]</code></td><td>44.46427224 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[6]</code></td><td>144.73957609 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[7]</code></td><td>-282.36446663 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[8]</code></td><td>748.13069055 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[9]</code></td><td>-1502.38433012 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[10]</code></td><td>1205.32670067 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[11]</code></td><td>-748.18709252 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[12]</code></td><td>347.22481868 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[13]</code></td><td>-121.71798362 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[14]</code></td><td>25.046662 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[15]</code></td><td>-8.75270292 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[16]</code></td><td>-1.98784148 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_load.p[17]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.height</code></td><td>-87.27 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_drive.d</code></td><td>41 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>shoulder_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>shoulder_drive.hysteresis_friction</code></td><td>18.99504381 N m</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>shoulder_drive.hysteresis_stiffness</code></td><td>130000 N m/rad</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>shoulder_link.J</code></td><td>8.14835487753431 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_load.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_load.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p1</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p2</code></td><td>-30.73709333 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p3</code></td><td>-48.91810652 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p4</code></td><td>-55.71093232 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p5</code></td><td>-33.75887074 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p6</code></td><td>-62.8490004 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p7</code></td><td>124.49246171 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p8</code></td><td>-165.6406545 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p9</code></td><td>556.60006176 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p10</code></td><td>-109.3565435 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p11</code></td><td>345.71056877 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p12</code></td><td>86.47705917 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p13</code></td><td>172.01464114 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p14</code></td><td>133.98621159 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p15</code></td><td>137.98808477 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p16</code></td><td>129.54565535 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_load.p17</code></td><td>117.32029263 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[1]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[2]</code></td><td>-30.73709333 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[3]</code></td><td>-48.91810652 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[4]</code></td><td>-55.71093232 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[5]</code></td><td>-33.75887074 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[6]</code></td><td>-62.8490004 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[7]</code></td><td>124.49246171 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[8]</code></td><td>-165.6406545 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[9]</code></td><td>556.60006176 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[10]</code></td><td>-109.3565435 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[11]</code></td><td>345.71056877 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[12]</code></td><td>86.47705917 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[13]</code></td><td>172.01464114 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[14]</code></td><td>133.98621159 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[15]</code></td><td>137.98808477 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[16]</code></td><td>129.54565535 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_load.p[17]</code></td><td>117.32029263 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.height</code></td><td>-104.7 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_drive.d</code></td><td>11 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>elbow_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>elbow_drive.hysteresis_friction</code></td><td>4.525004676 N m</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>elbow_drive.hysteresis_stiffness</code></td><td>31000 N m/rad</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>elbow_link.J</code></td><td>2.23554092189438 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_load.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_load.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p1</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p2</code></td><td>-17.74522872 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p3</code></td><td>-28.43417588 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p4</code></td><td>-31.39268635 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p5</code></td><td>-22.50035874 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p6</code></td><td>-31.09816833 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p7</code></td><td>65.15036668 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p8</code></td><td>-109.67788494 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p9</code></td><td>321.35289081 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p10</code></td><td>-158.80461687 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p11</code></td><td>203.67503592 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p12</code></td><td>4.41936865 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p13</code></td><td>88.45182102 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p14</code></td><td>59.58488762 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p15</code></td><td>62.46244638 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p16</code></td><td>55.35465313 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_load.p17</code></td><td>45.19978655 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[1]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[2]</code></td><td>-17.74522872 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[3]</code></td><td>-28.43417588 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[4]</code></td><td>-31.39268635 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[5]</code></td><td>-22.50035874 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[6]</code></td><td>-31.09816833 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[7]</code></td><td>65.15036668 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[8]</code></td><td>-109.67788494 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[9]</code></td><td>321.35289081 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[10]</code></td><td>-158.80461687 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[11]</code></td><td>203.67503592 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[12]</code></td><td>4.41936865 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[13]</code></td><td>88.45182102 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[14]</code></td><td>59.58488762 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[15]</code></td><td>62.46244638 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[16]</code></td><td>55.35465313 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_load.p[17]</code></td><td>45.19978655 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.height</code></td><td>78.54 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_drive.d</code></td><td>1.3 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>forearm_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>forearm_drive.hysteresis_friction</code></td><td>2.32769437 N m</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>forearm_drive.hysteresis_stiffness</code></td><td>16000 N m/rad</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>forearm_link.J</code></td><td>0.0697886093001334 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_load.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_load.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p1</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p2</code></td><td>-0.24747729 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p3</code></td><td>-0.32702009 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p4</code></td><td>-0.63459911 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p5</code></td><td>-0.45672099 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p6</code></td><td>2.42544643 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p7</code></td><td>-13.94523583 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p8</code></td><td>35.74834952 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p9</code></td><td>-79.7185252 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p10</code></td><td>72.57490892 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p11</code></td><td>-37.13054082 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p12</code></td><td>29.2136315 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p13</code></td><td>2.02573635 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p14</code></td><td>11.26890728 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p15</code></td><td>8.35609847 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p16</code></td><td>6.76167576 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_load.p17</code></td><td>3.51842498 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[1]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[2]</code></td><td>-0.24747729 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[3]</code></td><td>-0.32702009 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[4]</code></td><td>-0.63459911 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[5]</code></td><td>-0.45672099 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[6]</code></td><td>2.42544643 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[7]</code></td><td>-13.94523583 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[8]</code></td><td>35.74834952 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[9]</code></td><td>-79.7185252 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[10]</code></td><td>72.57490892 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[11]</code></td><td>-37.13054082 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[12]</code></td><td>29.2136315 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[13]</code></td><td>2.02573635 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[14]</code></td><td>11.26890728 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[15]</code></td><td>8.35609847 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[16]</code></td><td>6.76167576 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_load.p[17]</code></td><td>3.51842498 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.height</code></td><td>-69.81 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_drive.d</code></td><td>1.5 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>wrist_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>wrist_drive.hysteresis_friction</code></td><td>1.453788876 N m</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>wrist_drive.hysteresis_stiffness</code></td><td>10000 N m/rad</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>wrist_link.J</code></td><td>0.15 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_load.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_load.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p1</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p2</code></td><td>-4.843321 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p3</code></td><td>-7.87861785 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p4</code></td><td>-8.29439478 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p5</code></td><td>-7.38367011 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p6</code></td><td>-10.36456642 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p7</code></td><td>26.74287789 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p8</code></td><td>-66.98867688 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p9</code></td><td>161.2337765 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p10</code></td><td>-131.78726118 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p11</code></td><td>90.60417238 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p12</code></td><td>-38.36028214 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p13</code></td><td>17.14888526 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p14</code></td><td>-1.30610623 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p15</code></td><td>2.65404273 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p16</code></td><td>2.11647472 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_load.p17</code></td><td>2.38322264 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[1]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[2]</code></td><td>-4.843321 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[3]</code></td><td>-7.87861785 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[4]</code></td><td>-8.29439478 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[5]</code></td><td>-7.38367011 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[6]</code></td><td>-10.36456642 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[7]</code></td><td>26.74287789 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[8]</code></td><td>-66.98867688 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[9]</code></td><td>161.2337765 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[10]</code></td><td>-131.78726118 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[11]</code></td><td>90.60417238 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[12]</code></td><td>-38.36028214 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[13]</code></td><td>17.14888526 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[14]</code></td><td>-1.30610623 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[15]</code></td><td>2.65404273 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[16]</code></td><td>2.11647472 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_load.p[17]</code></td><td>2.38322264 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.height</code></td><td>-157.1 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_drive.d</code></td><td>0.16 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>hand_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>hand_drive.hysteresis_friction</code></td><td>0.6925001349 N m</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
+<tr><td><code>hand_drive.hysteresis_stiffness</code></td><td>4700 N m/rad</td><td>from hysteresis_loss = 0.00029 rad: 1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>hand_link.J</code></td><td>0.0032 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_load.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_load.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p1</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p2</code></td><td>-0.00529945 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p3</code></td><td>-0.0076406 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p4</code></td><td>-0.01461713 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p5</code></td><td>0.01207435 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p6</code></td><td>-0.07863067 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p7</code></td><td>0.16847643 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p8</code></td><td>-0.30070171 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p9</code></td><td>0.56496528 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p10</code></td><td>-0.260822 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p11</code></td><td>0.16377099 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p12</code></td><td>-0.08829367 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p13</code></td><td>-0.02571448 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p14</code></td><td>-0.05589163 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p15</code></td><td>-0.04383153 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p16</code></td><td>-0.02784474 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_load.p17</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[1]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[2]</code></td><td>-0.00529945 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[3]</code></td><td>-0.0076406 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[4]</code></td><td>-0.01461713 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[5]</code></td><td>0.01207435 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[6]</code></td><td>-0.07863067 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[7]</code></td><td>0.16847643 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[8]</code></td><td>-0.30070171 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[9]</code></td><td>0.56496528 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[10]</code></td><td>-0.260822 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[11]</code></td><td>0.16377099 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[12]</code></td><td>-0.08829367 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[13]</code></td><td>-0.02571448 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[14]</code></td><td>-0.05589163 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[15]</code></td><td>-0.04383153 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[16]</code></td><td>-0.02784474 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_load.p[17]</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 </table>
 </html>"));
 end SixAxisRobot;

@@ -27,6 +27,6 @@ algorithm
   q := table[i + 1, 3]*h - b - 2*c;
   r := table[i + 1, 4]*h^2 - 2*c;
   y := a + t*(b + t*(c + t*(10*p - 4*q + 0.5*r + t*(-15*p + 7*q - r + t*(6*p - 3*q + 0.5*r)))))
-    + (x - inside)*stiffness(inside, table);
+    + (if x < inside or x > inside then (x - inside)*stiffness(inside, table) else 0);
   annotation (derivative(noDerivative=table) = loadDerivative, smoothOrder=2);
 end load;

@@ -1,9 +1,8 @@
 """Assembly preload of the bolts: stated, from the tightening torque, or from Table A1 of VDI 2230."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ....common.options import format_option_flag
-from ....common.pressure import warn_overload
 from ....inputs.drawing import vdi2230
 from ....inputs.drawing.part import DrawingOptions, ParameterSheet
 from ....inputs.drawing.quantities import StatedNumber, parse_quantity
@@ -183,6 +182,8 @@ def _check_strength(
 ) -> AssemblyPreload:
     """Preload with its utilisation of the yield strength, and a warning if this is too high.
 
+    A preload above the proof load is warned of by `common.pressure`.
+
     Raises ValueError for a torque at which the bolt, or the strongest bolt, yields.
     """
     stated = options["property_class"]
@@ -201,12 +202,13 @@ def _check_strength(
     if stated is None:
         return preload
     proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
-    warnings = warn_overload("preload", preload.force, (proof_load, f"the proof load of {bolt} (ISO 898-1)"))
-    if not warnings and utilisation > vdi2230.YIELD_UTILISATION * (1.0 + vdi2230.MAX_UTILISATION_ERROR):
+    warnings = []
+    if preload.force <= proof_load and utilisation > vdi2230.YIELD_UTILISATION * (
+        1.0 + vdi2230.MAX_UTILISATION_ERROR
+    ):
         warnings = [
             f"preload = {preload.force:.4g} N uses {utilisation:.0%} of the yield strength of {bolt} in "
             f"tightening (VDI 2230, von Mises), allowed are {vdi2230.YIELD_UTILISATION:.0%}: {allowed:.4g} N"
         ]
-    return AssemblyPreload(
-        preload.force, preload.low, preload.high, preload.kind, preload.source, utilisation, tuple(warnings)
-    )
+    source = f"{preload.source}; {vdi2230.describe_stated_bolt(thread.name, name)}"
+    return replace(preload, source=source, utilisation=utilisation, warnings=tuple(warnings))

@@ -185,8 +185,11 @@ def _fit_with_friction(
     samples, harmonics = find_ripple_terms(samples, fitted_log)
     if harmonics:
         rotor, deviation = fitted_log.rotor_inertia, fitted_log.rotor_inertia_deviation
-        fitted_log = fit_samples(file, samples, names_to_fit, rotor)
-        fitted_log = replace(fitted_log, rotor_inertia_deviation=deviation)
+        fitted_log = (
+            fit_with_rotor_inertia(file, samples, names_to_fit, rotor, deviation)
+            if deviation > 0.0
+            else fit_samples(file, samples, names_to_fit, rotor)
+        )
     fitted_log, vanishing_notes = accept_vanishing(fitted_log)
     notes += vanishing_notes
     if samples.has_sensor and BACK_DRIVING_LOSS_NAME in fitted_log.solution.names_at_bound:

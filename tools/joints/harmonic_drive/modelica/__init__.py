@@ -69,10 +69,10 @@ MODELICA_COMPONENT = ModelicaComponent(
     name="HarmonicDriveSpring",
     base_record="HarmonicDrive",
     make_records=_make_records,
-    system_parameters=lambda file: (
-        format_computed_values(_hysteresis_totals(HarmonicDriveSpring.tabulate(file.values)))
-        | {"stateSelect": "StateSelect.default"}
+    system_parameters=lambda file: format_computed_values(
+        _hysteresis_totals(HarmonicDriveSpring.tabulate(file.values))
     ),
+    system_parameter_units={"hysteresis_friction": "N.m", "hysteresis_stiffness": "N.m/rad"},
     fixed_input_parameters={"temperature": "T"},
     component_only_parameters=("hysteresis_loss", "hysteresis_stiffness"),
     make_template_texts=lambda drive: {

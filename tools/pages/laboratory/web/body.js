@@ -1,6 +1,8 @@
 /* A body on the joint: its resonance over the load, and how it rings. */
 
 const [PER_PERIOD, PERIODS] = [40, 14];
+/** Damping ratio below which a vibration counts as undamped. */
+const MIN_DAMPING = 1e-5;
 
 class Body {
   constructor(place, joint, lab) {
@@ -23,7 +25,7 @@ class Body {
     const charts = element("div", { class: "charts" });
     place.append(charts);
     this.over = new Chart(charts, "Resonance over the load", `Square root of |d${this.output.name}/d${this.input.name}|${this.moves ? "" : " (its inverse)"} over the ${this.turns ? "inertia" : "mass"}, along the load ramp.`);
-    this.decay = this.moves && new Chart(charts, "Free decay", "");
+    this.decay = this.moves && new Chart(charts, "Free vibration", "");
   }
 
   /** Tangent stiffness at the present state. */
@@ -84,5 +86,6 @@ function decayText(time, moved) {
   if (up.length < 2 || peaks.length < 3) return "The body does not vibrate.";
   const hertz = (1e3 * (up.length - 1)) / (up.at(-1) - up[0]);
   const ratio = Math.log(peaks[0] / peaks.at(-1)) / (2 * Math.PI * (peaks.length - 1));
+  if (Math.abs(ratio) < MIN_DAMPING) return `Frequency ${digits(hertz)} Hz. The vibration does not decay: the joint has no damping at the slider values.`;
   return `Frequency ${digits(hertz)} Hz, damping ratio ${digits(100 * ratio, 3)} % over the cycles shown.`;
 }

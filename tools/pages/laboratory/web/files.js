@@ -2,6 +2,8 @@
 
 /** Numbers of a list on a line of a file, and in a message. */
 const [PER_LINE, LISTED] = [5, 3];
+/** Largest span of a measured wind-up [rad]. */
+const MAX_WIND_UP = 0.5;
 const SCHEMA = 1, INPUTS = "inputs.", ROUGHNESS = "roughness.";
 const ENTRY_KEYS = ["value", "unit", "kind", "source", "range"];
 
@@ -212,8 +214,8 @@ function placed(text, fileName, known, now) {
   return { about, set: { name: file.name ?? fileName.replace(/\.toml$/i, ""), values, fixed, inputs, toml: text, base: about.sets[0] } };
 }
 
-/** The text of a parameter set with other values: changed entries come from the user, a height stands in place of the roughnesses that made it. */
-function written(set, about, values) {
+/** The text of a parameter set with other values than the page begins with: changed entries come from the user, a height stands in place of the roughnesses that made it. */
+function written(set, about, values, first) {
   const { joint, law, name, entries } = readToml(set.toml);
   const put = (entry, value) => entries.set(entry, { value, unit: about.entries[entry].unit, kind: "user", source: "set in the laboratory" });
   for (const [key, value] of [...Object.entries(set.values).map(([key]) => [key, values.get(key)]), ...Object.entries(set.fixed ?? {})]) {
@@ -224,6 +226,7 @@ function written(set, about, values) {
   }
   for (const key of Object.keys(set.inputs)) {
     const entry = `${INPUTS}${key}`, value = values.get(key);
+    if (value === first.get(key)) continue; // the page may begin with another load than the file
     if (value === about.entries[entry].default) entries.delete(entry);
     else if (entries.get(entry)?.value !== value) put(entry, value);
   }
@@ -236,6 +239,12 @@ function written(set, about, values) {
   }
   const head = [`schema = ${SCHEMA}`, `joint = ${tomlText(joint)}`, `law = ${tomlText(law ?? about.law)}`, `name = ${tomlText(name ?? set.name)}`];
   return [...head, ...sections.get(""), ...[...sections].slice(1).flatMap(([section, lines]) => ["", `[${section}]`, ...lines])].join("\n") + "\n";
+}
+
+/** Largest number of a list minus the smallest one. */
+function span(values) {
+  const [low, high] = values.reduce((ends, x) => [Math.min(ends[0], x), Math.max(ends[1], x)], [Infinity, -Infinity]);
+  return high - low;
 }
 
 /** { name, columns: [{ name, base, values }] } of a CSV file with a line of `name [unit]`; an Error if it is none. */
@@ -261,5 +270,9 @@ function readCsv(text, name, units) {
       c.values.push(number * c.size);
     });
   }
+  const log = cells(rows[0]).find((head) => /\[\s*(m?A|\S+\/s|rev\/min)\s*\]/.test(head));
+  const wide = used.find((c) => c.base === "rad" && span(c.values) > MAX_WIND_UP);
+  if (log || wide)
+    throw new Error(`${log ? `column ${log}` : `${wide.name} spans more than ${MAX_WIND_UP} rad`}: a log of a motion is no curve of the joint; expected a wind-up and a torque. Fit a robot's log with: jointfmu fit log`);
   return { name, columns: used };
 }

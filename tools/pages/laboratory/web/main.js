@@ -250,7 +250,7 @@ class Laboratory {
   }
 
   toml() {
-    return written(this.set, this.about, this.values);
+    return written(this.set, this.about, this.values, this.start(this.set));
   }
 
   async copy() {
