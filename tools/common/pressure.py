@@ -25,8 +25,8 @@ class NominalPressureModel:
     peak_pressure   : (parameter set, load) -> greatest nominal pressure [Pa]
     joint_to_law_stiffness_ratio : (parameter set, load) -> joint stiffness over stiffness of the interface
                       law at the mean pressure [1]
-    load_capacity   : parameter file -> (largest load [SI] of the loaded parts, name of this limit), or None if
-                      not known
+    load_capacity   : parameter file -> (largest load [SI] of the loaded parts, name of this limit), or
+                      None if not known
     """
 
     load_variable: str

@@ -157,7 +157,7 @@ equation
 <ul>
 <li>Preload, moment and temperature are those of the record <code>data</code> and cannot change during a simulation. The FMU takes all three as inputs.</li>
 <li>Side 2 does not rotate: only the FMU has rotations, moments and contact pressures.</li>
-<li>The FMU has separate sliders on each friction patch. At a small fraction of the friction limit, where few of them slip, the energy losses of component and FMU differ.</li>
+<li>The FMU has separate sliders on each friction patch. At a small fraction of the friction limit, where few of them slip, the energy losses of component and FMU differ. In free vibration with partial slip, their displacements differ by 1 to 4 %: for smaller errors use the FMU in its wrapper.</li>
 <li>The normal dissipation factor is interpolated linearly, within 0.001.</li>
 <li>The table ends at 10 times the total preload; beyond, the last tangent continues without a warning. With side 2 lifted off, only the stiffness n k of the bolts remains.</li>
 </ul>
@@ -169,7 +169,7 @@ equation
 <li><b>Closing contact.</b> Below 4 kPa (default parameters) the law gives almost no stiffness; the curve continues smoothly to zero and departs from the law.</li>
 <li><b>Normal damping is off.</b> η<sub>n</sub> is the plastic work of first loading. A joint in service has been loaded before and does not dissipate this work again in each vibration; <code>plastic_damping</code> = true activates the paper's value.</li>
 <li><b>Trend.</b> An elastic boundary-element solution of rough surfaces finds a stiffness close to proportional to the pressure and hardly dependent on D. The fractal law has lower powers of the pressure, which depend on D.</li>
-<li><b>Range.</b> After separation only the stiffness of the bolts remains. If the mean pressure exceeds the hardness, the curve continues with its last tangent. If a moment would need a negative bolt force, the contact opens there and a warning is logged.</li>
+<li><b>Range.</b> After separation only the stiffness of the bolts remains. Above the hardness the curve of the pressure continues with its last tangent. If a moment would need a negative bolt force, the contact opens there and a warning is logged.</li>
 <li><b>Not included:</b> rotation of side 2, the compliance of the clamped members, bending of the flanges, shear of the bolts, wear, increase of the friction with time at rest. Damping is the viscous equivalent at the resonance of <code>mass</code>.</li>
 </ul>
 <p>Y. Zhao, C. Yang, L. Cai, W. Shi, Y. Hong: <em>Stiffness and Damping Model of Bolted Joints with Uneven Surface Contact Pressure Distribution.</em> 2018.</p>
