@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
@@ -182,7 +183,7 @@ def _press(
         yield _bonded_stiffness(half_space, touching) / area, float(flowing.sum() / count), count
 
 
-def _bonded_stiffness(half_space: Any, touching: Array) -> float:
+def _bonded_stiffness(half_space: Any, touching: NDArray[np.bool_]) -> float:
     """Stiffness [N/m] of small motions: force on all points in contact for a common unit displacement."""
     from scipy.sparse.linalg import LinearOperator, cg
 
