@@ -151,7 +151,8 @@ class System:
 
     def _partners_at(self, flange: str) -> list[str]:
         """Names of the bodies and loads that are connected to a flange of a joint, not through a joint."""
-        found, new = set(), {flange}
+        found: set[str] = set()
+        new = {flange}
         while new:
             beside = {end for pair in self.connections if new & {*pair} for end in pair}
             names = {end.partition(".")[0] for end in beside} & self.components.keys() - self.joints.keys()
