@@ -23,7 +23,7 @@ _LIBRARY_LOCK = Lock()
 
 
 class LogMessage(NamedTuple):
-    """Log message of an FMU; status 0 is an event, 1 a warning, 3 an error."""
+    """Log message of an FMU; status 0: event, 1: warning, 2: discarded call, 3: error."""
 
     status: int
     text: str

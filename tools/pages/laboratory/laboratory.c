@@ -12,7 +12,7 @@ static Text messages;
 static void log_message(const Logger *logger, const char *name, Status status, const char *category, const char *line)
 {
     (void)logger, (void)name, (void)category;
-    text_append(&messages, status == ERROR ? "3" : status == WARNING ? "1" : "0");
+    text_append(&messages, status >= DISCARD ? "3" : status == WARNING ? "1" : "0");
     text_append(&messages, line);
     text_append(&messages, "\n");
 }

@@ -214,10 +214,13 @@ function placed(text, fileName, known, now) {
   return { about, set: { name: file.name ?? fileName.replace(/\.toml$/i, ""), values, fixed, inputs, toml: text, base: about.sets[0] } };
 }
 
-/** The text of a parameter set with other values than the page begins with: changed entries come from the user, a height stands in place of the roughnesses that made it. */
+/** Where a value comes from that the user has set, and a load with which the page begins. */
+const MOVED = { kind: "user", source: "set in the laboratory" }, BEGUN = { kind: "estimate", source: "the laboratory begins with a third of the load ramp" };
+
+/** The text of a parameter set with other values: changed entries come from the user, a height stands in place of the roughnesses that made it. The values in `first` are those the page begins with. */
 function written(set, about, values, first) {
   const { joint, law, name, entries } = readToml(set.toml);
-  const put = (entry, value) => entries.set(entry, { value, unit: about.entries[entry].unit, kind: "user", source: "set in the laboratory" });
+  const put = (entry, value, origin = MOVED) => entries.set(entry, { value, unit: about.entries[entry].unit, ...origin });
   for (const [key, value] of [...Object.entries(set.values).map(([key]) => [key, values.get(key)]), ...Object.entries(set.fixed ?? {})]) {
     const now = entries.get(key)?.value;
     if (now === value || (now === undefined && value === set.values[key])) continue;
@@ -226,9 +229,8 @@ function written(set, about, values, first) {
   }
   for (const key of Object.keys(set.inputs)) {
     const entry = `${INPUTS}${key}`, value = values.get(key);
-    if (value === first.get(key)) continue; // the page may begin with another load than the file
     if (value === about.entries[entry].default) entries.delete(entry);
-    else if (entries.get(entry)?.value !== value) put(entry, value);
+    else if (entries.get(entry)?.value !== value) put(entry, value, value === first.get(key) ? BEGUN : MOVED);
   }
   const sections = new Map([["", []]]);
   for (const [key, { value, unit, range, kind, source }] of entries) {
