@@ -63,6 +63,7 @@ def _generate_law_sources(
     """Texts of law.h and law.c, generated once for all parameter files of one structure."""
     key = (
         model.name,
+        model.evaluate,
         model.parameter_class,
         parameter_split.parameter_class,
         parameter_split.code_structure_key,
@@ -123,17 +124,17 @@ def _format_model_header(model: Model, parameters: object, history_size: int) ->
         macros += f"#define FIRST_LAG_PARAMETER {first + fields.index('lag_a')}\n"
     if model.find_event_times:
         macros += f"#define N_TIME_EVENTS {len(model.find_event_times(parameters))}\n"
-    input_names = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
+    indices = "".join(  # names with dots are those of a component in a system, which has no C of its own
+        f"    INPUT_{v.name.upper()} = {i},\n" for i, v in enumerate(model.inputs) if v.name.isidentifier()
+    )
     if history_size:
         macros += f"#define N_HISTORY {history_size}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
 #define JOINTFMU_MODEL_H
 
 {macros}
-enum {{ {input_names} }};
-
 enum {{
-    N_INPUTS = {len(model.inputs)},
+{indices}    N_INPUTS = {len(model.inputs)},
     N_OUTPUTS = {len(model.outputs)},
     N_PARAMETERS = {len(model.parameter_fields())}
 }};
