@@ -112,11 +112,13 @@ class TreeMotion:
     accelerations       : [rad/s2 or m/s2] of the joints
     forces              : [N.m or N] on the joints: as given, or as the prescribed accelerations need them
     rotor_accelerations : [rad/s2] of the rotors, by joint
+    rotor_torques       : [N.m] on the rotors: as given, or as the prescribed accelerations need them
     """
 
     accelerations: list[Number]
     forces: list[Number]
     rotor_accelerations: dict[str, Number]
+    rotor_torques: dict[str, Number]
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,12 +206,19 @@ def forward_dynamics(
     ground: Vector = [0.0, 0.0, 0.0, *(-float(g) for g in gravity)]
     spatial: list[Vector] = []
     accelerations, forces = list[Number](), [*forces]
-    rotor_accelerations: dict[str, Number] = {}
+    rotor_accelerations, rotor_torques = dict[str, Number](), dict[str, Number]()
     for i, link in enumerate(links):
         moving, fixed = transforms[i]
         parent = ground if link.parent == GROUND else spatial[link.parent]
         if link.name in rotors:
-            rotor_accelerations[link.name] = _rotor_acceleration(link, parent, rotors[link.name])
+            rotor = rotors[link.name]
+            spin = _carrier_spin(link, parent, rotor)
+            if rotor.torque is None:
+                rotor_accelerations[link.name] = rotor.acceleration
+                rotor_torques[link.name] = rotor.inertia * (rotor.acceleration + spin)
+            else:
+                rotor_accelerations[link.name] = rotor.torque / rotor.inertia - spin
+                rotor_torques[link.name] = rotor.torque
         carried = _add(_multiply(moving, _multiply(fixed, parent)), biases[i])
         is_prescribed = forces[i] is None
         acceleration = given[i] if is_prescribed else (remainders[i] - _dot(columns[i], carried)) / pivots[i]
@@ -218,7 +227,7 @@ def forward_dynamics(
         if is_prescribed:
             needed = _dot(columns[i], spatial[i]) + bias_forces[i][link.axis_index]
             forces[i] = needed + link.armature * acceleration + passive[i]
-    return TreeMotion(accelerations, forces, rotor_accelerations)
+    return TreeMotion(accelerations, forces, rotor_accelerations, rotor_torques)
 
 
 def frame_motion(
@@ -266,14 +275,11 @@ def _add_rotor(
     bias_forces[parent] = _add(bias_forces[parent], [*moment, 0.0, 0.0, 0.0])
 
 
-def _rotor_acceleration(link: Link, parent_acceleration: Vector, rotor: RotorMotion) -> Number:
-    """Acceleration [rad/s2] of a rotor relative to the link that carries it."""
-    if rotor.torque is None:
-        return rotor.acceleration
-    acceleration = rotor.torque / rotor.inertia
-    if rotor.is_coupled and link.parent != GROUND:
-        acceleration = acceleration - _dot(link.rotation[:, 2].tolist(), parent_acceleration[:3])
-    return acceleration
+def _carrier_spin(link: Link, parent_acceleration: Vector, rotor: RotorMotion) -> Number:
+    """Angular acceleration [rad/s2] of the link that carries a rotor, about the axis of the rotor."""
+    if not rotor.is_coupled or link.parent == GROUND:
+        return 0.0
+    return _dot(link.rotation[:, 2].tolist(), parent_acceleration[:3])
 
 
 def _spatial_inertia(mass: Number, centre: Sequence[Number], inertia: Sequence[Sequence[Number]]) -> Matrix:

@@ -118,23 +118,28 @@ def _format_model_header(model: Model, parameters: object, history_size: int) ->
         if model.is_time_dependent
         else ""
     )
+    if model.evaluate_residuals:
+        macros += "#define HAS_JACOBIAN 1\n"
     fields = list(model.parameter_fields())
     if "lag_a" in fields:
         first = 1 + len(model.inputs) + len(model.outputs)
         macros += f"#define FIRST_LAG_PARAMETER {first + fields.index('lag_a')}\n"
     if model.find_event_times:
         macros += f"#define N_TIME_EVENTS {len(model.find_event_times(parameters))}\n"
-    indices = "".join(  # names with dots are those of a component in a system, which has no C of its own
-        f"    INPUT_{v.name.upper()} = {i},\n" for i, v in enumerate(model.inputs) if v.name.isidentifier()
-    )
+    names = [  # a name with dots is that of a component without C of its own
+        v.name.upper() if v.name.isidentifier() else str(i) for i, v in enumerate(model.inputs)
+    ]
+    input_names = ", ".join(f"INPUT_{name}" for name in names)
     if history_size:
         macros += f"#define N_HISTORY {history_size}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
 #define JOINTFMU_MODEL_H
 
 {macros}
+enum {{ {input_names} }};
+
 enum {{
-{indices}    N_INPUTS = {len(model.inputs)},
+    N_INPUTS = {len(model.inputs)},
     N_OUTPUTS = {len(model.outputs)},
     N_PARAMETERS = {len(model.parameter_fields())}
 }};

@@ -5,7 +5,7 @@ component without a name. The states are counted from the start pose, in which a
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, make_dataclass
+from dataclasses import dataclass, make_dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -252,6 +252,44 @@ class RobotArm:
         self, parameters: Any, values: Mapping[str, Number]
     ) -> tuple[list[Number], list[Number], TreeMotion, FrameMotion]:
         """Joint positions and speeds, accelerations of joints and rotors, motion of the tip."""
+        positions, speeds, forces, given, rotors, payload = self._collect_loads(parameters, values)
+        links = [joint.link for joint in self.joints]
+        return (
+            positions,
+            speeds,
+            forward_dynamics(links, self.gravity, positions, speeds, forces, given, rotors, payload),
+            frame_motion(links, self.tip, positions, speeds),
+        )
+
+    def evaluate_residuals(self, parameters: Any, values: Mapping[str, Number]) -> list[Number]:
+        """Forces that the accelerations need, minus those that act, of the free joints and of the rotors."""
+        positions, speeds, forces, given, rotors, payload = self._collect_loads(parameters, values)
+        links, free = [joint.link for joint in self.joints], list(map(self.is_free, self.joints))
+        names = {joint.link.name: joint.name for joint in self.joints}
+        accelerations = [
+            values[f"{joint.name}.a"] if is_free else a
+            for joint, is_free, a in zip(self.joints, free, given, strict=True)
+        ]
+        moved = {
+            name: rotor
+            if rotor.torque is None
+            else replace(rotor, torque=None, acceleration=values[f"{names[name]}.motor.a"])
+            for name, rotor in rotors.items()
+        }
+        needed = forward_dynamics(
+            links, self.gravity, positions, speeds, [None] * len(links), accelerations, moved, payload
+        )
+        residuals = [
+            due - force for due, force, is_free in zip(needed.forces, forces, free, strict=True) if is_free
+        ]
+        return residuals + [
+            needed.rotor_torques[name] - rotor.torque
+            for name, rotor in rotors.items()
+            if rotor.torque is not None
+        ]
+
+    def _collect_loads(self, parameters: Any, values: Mapping[str, Number]) -> tuple[Any, ...]:
+        """Positions, speeds, forces, prescribed accelerations, rotors and payload for `forward_dynamics`."""
         positions, speeds, forces, given = [], [], list[Number | None](), []
         rotors = {}
         for k, joint in enumerate(self.joints):
@@ -267,22 +305,14 @@ class RobotArm:
                 continue
             forces.append(values[f"{name}.tau2"])
             if self.has_motor_angles:
-                speed, acceleration = values[f"{name}.w_motor"], values[f"{name}.a_motor"]
-                rotor = RotorMotion(own.motor.J, speed, None, acceleration, joint.is_coupled)
+                motion = {"speed": values[f"{name}.w_motor"], "acceleration": values[f"{name}.a_motor"]}
             else:
                 torque = values[f"{name}.tau_motor"] + values[f"{name}.tau1"]
-                rotor = RotorMotion(
-                    own.motor.J, values[f"{name}.motor.w"], torque, is_coupled=joint.is_coupled
-                )
-            rotors[joint.link.name] = rotor
-        links, load = [joint.link for joint in self.joints], parameters.payload
+                motion = {"speed": values[f"{name}.motor.w"], "torque": torque}
+            rotors[joint.link.name] = RotorMotion(own.motor.J, is_coupled=joint.is_coupled, **motion)
+        load = parameters.payload
         payload = Body(self.tip, load.m, (load.x, load.y, load.z), (load.J_x, load.J_y, load.J_z))
-        return (
-            positions,
-            speeds,
-            forward_dynamics(links, self.gravity, positions, speeds, forces, given, rotors, payload),
-            frame_motion(links, self.tip, positions, speeds),
-        )
+        return positions, speeds, forces, given, rotors, payload
 
     def make_component(self, payload: float) -> SystemComponent:
         """Component of a system, with the payload [kg] at the origin of the tip body."""
@@ -345,6 +375,7 @@ class RobotArm:
             ramp=LoadRamp(inputs[0].name, 1.0, COMMUNICATION_STEP, COMMUNICATION_STEP),
             dependencies=dependencies,
             state_count=len(state_names),
+            evaluate_residuals=self.evaluate_residuals,
             is_time_dependent=True,
         )
 
