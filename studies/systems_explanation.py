@@ -5,6 +5,7 @@
 proof  : the bolted column over more periods: time of its build, rows that its proof compares
 energy : an arm with six drives, its motors held, oscillates for two seconds without losses, at several
          tolerances of the host
+coupling : frequencies of the six-axis arm at the end of its motion, each axis alone and all coupled
 random : the robot joint from 10 000 random states under random torques, three steps of 10 ms each: all values
          are finite, and energy less work falls in every step (without hysteresis, whose sliders store energy
          too)
@@ -21,7 +22,7 @@ import mujoco
 import numpy as np
 from common import ROOT, run_study
 from jointfmu_tools.api import drive, load
-from jointfmu_tools.exchange.robots import elastic, robot_system
+from jointfmu_tools.exchange.robots import elastic, poses, robot_system
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from jointfmu_tools.run.proof.manifest import RelatedFiles
 from jointfmu_tools.run.proof.run import prove
@@ -56,11 +57,8 @@ def print_energy_drift() -> None:
 
 def drift_in(folder: Path) -> None:
     """Build the arm with held motors in a folder, and print the drift without losses."""
-    spec = elastic.read_robot(ROBOT)
+    model, axes, files = read_axes()
     joints = {f"joint{i}": drive(size) for i, size in enumerate(SIZES, 1)}
-    files = {name: joint.file for name, joint in joints.items()}
-    axes = elastic.make_axes(spec, {name: make_transmission(file) for name, file in files.items()})
-    model = spec.compile()
     pose = elastic.joint_positions(model, {"joint2": "0.7", "joint3": "0.8"})
     tip = model.body("flange").id
     arm = robot_system.read_arm(model, axes, files, pose, PAYLOAD, tip, has_motor_angles=True)
@@ -82,7 +80,7 @@ def drift_in(folder: Path) -> None:
             output=[f"{n}.{x}" for n in joints for x in ("phi", "w", "drive.phi_rel")],
         )
         angles, speeds = (np.column_stack([found[f"{n}.{x}"] for n in joints]) for x in ("phi", "w"))
-        kinetic, total = rigid_energies(spec, angles, speeds)
+        kinetic, total = rigid_energies(angles, speeds)
         for n, joint in joints.items():
             wind_up = found[f"{n}.drive.phi_rel"]
             total += potential(joint, max(1.1 * np.abs(wind_up).max(), 1e-6))(wind_up)
@@ -91,9 +89,9 @@ def drift_in(folder: Path) -> None:
     shutil.rmtree(unzipped)
 
 
-def rigid_energies(spec, angles, speeds):
+def rigid_energies(angles, speeds):
     """Kinetic energy (n) [J] of the links and the payload, and kinetic plus potential energy, by MuJoCo."""
-    loaded = spec.copy()
+    loaded = elastic.read_robot(ROBOT)
     flange = loaded.body("flange")
     flange.mass, flange.inertia, flange.explicitinertial = PAYLOAD, [1e-12] * 3, True
     flange.ipos, flange.iquat = [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
@@ -106,6 +104,28 @@ def rigid_energies(spec, angles, speeds):
         mujoco.mj_forward(model, data)
         rows.append((data.energy[1], data.energy.sum()))
     return np.transpose(rows)
+
+
+def print_coupling() -> None:
+    """Frequencies [Hz] of the arm of `six_axis_robot` with held motors, and of each axis alone."""
+    model, axes, _ = read_axes()
+    pose = np.array([link.travel for link in load_system("six_axis_robot").arm.links])
+    tip = model.body("flange").id
+    torques, _ = poses.compute_torques(model, axes, pose, PAYLOAD, tip)
+    inertias = np.diag(poses.compute_link_inertia(model, axes, pose, PAYLOAD, tip))
+    stiffness = np.array([axis.stiffness(t) for axis, t in zip(axes, torques.tolist(), strict=True)])
+    alone = np.sort(np.sqrt(stiffness / inertias)) / (2.0 * np.pi)
+    coupled = poses.compute_frequencies(model, axes, pose, PAYLOAD, tip)
+    for name, frequencies in (("each axis alone", alone), ("coupled", coupled)):
+        print(f"{name}: {', '.join(f'{x:.3g}' for x in frequencies)} Hz")
+
+
+def read_axes():
+    """Rigid model of the arm, its axes with drives, and the parameter files of the drives."""
+    spec = elastic.read_robot(ROBOT)
+    files = {f"joint{i}": drive(size).file for i, size in enumerate(SIZES, 1)}
+    axes = elastic.make_axes(spec, {name: make_transmission(file) for name, file in files.items()})
+    return spec.compile(), axes, files
 
 
 def print_random_states() -> None:
@@ -186,5 +206,11 @@ def prove_long_system_in(folder: Path) -> None:
 
 if __name__ == "__main__":
     run_study(
-        __doc__, {"proof": prove_long_system, "energy": print_energy_drift, "random": print_random_states}
+        __doc__,
+        {
+            "proof": prove_long_system,
+            "energy": print_energy_drift,
+            "coupling": print_coupling,
+            "random": print_random_states,
+        },
     )

@@ -154,19 +154,19 @@ def _add_jacobian(
     knowns = ca.vertcat(*[*values.values()][1:])
     pivots, triangle, order = ca.ldl(ca.jacobian(residuals, ca.vertcat(*accelerations.values())))
     factors = [pivots, triangle, ca.jacobian(residuals, knowns), ca.jacobian(others, knowns)]
-    symbols = [ca.SX.sym(f"factor{k}_", factor.sparsity()) for k, factor in enumerate(factors)]
-    seed = ca.SX.sym("seed", knowns.numel())
+    symbols: list[Any] = [ca.SX.sym(f"factor{k}_", factor.sparsity()) for k, factor in enumerate(factors)]
+    seed: Any = ca.SX.sym("seed", knowns.numel())
     rates = ca.ldl_solve(-ca.mtimes(symbols[2], seed), symbols[0], symbols[1], order)
     other_rates = ca.mtimes(symbols[3], seed)
     doc = "time, inputs, states, accelerations -> factors of the derivatives of the outputs"
     arguments = [*values.values(), *accelerations.values()]
     function_graph.add_function(
-        "outputs_jacobian", doc, arguments, [ca.SX(x) for factor in factors for x in factor.nonzeros()]
+        "outputs_jacobian", doc, arguments, [x for factor in factors for x in factor.nz]
     )
     function_graph.add_function(
         "outputs_jacobian_product",
         "these factors, seed of inputs and states -> rates of the outputs",
-        [ca.SX(x) for symbol in (*symbols, seed) for x in symbol.nonzeros()],
+        [x for symbol in (*symbols, seed) for x in symbol.nz],
         [*ca.vertsplit(other_rates[:count]), *ca.vertsplit(rates), *ca.vertsplit(other_rates[count:])],
     )
 
