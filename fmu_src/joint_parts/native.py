@@ -132,7 +132,7 @@ def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
     if not model.evaluate_residuals:
         function_graph.add_function_with_derivative("outputs", doc, list(v.values()), results)
         return
-    function_graph.add_function("outputs", doc, list(v.values()), results)
+    function_graph.add_function("outputs", doc, list(v.values()), results, has_workspace=True)
     _add_jacobian(function_graph, model, v, results, model.evaluate_residuals)
 
 
@@ -161,13 +161,18 @@ def _add_jacobian(
     doc = "time, inputs, states, accelerations -> factors of the derivatives of the outputs"
     arguments = [*values.values(), *accelerations.values()]
     function_graph.add_function(
-        "outputs_jacobian", doc, arguments, [x for factor in factors for x in factor.nz]
+        "outputs_jacobian",
+        doc,
+        arguments,
+        [x for factor in factors for x in factor.nz],
+        has_workspace=True,
     )
     function_graph.add_function(
         "outputs_jacobian_product",
         "these factors, seed of inputs and states -> rates of the outputs",
         [x for symbol in (*symbols, seed) for x in symbol.nz],
         [*ca.vertsplit(other_rates[:count]), *ca.vertsplit(rates), *ca.vertsplit(other_rates[count:])],
+        has_workspace=True,
     )
 
 

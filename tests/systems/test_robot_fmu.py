@@ -10,7 +10,7 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from fmpy.validation import validate_fmu
 from jointfmu_tools.exchange.robots import elastic, robot_system
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
-from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.fmu.build import build_system, make_sources
 from robots import ROBOT, add_rotors
 
 from jointfmu.parameters import load_parameter_file
@@ -236,3 +236,20 @@ def test_prescribed_motors_and_a_joint_without_a_drive(tmp_path):
         expected = arm.evaluate_outputs(component.parameters.values, values)
         outputs = [v.name for v in component.model.outputs]
         assert m.read(outputs) == pytest.approx([expected[name] for name in outputs], rel=1e-9, abs=1e-9)
+
+
+def test_long_functions_keep_their_values_off_the_stack(tmp_path):
+    """Else they need more than a page of it, which Windows refuses without a library of the compiler."""
+    arm, _ = make_arm(tmp_path, (0,))
+    files, _ = make_sources(robot_system.make_robot_system(arm, "robot", "robot of a test", PAYLOAD))
+    (text,) = (
+        text for name, text in files.items() if name.endswith(".c") and "void outputs_jacobian(" in text
+    )
+    functions = [part for part in text.split("\nvoid ") if part.startswith("outputs")]
+    assert [part.partition("(")[0] for part in functions] == [
+        "outputs",
+        "outputs_jacobian",
+        "outputs_jacobian_product",
+    ]
+    assert all("    const double" not in part and "w[0] = " in part for part in functions)
+    assert text.count("w[") > 5000

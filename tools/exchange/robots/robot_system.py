@@ -36,8 +36,6 @@ from .rigid_tree import check_tree, find_frame, read_links
 if TYPE_CHECKING:
     from mujoco import MjModel
 
-MOTOR_INPUTS = ("torque", "angle")
-"""Inputs of the motors: torque, or angle with speed and acceleration."""
 STOP_TIME = 0.2
 """Stop time [s] of the default experiment."""
 COMMUNICATION_STEP = 1e-3

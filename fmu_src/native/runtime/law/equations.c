@@ -13,9 +13,12 @@ enum { N_ARGUMENTS = FIRST_OUTPUT + N_STATES };
 struct Joint {
     double constants[N_CONSTANTS]; /* parameters, parameters that are no FMU variables, expressions of both */
 #if HAS_JACOBIAN
-    double arguments[N_ARGUMENTS + N_BODIES];      /* time, inputs, states and accelerations of the factors below */
-    double jacobian[N_JACOBIAN + N_ARGUMENTS - 1]; /* factors of the derivatives of the outputs; then a seed */
+    double results[N_OUTPUTS + N_WORKSPACE];
+    double arguments[N_ARGUMENTS + N_BODIES]; /* time, inputs, states and accelerations of the factors below */
+    double jacobian[N_JACOBIAN + N_ARGUMENTS + N_WORKSPACE]; /* factors of the derivatives; then a seed */
     bool jacobian_is_current;
+#else
+    double results[N_OUTPUTS];
 #endif
 };
 
@@ -44,12 +47,12 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
                     Text *reason)
 {
-    double arguments[N_ARGUMENTS], results[N_OUTPUTS];
+    double arguments[N_ARGUMENTS];
     (void)history, (void)history_end, (void)reason;
     memcpy(arguments, inputs - FIRST_INPUT, FIRST_OUTPUT * sizeof(double));
     memcpy(arguments + FIRST_OUTPUT, out, N_STATES * sizeof(double));
-    outputs(arguments, joint->constants, results);
-    memcpy(out, results, sizeof results);
+    outputs(arguments, joint->constants, joint->results);
+    memcpy(out, joint->results, N_OUTPUTS * sizeof *out);
     return true;
 }
 
@@ -64,7 +67,8 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
         joint->jacobian_is_current = true;
     }
     memcpy(joint->jacobian + N_JACOBIAN, seed, (N_ARGUMENTS - 1) * sizeof *seed);
-    outputs_jacobian_product(joint->jacobian, joint->constants, result);
+    outputs_jacobian_product(joint->jacobian, joint->constants, joint->results);
+    memcpy(result, joint->results, N_OUTPUTS * sizeof *result);
 #else
     double x[2 * N_ARGUMENTS];
     memcpy(x, inputs - FIRST_INPUT, N_ARGUMENTS * sizeof(double));
