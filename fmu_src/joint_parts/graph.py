@@ -26,6 +26,8 @@ class CFunction:
 
     argument_symbols, result_expressions : x, and y as expressions of x and c
     called_in_loops : whether the C calls it inside loops: then it is inlined whatever its length
+    has_workspace   : whether y has room for N_WORKSPACE intermediate values behind the results: for functions
+        so long that these values need too much stack
     """
 
     name: str
@@ -33,6 +35,7 @@ class CFunction:
     argument_symbols: Sequence[ca.SX]
     result_expressions: Sequence[ca.SX]
     called_in_loops: bool = False
+    has_workspace: bool = False
 
 
 @dataclass(slots=True)
@@ -60,13 +63,11 @@ class FunctionGraph:
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
         called_in_loops: bool = False,
+        has_workspace: bool = False,
     ) -> None:
         """Add a C function to the graph."""
-        self.functions.append(
-            CFunction(
-                name, doc, argument_symbols, [ca.SX(value) for value in result_expressions], called_in_loops
-            )
-        )
+        results = [ca.SX(value) for value in result_expressions]
+        self.functions.append(CFunction(name, doc, argument_symbols, results, called_in_loops, has_workspace))
 
     def add_function_with_derivative(
         self,

@@ -128,12 +128,61 @@ def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
             [],
             model.find_event_times(function_graph.joint),
         )
-    function_graph.add_function_with_derivative(
-        "outputs", doc, list(v.values()), [outputs[o.name] for o in model.outputs]
+    results = [outputs[o.name] for o in model.outputs]
+    if not model.evaluate_residuals:
+        function_graph.add_function_with_derivative("outputs", doc, list(v.values()), results)
+        return
+    function_graph.add_function("outputs", doc, list(v.values()), results, has_workspace=True)
+    _add_jacobian(function_graph, model, v, results, model.evaluate_residuals)
+
+
+def _add_jacobian(
+    function_graph: FunctionGraph,
+    model: Model,
+    values: Mapping[str, ca.SX],
+    results: Sequence[Any],
+    evaluate_residuals: Callable[..., Sequence[Any]],
+) -> None:
+    """Add the factors of the derivatives of `outputs`, and the rates of the outputs along a seed.
+
+    The derivatives of the accelerations follow from those of the residuals (implicit function theorem).
+    """
+    count, names = model.state_count, [v.name for v in model.outputs]
+    accelerations = {name: ca.SX.sym(name) for name in names[count : count * 3 // 2]}
+    residuals = ca.vertcat(*evaluate_residuals(function_graph.joint, {**values, **accelerations}))
+    others = ca.vertcat(*map(ca.SX, [*results[:count], *results[count * 3 // 2 :]]))
+    knowns = ca.vertcat(*[*values.values()][1:])
+    pivots, triangle, order = ca.ldl(ca.jacobian(residuals, ca.vertcat(*accelerations.values())))
+    factors = [pivots, triangle, ca.jacobian(residuals, knowns), ca.jacobian(others, knowns)]
+    symbols: list[Any] = [ca.SX.sym(f"factor{k}_", factor.sparsity()) for k, factor in enumerate(factors)]
+    seed: Any = ca.SX.sym("seed", knowns.numel())
+    rates = ca.ldl_solve(-ca.mtimes(symbols[2], seed), symbols[0], symbols[1], order)
+    other_rates = ca.mtimes(symbols[3], seed)
+    doc = "time, inputs, states, accelerations -> factors of the derivatives of the outputs"
+    arguments = [*values.values(), *accelerations.values()]
+    function_graph.add_function(
+        "outputs_jacobian",
+        doc,
+        arguments,
+        [x for factor in factors for x in factor.nz],
+        has_workspace=True,
+    )
+    function_graph.add_function(
+        "outputs_jacobian_product",
+        "these factors, seed of inputs and states -> rates of the outputs",
+        [x for symbol in (*symbols, seed) for x in symbol.nz],
+        [*ca.vertsplit(other_rates[:count]), *ca.vertsplit(rates), *ca.vertsplit(other_rates[count:])],
+        has_workspace=True,
     )
 
 
-EXPLICIT_EQUATIONS_DEFINITION = NativeDefinition(_add_equations, ("equations",))
+def _define_jacobian_size(function_graph: FunctionGraph, model: Model) -> CDefinitions:
+    """Number of factors that `outputs_jacobian` computes."""
+    sizes = [len(f.result_expressions) for f in function_graph.functions if f.name == "outputs_jacobian"]
+    return CDefinitions({"N_JACOBIAN": sizes[0]} if sizes else {})
+
+
+EXPLICIT_EQUATIONS_DEFINITION = NativeDefinition(_add_equations, ("equations",), _define_jacobian_size)
 """Definition of the C code of a model whose outputs are explicit functions of time, inputs and states."""
 
 

@@ -151,6 +151,9 @@ class Model:
     fixed_parameters : parameters, or prefixes of their names, that the FMU does not expose
     state_count : number of continuous states, which are the first outputs: positions of bodies, then their
         speeds; then follow the accelerations. So the rate of output i is output i + number of bodies.
+    evaluate_residuals : function (tabulated joint, inputs, states and accelerations) -> residuals of the
+        equations of motion, whose derivative by the accelerations is symmetric; the C code then gets the
+        derivatives of the accelerations from these. None: from `evaluate`
     is_time_dependent : whether outputs change with time at constant inputs
     find_event_times : function, tabulated joint -> times [s] at which outputs have a kink, numbers or
         symbols; None: there are none
@@ -180,6 +183,7 @@ class Model:
     linear_factors: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     fixed_parameters: Sequence[str] = ()
     state_count: int = 0
+    evaluate_residuals: Callable[..., Sequence[Number]] | None = None
     is_time_dependent: bool = False
     find_event_times: Callable[..., Sequence[Number]] | None = None
     initial_history: Callable[..., History] | None = None

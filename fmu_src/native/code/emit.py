@@ -85,6 +85,7 @@ def format_function(
     constant_symbols: ca.SX,
     result_expressions: Sequence[ca.SX],
     is_derivative: bool = False,
+    has_workspace: bool = False,
 ) -> str:
     """C code of `void name(const double *x, const double *c, double *y)`.
 
@@ -93,6 +94,8 @@ def format_function(
 
     is_derivative : whether y is a directional derivative. Then 0/0 is 0, so that a zero seed gives zero even
         at an infinite slope; and the derivative of min or max of two equal values is that of the first.
+    has_workspace : whether intermediate values are in the array y behind the results, not on the stack; see
+        `count_workspace`
     """
     graph = ca.Function(
         "f",
@@ -127,12 +130,35 @@ def format_function(
     unused = [name for name in inputs if name not in used_inputs] + ([] if result_expressions else ["y"])
     body += [f"(void){name};" for name in unused]
     used_lines = _drop_unused_lines(body)
-    lines = "\n".join(
-        f"    {line}" for line in (used_lines if is_derivative else _replace_repeated_divisions(used_lines))
-    )
+    code_lines = used_lines if is_derivative else _replace_repeated_divisions(used_lines)
+    if has_workspace:
+        first = f"double *const w = y + {len(result_expressions)}; /* intermediate values */"
+        code_lines = [first, *_move_to_workspace(code_lines)]
+    lines = "\n".join(f"    {line}" for line in code_lines)
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
 
+def count_workspace(function_text: str) -> int:
+    """Number of intermediate values that a function with a workspace needs in y behind its results."""
+    return max((int(index) + 1 for index in re.findall(r"\bw\[(\d+)\]", function_text)), default=0)
+
+
+def _move_to_workspace(code_lines: Sequence[str]) -> list[str]:
+    """Replace local constants by entries of the array w, which are used again after their last use."""
+    last_use = {name: i for i, line in enumerate(code_lines) for name in _VALUE_PATTERN.findall(line)}
+    slots, free_slots, lines = dict[str, int](), list[int](), list[str]()
+    for i, line in enumerate(code_lines):
+        name, _, expression = line.removeprefix("const double ").partition(" = ")
+        expression = _VALUE_PATTERN.sub(lambda match: f"w[{slots[match[0]]}]", expression)
+        free_slots += [slots.pop(used) for used in [*slots] if last_use[used] == i]
+        if line.startswith("const "):
+            slots[name] = free_slots.pop() if free_slots else len(slots)
+            name = f"w[{slots[name]}]"
+        lines.append(f"{name} = {expression}" if expression else line)
+    return lines
+
+
+_VALUE_PATTERN = re.compile(r"\b(?:per_)?t\d+\b")
 _Operations = Mapping[str, tuple[int, list[str]]]
 """{name of a value: (CasADi operation, names of its operands)}."""
 

@@ -63,6 +63,7 @@ def _generate_law_sources(
     """Texts of law.h and law.c, generated once for all parameter files of one structure."""
     key = (
         model.name,
+        model.evaluate,
         model.parameter_class,
         parameter_split.parameter_class,
         parameter_split.code_structure_key,
@@ -117,13 +118,18 @@ def _format_model_header(model: Model, parameters: object, history_size: int) ->
         if model.is_time_dependent
         else ""
     )
+    if model.evaluate_residuals:
+        macros += "#define HAS_JACOBIAN 1\n"
     fields = list(model.parameter_fields())
     if "lag_a" in fields:
         first = 1 + len(model.inputs) + len(model.outputs)
         macros += f"#define FIRST_LAG_PARAMETER {first + fields.index('lag_a')}\n"
     if model.find_event_times:
         macros += f"#define N_TIME_EVENTS {len(model.find_event_times(parameters))}\n"
-    input_names = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
+    names = [  # a name with dots is that of a component without C of its own
+        v.name.upper() if v.name.isidentifier() else str(i) for i, v in enumerate(model.inputs)
+    ]
+    input_names = ", ".join(f"INPUT_{name}" for name in names)
     if history_size:
         macros += f"#define N_HISTORY {history_size}\n"
     return f"""#ifndef JOINTFMU_MODEL_H

@@ -11,7 +11,7 @@ from ...joint_parts.c_text import format_array, format_number, format_string
 from ...joint_parts.graph import FunctionGraph
 from ...joint_parts.native import NativeDefinition, shared_definitions
 from ...templates import load_template
-from .emit import C_HELPER_FUNCTIONS, format_function
+from .emit import C_HELPER_FUNCTIONS, count_workspace, format_function
 
 _MAX_INLINE_LINES = 150
 """Largest number of lines of an inlined function [1]: functions evaluated in every step are short."""
@@ -28,7 +28,8 @@ def format_law(
     series = {name: regimes for name, regimes in series.items() if regimes}
     bodies, prototypes, inline = [], [], []
     looped = {f.name for f in function_graph.functions if f.called_in_loops}
-    for name, text in _format_functions(function_graph).items():
+    texts = _format_functions(function_graph)
+    for name, text in texts.items():
         if name.rsplit("_", 1)[0] in series:
             bodies.append(text.replace("\nvoid ", "\nstatic void ", 1))
         elif (
@@ -55,6 +56,7 @@ def format_law(
         counts={
             **_list_sizes(function_graph, model, native_definition, count),
             **definitions.integer_constants,
+            **_size_workspace(function_graph, texts),
         },
         macros={name: format_number(value) for name, value in definitions.real_constants.items()},
         tabulated=native_definition.is_tabulated,
@@ -91,8 +93,15 @@ def _format_functions(function_graph: FunctionGraph) -> dict[str, str]:
             function_graph.all_constants,
             f.result_expressions,
             is_derivative=derivative,
+            has_workspace=f.has_workspace,
         )
     return texts
+
+
+def _size_workspace(function_graph: FunctionGraph, texts: Mapping[str, str]) -> dict[str, int]:
+    """{name: integer} of the largest workspace of a function; empty if none has a workspace."""
+    sizes = [count_workspace(texts[f.name]) for f in function_graph.functions if f.has_workspace]
+    return {"N_WORKSPACE": max(sizes)} if sizes else {}
 
 
 def _list_sizes(

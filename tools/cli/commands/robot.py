@@ -7,17 +7,15 @@ from typing import Any
 
 from jointfmu.files.outputs import (
     ACTUATOR_FILE,
+    ARCHIVE_FILE,
     EXCHANGE_FILE,
     OUTPUT_FOLDER,
-    PARAMETER_FILE,
     PICTURE_FILE,
     PROGRAM_MARK,
     check_output,
     check_outputs,
-    write_parameter_text,
 )
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import format_parameter_file
 
 from ...common import plots
 from ...common.options import require_package
@@ -49,8 +47,10 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     text = "also write the robot with MuJoCo plugins of the drives, compiled on this machine"
     sub.add_argument("--plugin", action="store_true", help=text)
-    text = "also write one FMU of all axes at the pose, and its system file"
+    text = "also write the robot as one FMU, NAME.fmu in FMI 2.0 and 3.0, with its rigid-body dynamics"
     sub.add_argument("--fmu", action="store_true", help=text)
+    text = "input of the motors of the FMU: torque, or angle, speed and acceleration (default: torque)"
+    sub.add_argument("--motors", choices=("torque", "angle"), help=text)
     declare_output(sub, "--out", OUTPUT_FOLDER, "folder to write", required=True)
 
 
@@ -79,28 +79,27 @@ def run(args: argparse.Namespace) -> CommandResult:
     with require_package("read robots", "mujoco"):
         import mujoco  # noqa: F401
     from ...api import load
-    from ...exchange.robots import elastic, poses, rigid_joints
+    from ...exchange.robots import elastic, poses, rigid_joints, rigid_tree, robot_system
     from ...exchange.robots import pictures as drawn
     from ...exchange.robots.names import check_plugin_names, make_identifier
     from ...joints.harmonic_drive.transmission import make_transmission
+    from ...systems.fmu.build import build_system, fmu_paths
 
     spec = elastic.read_robot(args.robot)
     loaded = {name: load(name).file for name in dict.fromkeys(names.values())}  # axes may share a drive
     files = {joint: loaded[name] for joint, name in names.items()}
-    if args.plugin or args.fmu:
+    if args.plugin:
         check_plugin_names(files)
-    if args.fmu:
-        outputs = [
-            *(make_identifier(file.name) for file in files.values()),
-            f"{make_identifier(args.robot.stem)}_axes",
-        ]
-        for path in (args.out / f"{name}.toml" for name in outputs):
-            check_input_overwrite([path], args, ("out",))
-            check_output(path, PARAMETER_FILE, args.force)
+    if args.motors and not args.fmu:
+        raise ValueError(f"--motors {args.motors} has no effect without --fmu")
+    title = make_identifier(args.robot.stem)
     drives = {name: make_transmission(file) for name, file in loaded.items()}
     axes = elastic.make_axes(spec, {joint: drives[name] for joint, name in names.items()})
     model = spec.compile()
     pose, tip = elastic.joint_positions(model, angles), elastic.find_body(model, args.tip, axes)
+    if args.fmu:
+        robot_system.name_joints(model)
+        check_outputs(fmu_paths(title, args.out), ARCHIVE_FILE, args.force)
     made = elastic.add_drives(spec, axes)
     _write_robot(written, made, args)
     _write_robot(rigid, rigid_joints.add_rigid_drives(spec, axes), args)
@@ -115,7 +114,13 @@ def run(args: argparse.Namespace) -> CommandResult:
         if args.plugin:
             more += _write_robot_with_plugins(args, spec, axes, files)
         if args.fmu:
-            more += _write_axes_system(args, model, axes, files, pose, tip)
+            arm = robot_system.read_arm(
+                model, axes, files, pose, args.payload, tip, has_motor_angles=args.motors == "angle"
+            )
+            text = f"{args.robot.stem} with elastic drives"
+            more += build_system(
+                robot_system.make_robot_system(arm, title, text, args.payload), args.out, overwrite=args.force
+            )
     longest = poses.find_largest_stable_step(model, axes, pose)
     weight, jacobian = poses.compute_torques(model, axes, pose, args.payload, tip)
     plain, plain_sunk = poses.compute_weight_deflection(
@@ -137,6 +142,8 @@ def run(args: argparse.Namespace) -> CommandResult:
             f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, and does not "
             "load that axis; state another body (a link of a URDF) with --tip BODY"
         )
+    if args.fmu and (omitted := rigid_tree.list_omissions(model)):
+        notes.append(f"the FMU does not include {', '.join(omitted)}")
     lacking = (
         f"{axis.drive.name}: the MJCF does not include {line}"
         for axis in axes
@@ -210,32 +217,6 @@ def _write_robot_with_plugins(
     text = elastic.format_with_relative_folders(text, robot_spec, args.out)
     write_text(written, f"<!-- {PROGRAM_MARK} -->\n{text}")
     return [written, *plugin_robot.compile_plugins(drive_files, args.out).values()]
-
-
-def _write_axes_system(
-    args: argparse.Namespace, model: Any, axes: Any, drive_files: Any, pose: Any, tip_body_index: int
-) -> list[Path]:
-    """Write the system file of the axes, the parameter files of their drives, and the FMUs.
-
-    Returns the paths of the system file and the FMUs.
-    """
-    from ...exchange.robots import axes_system
-    from ...exchange.robots.names import make_identifier
-    from ...systems.fmu.assembly import assemble_system
-    from ...systems.fmu.build import build_system
-    from ...systems.system import read_system
-
-    written = args.out / f"{make_identifier(args.robot.stem)}_axes.toml"
-    drives = {make_identifier(file.name): format_parameter_file(file) for file in drive_files.values()}
-    for name, text in drives.items():
-        write_parameter_text(args.out / f"{name}.toml", text)
-    write_parameter_text(
-        written,
-        axes_system.format_axes_system(
-            args.robot.stem, model, axes, drive_files, pose, args.payload, tip_body_index
-        ),
-    )
-    return [written, *build_system(assemble_system(read_system(written)), args.out, overwrite=args.force)]
 
 
 def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:

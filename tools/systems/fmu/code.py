@@ -15,7 +15,7 @@ from jointfmu_fmu_src.native.code.generate import (
 )
 from jointfmu_fmu_src.native.data import make_data_block, split_parameters
 
-from .model import SystemComponent, SystemModel
+from .model import SystemComponent, SystemModel, full_name
 
 _COMMON_FILES = list_runtime_files(("elementary",))
 _SHARED_FILE_STEMS = {path.stem for path in _COMMON_FILES} - {"joint", "variables"} | {"elementary_tables"}
@@ -110,7 +110,8 @@ def _format_model_header(system_model: SystemModel) -> str:
         "N_CONNECTIONS": wires,
         "N_COMPONENT_VALUES": wires + len(system_model.components),
     }
-    definitions = {"N_STATES": 2 * len(system_model.bodies), "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
+    states = sum(p.model.state_count for p in system_model.bodies)
+    definitions = {"N_STATES": states, "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
     definitions |= {
         name: value for name, value in (("N_TIME_EVENTS", events), ("N_HISTORY", memory)) if value
     }
@@ -132,8 +133,8 @@ def _count_time_events(component: SystemComponent) -> int:
 def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -> str:
     """Text of components.c: functions, sizes and connections of the components."""
     first = 1 + len(system_model.inputs)
-    reference = {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(system_model.inputs, start=1)}
-    reference |= {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(system_model.outputs, start=first)}
+    reference = {p.full_name(v.name): k for k, (p, v) in enumerate(system_model.inputs, start=1)}
+    reference |= {p.full_name(v.name): k for k, (p, v) in enumerate(system_model.outputs, start=first)}
     declared, rows, wires = [], list[str](), list[str]()
     offset = {"parameters": 0, "memory": 0, "row": 0, "wire": 0, "warnings": 0}
     for prefix in dict.fromkeys(prefixes.values()):
@@ -141,8 +142,8 @@ def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -
     for component in system_model.components:
         model, prefix = component.model, prefixes[component.name]
         sources = [component.sources.get(v.name, (component.name, v.name)) for v in model.inputs]
-        wires += [str(reference[".".join(feed)] if feed else 0) for feed in sources]
-        wires += [str(reference[f"{component.name}.{v.name}"]) for v in model.outputs]
+        wires += [str(reference[full_name(*feed)] if feed else 0) for feed in sources]
+        wires += [str(reference[component.full_name(v.name)]) for v in model.outputs]
         events = _count_time_events(component)
         if events:
             declared.append(f"void {prefix}joint_event_times(Joint *joint, double *times);\n")

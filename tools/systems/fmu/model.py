@@ -1,7 +1,7 @@
 """Model of a system for its FMU: components in the order of evaluation, and the sources of their inputs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, make_dataclass, replace
+from dataclasses import Field, dataclass, fields, make_dataclass, replace
 from typing import Any, NamedTuple
 
 from jointfmu.joints.model import LoadRamp, Model, Variable
@@ -15,17 +15,23 @@ LAG_PARAMETERS = ("lag_a", "lag_b")
 """Parameters of bodies that are needed only if joints and bodies are separate FMUs."""
 
 
+def full_name(component_name: str, variable_name: str) -> str:
+    """Name of a component's variable in the system; the component without a name gives its names directly."""
+    return f"{component_name}.{variable_name}" if component_name else variable_name
+
+
 class InputSource(NamedTuple):
-    """Source of an input: an output of another component."""
+    """Source of an input: an output of another component, or an input of the system that is its input."""
 
     component: str
-    output: str
+    variable: str
 
 
 @dataclass(frozen=True, slots=True)
 class SystemComponent:
     """Component of a system: load, joint or body.
 
+    name         : empty for a component whose variables have no prefix
     model        : model of its FMU; that of a body lacks the parameters in LAG_PARAMETERS
     sources      : {input: its source}; None: the input is zero. Inputs without an entry are inputs of the
         system
@@ -38,10 +44,19 @@ class SystemComponent:
     sources: Mapping[str, InputSource | None]
     start_values: Mapping[str, float]
 
+    def full_name(self, variable_name: str) -> str:
+        """Name of a variable or parameter of the component in the system."""
+        return full_name(self.name, variable_name)
+
     @property
     def system_inputs(self) -> list[Variable]:
         """Inputs that are inputs of the system."""
         return [v for v in self.model.inputs if v.name not in self.sources]
+
+    @property
+    def body_count(self) -> int:
+        """Number of degrees of freedom."""
+        return self.model.state_count // 2
 
     @property
     def variable_parameters(self) -> list[str]:
@@ -80,20 +95,23 @@ class SystemModel:
     @property
     def outputs(self) -> list[tuple[SystemComponent, Variable]]:
         """(component, variable) of the outputs: positions, speeds, accelerations of bodies; then others."""
-        bodies = self.bodies
-        moving = [(component, component.model.outputs[k]) for k in range(3) for component in bodies]
+        moving = [
+            (component, v)
+            for k in range(3)
+            for component in self.bodies
+            for v in component.model.outputs[k * component.body_count : (k + 1) * component.body_count]
+        ]
         return moving + [
             (component, v)
             for component in self.components
-            if not component.model.state_count
-            for v in component.model.outputs
+            for v in component.model.outputs[3 * component.body_count :]
         ]
 
     def make_model(self) -> Model:
         """Make the model of the FMU, whose variables are called COMPONENT.VARIABLE."""
-        sets = [(p.name, type(p.parameters.values), group_field(p.model.doc)) for p in self.components]
+        sets = [part for p in self.components for part in _parameter_groups(p)]
         hidden = [
-            f"{p.name}.{name}"
+            p.full_name(name)
             for p in self.components
             for name, _ in flatten_fields(type(p.parameters.values))
             if name not in p.variable_parameters
@@ -102,7 +120,12 @@ class SystemModel:
             name=self.name,
             joint=SYSTEM_KIND,
             doc=self.doc,
-            parameter_class=make_dataclass("SystemParameters", sets, frozen=True, kw_only=True),
+            parameter_class=make_dataclass(
+                "SystemParameters",
+                [(f"group{k}", cls, item) for k, (cls, item, _) in enumerate(sets)],
+                frozen=True,
+                kw_only=True,
+            ),
             tabulate=lambda values: values,
             inputs=[with_component_name(component, v) for component, v in self.inputs],
             outputs=[with_component_name(component, v) for component, v in self.outputs],
@@ -111,7 +134,7 @@ class SystemModel:
             ramp=LoadRamp("", self.stop_time, self.interval, self.interval),
             dependencies=self._find_dependencies(),
             fixed_parameters=hidden,
-            state_count=2 * len(self.bodies),
+            state_count=sum(p.model.state_count for p in self.components),
             is_time_dependent=True,
             initial_history=_raise_not_in_python
             if any(p.model.initial_history for p in self.components)
@@ -124,39 +147,56 @@ class SystemModel:
 
         def collect(attribute: str) -> dict[str, Any]:
             return {
-                f"{p.name}.{name}": value
+                p.full_name(name): value
                 for p in self.components
                 for name, value in getattr(p.parameters, attribute).items()
             }
 
-        values = model.parameter_class(**{p.name: p.parameters.values for p in self.components})
-        starts = {f"{p.name}.{v.name}": p.start_values.get(v.name, v.start) for p, v in self.inputs}
+        groups = [value for p in self.components for *_, value in _parameter_groups(p)]
+        values = model.parameter_class(**{f"group{k}": value for k, value in enumerate(groups)})
+        starts = {p.full_name(v.name): p.start_values.get(v.name, v.start) for p, v in self.inputs}
         return ParameterFile(SYSTEM_KIND, self.name, values, collect("origins"), collect("sources"), starts)
 
     def _find_dependencies(self) -> dict[str, list[str]]:
         """{output: inputs of the system and states on which it depends}."""
         dependencies: dict[str, dict[str, None]] = {}
-        for component in self.bodies:
-            for v in component.model.outputs[:2]:
-                dependencies[f"{component.name}.{v.name}"] = {f"{component.name}.{v.name}": None}
+        states = [(p, v) for p in self.bodies for v in p.model.outputs[: p.model.state_count]]
+        for component, v in (*states, *self.inputs):
+            dependencies[component.full_name(v.name)] = {component.full_name(v.name): None}
         for component in self.components:
-            states = {v.name for v in component.model.outputs[: component.model.state_count]}
             for v in component.model.outputs[component.model.state_count :]:
                 sources: dict[str, None] = {}
                 for name in component.model.list_dependencies(v.name):
-                    feed = component.sources.get(name)
-                    if name in states or name not in component.sources:
-                        sources[f"{component.name}.{name}"] = None
-                    elif feed:
-                        sources |= dependencies[f"{feed.component}.{feed.output}"]
-                dependencies[f"{component.name}.{v.name}"] = sources
-        return {name: [*sources] for name, sources in dependencies.items()}
+                    feed = component.sources.get(name, InputSource(component.name, name))
+                    if feed:
+                        sources |= dependencies[full_name(*feed)]
+                dependencies[component.full_name(v.name)] = sources
+        inputs = {component.full_name(v.name) for component, v in self.inputs}
+        return {name: [*sources] for name, sources in dependencies.items() if name not in inputs}
+
+
+def _parameter_groups(component: SystemComponent) -> list[tuple[type, Any, Any]]:
+    """(class, field, value) of the groups of parameters of a component, with their names in the system."""
+    values = component.parameters.values
+    if component.name:
+        return [(type(values), group_field(component.model.doc, **{component.name: type(values)}), values)]
+    return [
+        (type(getattr(values, item.name)), _copy_group(item), getattr(values, item.name))
+        for item in fields(values)
+    ]
+
+
+def _copy_group(group: Field[Any]) -> Any:
+    """New declaration of a group of parameters, for another class."""
+    return group_field(group.metadata["doc"], **group.metadata["alternatives"])
 
 
 def with_component_name(component: SystemComponent, variable: Variable) -> Variable:
     """Copy of a variable with the name COMPONENT.VARIABLE."""
     return replace(
-        variable, name=f"{component.name}.{variable.name}", doc=f"{variable.doc} ({component.name})"
+        variable,
+        name=component.full_name(variable.name),
+        doc=f"{variable.doc} ({component.name})" if component.name else variable.doc,
     )
 
 

@@ -62,11 +62,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
                                       : ref < FIRST_OUTPUT ? inputs[ref - FIRST_INPUT]
                                                            : outputs[ref - FIRST_OUTPUT];
         }
-        if (c->n_states) {
-            component_outputs[0] = outputs[body];
-            component_outputs[1] = outputs[N_BODIES + body];
-            body++;
-        }
+        const size_t n_bodies = c->n_states / 2;
+        memcpy(component_outputs, outputs + body, n_bodies * sizeof *outputs);
+        memcpy(component_outputs + n_bodies, outputs + N_BODIES + body, n_bodies * sizeof *outputs);
+        body += n_bodies;
         Text component_reason;
         text_clear(&component_reason);
         if (!c->evaluate(joint->component[i], values + FIRST_INPUT, history + c->first_history,
@@ -97,12 +96,12 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
             rate[k] = !ref ? 0.0 : ref < FIRST_OUTPUT ? seed[ref - FIRST_INPUT] : result[ref - FIRST_OUTPUT];
             has_rate |= rate[k] != 0.0;
         }
-        if (c->n_states) {
-            rate[c->n_inputs] = result[body];
-            rate[c->n_inputs + 1] = result[N_BODIES + body];
-            has_rate |= result[body] != 0.0 || result[N_BODIES + body] != 0.0;
-            body++;
-        }
+        const size_t n_bodies = c->n_states / 2;
+        memcpy(rate + c->n_inputs, result + body, n_bodies * sizeof *rate);
+        memcpy(rate + c->n_inputs + n_bodies, result + N_BODIES + body, n_bodies * sizeof *rate);
+        for (size_t k = c->n_inputs; k < c->n_inputs + c->n_states; k++)
+            has_rate |= rate[k] != 0.0;
+        body += n_bodies;
         if (has_rate)
             c->derivative(joint->component[i], values + FIRST_INPUT, history + c->first_history,
                           history_end ? history_end + c->first_history : NULL, rate, output_rates);

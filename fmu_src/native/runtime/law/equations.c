@@ -12,6 +12,14 @@ enum { N_ARGUMENTS = FIRST_OUTPUT + N_STATES };
 
 struct Joint {
     double constants[N_CONSTANTS]; /* parameters, parameters that are no FMU variables, expressions of both */
+#if HAS_JACOBIAN
+    double results[N_OUTPUTS + N_WORKSPACE];
+    double arguments[N_ARGUMENTS + N_BODIES]; /* time, inputs, states and accelerations of the factors below */
+    double jacobian[N_JACOBIAN + N_ARGUMENTS + N_WORKSPACE]; /* factors of the derivatives; then a seed */
+    bool jacobian_is_current;
+#else
+    double results[N_OUTPUTS];
+#endif
 };
 
 size_t joint_size(void)
@@ -30,31 +38,44 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
     memcpy(joint->constants, parameters, N_PARAMETERS * sizeof(double));
     memcpy(joint->constants + N_PARAMETERS, data.hidden_parameters, N_HIDDEN_PARAMETERS * sizeof(double));
     law_constants(joint->constants, 0, joint->constants + N_PARAMETERS + N_HIDDEN_PARAMETERS);
+#if HAS_JACOBIAN
+    joint->jacobian_is_current = false;
+#endif
     return true;
 }
 
 bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
                     Text *reason)
 {
-    double arguments[N_ARGUMENTS], results[N_OUTPUTS];
+    double arguments[N_ARGUMENTS];
     (void)history, (void)history_end, (void)reason;
     memcpy(arguments, inputs - FIRST_INPUT, FIRST_OUTPUT * sizeof(double));
     memcpy(arguments + FIRST_OUTPUT, out, N_STATES * sizeof(double));
-    outputs(arguments, joint->constants, results);
-    memcpy(out, results, sizeof results);
+    outputs(arguments, joint->constants, joint->results);
+    memcpy(out, joint->results, N_OUTPUTS * sizeof *out);
     return true;
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
                       const double *seed, double *result)
 {
-    (void)history_end;
+    (void)history, (void)history_end;
+#if HAS_JACOBIAN /* one evaluation for the seeds of all states */
+    if (!joint->jacobian_is_current || memcmp(joint->arguments, inputs - FIRST_INPUT, sizeof joint->arguments) != 0) {
+        memcpy(joint->arguments, inputs - FIRST_INPUT, sizeof joint->arguments);
+        outputs_jacobian(joint->arguments, joint->constants, joint->jacobian);
+        joint->jacobian_is_current = true;
+    }
+    memcpy(joint->jacobian + N_JACOBIAN, seed, (N_ARGUMENTS - 1) * sizeof *seed);
+    outputs_jacobian_product(joint->jacobian, joint->constants, joint->results);
+    memcpy(result, joint->results, N_OUTPUTS * sizeof *result);
+#else
     double x[2 * N_ARGUMENTS];
-    (void)history;
     memcpy(x, inputs - FIRST_INPUT, N_ARGUMENTS * sizeof(double));
     x[N_ARGUMENTS] = 0.0; /* the derivative is at constant time */
     memcpy(x + N_ARGUMENTS + 1, seed, (N_ARGUMENTS - 1) * sizeof(double));
     outputs_seed(x, joint->constants, result);
+#endif
 }
 
 #if N_TIME_EVENTS
