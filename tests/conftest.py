@@ -374,14 +374,18 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def system_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with what `jointfmu build --systems` makes, and the drive with torque in."""
+def system_files(tmp_path_factory: pytest.TempPathFactory, native: Path) -> Path:
+    """Folder with what `jointfmu build --systems` makes, and the drive with torque in.
+
+    FMUs that `native` does not have are for this machine alone.
+    """
     from jointfmu_fmu_src.building import build_fmus
     from jointfmu_tools import cli
 
     def make(out: Path) -> None:
-        build_fmus(["HarmonicDriveCompliance"], ["fmi2"], None, out)
-        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
+        with here_alone():
+            build_fmus(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+            assert cli.main(["build", "--systems", "--out", str(out)]) == 0
 
     return made_once(tmp_path_factory, "systems", make)
 

@@ -159,13 +159,14 @@ class _WorkerPool(ProcessPoolExecutor):
     """Process pool with the start method spawn; it communicates by pipes, without network ports."""
 
     def __init__(self, process_count: int) -> None:
+        self._process_count = process_count
         with _quiet_start_context():
             super().__init__(process_count, multiprocessing.get_context("spawn"), _set_up_worker)
 
     def submit(self, /, *args: Any, **arguments: Any) -> Future[Any]:
         with _quiet_start_context():
             future = super().submit(*args, **arguments)
-            if len(self._processes) == self._max_workers:
+            if len(self._processes) == self._process_count:
                 self._leave_results_to_workers()
         return future
 

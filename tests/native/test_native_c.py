@@ -65,14 +65,13 @@ OWN = {
     for version, place in zip(VERSIONS, (fmpy.platform, fmpy.platform_tuple), strict=True)
 }
 """{version: folder and suffix of this machine's libraries}."""
-FUZZ_CALLS = 250_000 // (len(MODELS) * len(VERSIONS))
+FUZZ_CALLS = 100_000 // (len(MODELS) * len(VERSIONS))
 
 SYSTEM = "robot_joint"
-MUTATIONS = dict.fromkeys([*MODELS, SYSTEM], 5_000) | {
-    name: 15_000 for name in MODELS if name.startswith("HarmonicDrive")
+MUTATIONS = dict.fromkeys([*MODELS, SYSTEM], 2_000) | {
+    name: 5_000 for name in MODELS if name.startswith("HarmonicDrive")
 }
-"""Serialized states, in each version, the same in every run: more of what is fast. A third of them takes 2 to
-13 % fewer branches."""
+"""Serialized states, in each version, the same in every run: more of what is fast."""
 ELASTIC = "BoltedJoint with elastic sides"
 """Of the fixture `elastic_joint`."""
 ELASTIC_MUTATIONS = 300
