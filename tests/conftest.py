@@ -55,7 +55,7 @@ SLOW_FIXTURES = frozenset({"fmus", "native", "system_files", "elastic_joint", "t
 LONGEST_FILES = frozenset(
     {
         "test_native_c.py",
-        "test_uncertainty_sweep.py",
+        "test_native_values.py",
         "test_fmu_build.py",
         "test_elastic_sides.py",
         "test_systems.py",
