@@ -55,7 +55,7 @@ SLOW_FIXTURES = frozenset({"fmus", "native", "system_files", "elastic_joint", "t
 LONGEST_FILES = frozenset(
     {
         "test_native_c.py",
-        "test_uncertainty_sweep.py",
+        "test_native_values.py",
         "test_fmu_build.py",
         "test_elastic_sides.py",
         "test_systems.py",
@@ -378,14 +378,18 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def system_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with the files that `jointfmu build --systems` writes, and the drive with torque as input."""
+def system_files(tmp_path_factory: pytest.TempPathFactory, native: Path) -> Path:
+    """Folder with the files that `jointfmu build --systems` writes, and the drive with torque as input.
+
+    FMUs that `native` does not have are for this machine alone.
+    """
     from jointfmu_fmu_src.building import build_fmus
     from jointfmu_tools import cli
 
     def make(out: Path) -> None:
-        build_fmus(["HarmonicDriveCompliance"], ["fmi2"], None, out)
-        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
+        with here_alone():
+            build_fmus(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+            assert cli.main(["build", "--systems", "--out", str(out)]) == 0
 
     return made_once(tmp_path_factory, "systems", make)
 

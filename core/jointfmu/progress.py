@@ -6,11 +6,12 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager, suppress
 from itertools import islice
-from threading import Event, Lock, RLock, Thread
+from queue import SimpleQueue
+from threading import Event, Lock, RLock, Thread, current_thread, main_thread
 from typing import Any, TypeVar
 
 Job = TypeVar("Job")
@@ -158,12 +159,31 @@ class _WorkerPool(ProcessPoolExecutor):
     """Process pool with the start method spawn; it communicates by pipes, without network ports."""
 
     def __init__(self, process_count: int) -> None:
+        self._process_count = process_count
         with _quiet_start_context():
             super().__init__(process_count, multiprocessing.get_context("spawn"), _set_up_worker)
 
     def submit(self, /, *args: Any, **arguments: Any) -> Future[Any]:
         with _quiet_start_context():
-            return super().submit(*args, **arguments)
+            future = super().submit(*args, **arguments)
+            if len(self._processes) == self._process_count:
+                self._leave_results_to_workers()
+        return future
+
+    def kill(self) -> None:
+        """Kill all child processes of this process, and end this pool."""
+        for process in multiprocessing.active_children():
+            process.kill()
+        self._leave_results_to_workers()
+        self.shutdown(cancel_futures=True)
+
+    def _leave_results_to_workers(self) -> None:
+        """Close this process's copy of the pipe's end to which the workers write.
+
+        Otherwise this process waits forever for the rest of a result whose worker died while it was writing.
+        """
+        queue: Any = self._result_queue
+        queue._writer.close()
 
 
 @contextmanager
@@ -179,9 +199,7 @@ def worker_processes(process_count: int | None = None) -> Iterator[Executor]:
     try:
         yield pool
     except BaseException:
-        for process in multiprocessing.active_children():
-            process.kill()
-        pool.shutdown(cancel_futures=True)
+        pool.kill()
         raise
     pool.shutdown()
 
@@ -196,20 +214,26 @@ def run_jobs(
     you stop before its end: this ends the processes. `process_count` None: one process per core.
     """
     waiting = iter(jobs)
+    finished: SimpleQueue[Future[Result]] = SimpleQueue()
     with ExitStack() as entered:
         running: dict[Future[Result], tuple[Job, int, Executor]] = {}
 
         def submit_job(job: Job, attempt: int, pool: Executor | None) -> None:
             try:
                 pool = pool or entered.enter_context(worker_processes(1))
-                running[pool.submit(job_function, job)] = job, attempt, pool
+                future = pool.submit(job_function, job)
             except BrokenProcessPool:  # its process died after its last job
                 submit_job(job, attempt, None)
+            else:
+                running[future] = job, attempt, pool
+                future.add_done_callback(finished.put)
 
         for job in islice(waiting, process_count or os.cpu_count() or 1):
-            submit_job(job, 1, None)
+            with defer_interrupt():
+                submit_job(job, 1, None)
         while running:
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            future = finished.get()
+            with defer_interrupt():
                 job, attempt, pool = running.pop(future)
                 died = isinstance(future.exception(), BrokenProcessPool)
                 if died and attempt < MAX_JOB_ATTEMPTS:
@@ -217,7 +241,28 @@ def run_jobs(
                     continue
                 for next_job in islice(waiting, 1):
                     submit_job(next_job, 1, None if died else pool)
-                yield job, None if died else future.result()
+                result = None if died else future.result()
+            yield job, result
+
+
+@contextmanager
+def defer_interrupt() -> Iterator[None]:
+    """Context that defers Ctrl-C to its end, for code that an interrupt would leave with a lock held.
+
+    The threads of a process pool would wait for the lock forever. Only the main thread is interrupted.
+    """
+    previous_handler = signal.getsignal(signal.SIGINT)
+    if current_thread() is not main_thread() or previous_handler is None:
+        yield
+        return
+    signals: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, frame: signals.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous_handler)
+    if signals:
+        signal.raise_signal(signals[0])
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 import io
 import json
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -47,6 +48,22 @@ def test_long_work_says_what_it_does_on_a_terminal(
         assert stream.getvalue().endswith("\r\x1b[K" * shown)  # and is gone again
         assert sys.stdout is out
         assert capsys.readouterr().out == "done\n"
+
+
+def test_an_interrupt_is_deferred_to_the_end_of_the_outermost_context():
+    done = []
+
+    def work():
+        with progress.defer_interrupt():
+            with progress.defer_interrupt():
+                signal.raise_signal(signal.SIGINT)
+                done.append("inner")
+            done.append("outer")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert done == ["inner", "outer"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_long_work_prints_one_line_where_there_is_no_terminal(monkeypatch):

@@ -58,9 +58,8 @@ def test_a_line_has_its_textbook_covariance():
 @pytest.mark.parametrize("case", measurements.CASES)
 def test_round_trip(case, tmp_path):
     """A small version of the script's 100 seeds: by chance 1 % of the fits are outside three deviations."""
-    found = [measurements.errors(measurements.CASES[case], seed, tmp_path) for seed in range(3)]
-    within = [all(abs(z) <= 3.0 for _, z in one.values()) for one in found]
-    assert sum(within) >= 2
+    found = [measurements.errors(measurements.CASES[case], seed, tmp_path) for seed in range(2)]
+    assert all(abs(z) <= 3.0 for one in found for _, z in one.values())
     assert all(abs(error) < 0.6 for one in found for error, _ in one.values())
 
 

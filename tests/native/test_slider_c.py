@@ -25,7 +25,7 @@ from jointfmu.mechanics.sliders import sum_slider_forces, torsion_directions
 
 pytestmark = pytest.mark.slow
 
-MOVES, SLIDERS = 100_000, 40
+MOVES, SLIDERS = 40_000, 40
 ROUND_OFF = 1e-13
 """Round-off of a sum of some products over the largest compared value: C adds in another order."""
 POINTER_TO = POINTER(c_double)

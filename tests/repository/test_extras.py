@@ -16,6 +16,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 from jointfmu.joints.bolted_joint.law import get_bolted_frame
+from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import load_default
 
 pytestmark = pytest.mark.slow
@@ -28,7 +29,7 @@ FIRST_COMMANDS = {
     "surface": [*JOINTFMU, "surface", "scan.csv", "--plot", "flange.png"],
     "uncertainty": [
         *(*JOINTFMU, "uncertainty", "harmonic_drive", "--set", "surface.D=2.45..2.6", "eccentricity=0..1e-5"),
-        *("--samples", "32", "--plot", "bands.png"),
+        *("--samples", "8", "--plot", "bands.png"),
     ],
     "field": [*JOINTFMU, "footprint", "import", "field.csv", "--preload", "9000", "--plot", "field.png"],
     "fem": [
@@ -39,11 +40,11 @@ FIRST_COMMANDS = {
         *(*JOINTFMU, "robot", str(ROOT / "models/robots/six_axis.xml"), "--drive", "joint3=CSG-25-100"),
         *("--out", "arm"),
     ],
-    "docs": [sys.executable, str(ROOT / "docs" / "make_site.py"), "--out", "site"],
 }
 """{extra: first command of its page, with the smallest input}."""
-NO_COMMAND = {"cluster", "sweep", "test", "check", "release"}
-"""Extras without a command to test here: dask needs a cluster, the others are for developers."""
+NO_COMMAND = {"cluster", "sweep", "docs", "test", "check", "release"}
+"""Extras without a command to test here: dask needs a cluster, test_docs.py builds the site with `docs`, the
+others are for developers."""
 BLOCKER = """
 import os, sys
 
@@ -97,13 +98,21 @@ def modules_without(packages: set[str]) -> set[str]:
     }
 
 
-def write_inputs(folder: Path) -> None:
+def environment_with(extra: str, blocker: Path) -> dict[str, str]:
+    """Environment in which only what an extra installs can be imported; `blocker` is an empty folder."""
+    (blocker / "sitecustomize.py").write_text(BLOCKER, encoding="utf-8")
+    blocked = " ".join(sorted(modules_without(installed_with(extra))))
+    return dict(os.environ) | {"PYTHONPATH": str(blocker), "BLOCKED_MODULES": blocked}
+
+
+def write_inputs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A scan of 64 x 64 heights, and the field of the default bolted joint at a preload of 9 kN."""
     heights = np.random.default_rng(1).standard_normal((64, 64)).cumsum(axis=0).cumsum(axis=1)
     rows = [",".join(f"{0.01 * z:.4f}" for z in line) for line in heights]
     (folder / "scan.csv").write_text(
         "\n".join(["# grid: dx = 1 um, dy = 1 um, z [um]", *rows]) + "\n", encoding="utf-8"
     )
+    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 4)
     joint = load_default("bolted_joint").values
     shape = get_bolted_frame(joint).pressure_distribution()
     p = shape.preload_pressure_ratio * 9e3 * joint.n_bolts / joint.A_0
@@ -119,20 +128,13 @@ def test_all_extras_are_looked_at():
     "extra",
     [pytest.param(extra, marks=needs("gmsh") if extra == "fem" else ()) for extra in FIRST_COMMANDS],
 )
-def test_the_first_command_of_a_page_needs_its_extra_alone(extra, tmp_path):
-    blocker = tmp_path / "blocker"
-    blocker.mkdir()
-    (blocker / "sitecustomize.py").write_text(BLOCKER, encoding="utf-8")
-    write_inputs(tmp_path)
+def test_the_first_command_of_a_page_needs_its_extra_alone(extra, tmp_path, monkeypatch):
+    (blocker := tmp_path / "blocker").mkdir()
+    write_inputs(tmp_path, monkeypatch)
     done = subprocess.run(
         FIRST_COMMANDS[extra],
         cwd=tmp_path,
-        env=dict(os.environ)
-        | {
-            "PYTHONPATH": str(blocker),
-            "BLOCKED_MODULES": " ".join(sorted(modules_without(installed_with(extra)))),
-            "JOINTFMU_CACHE": str(tmp_path / "cache"),
-        },
+        env=environment_with(extra, blocker) | {"JOINTFMU_CACHE": str(tmp_path / "cache")},
         capture_output=True,
         text=True,
         timeout=500,

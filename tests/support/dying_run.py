@@ -1,6 +1,9 @@
-"""A study whose run 5 ends its process. Processes that do its runs import little."""
+"""A study whose run 5 ends its process, a job that sends half of a result. Their processes import little."""
 
 import os
+import struct
+import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -25,3 +28,15 @@ def run_until_five_dies(fmu: Path, out: Path, **execution: Any) -> tuple[int, in
     evaluator = DiesAtFive(fmu, LoadRamp("tau", 5.0, 1.0))
     done = evaluate_runs(evaluator, [{"surface.D": 2.5}] * 24, ["K_WTS"], 2, Execution(out, **execution))
     return done.accepted.size, done.new_run_count, dict(done.errors)
+
+
+def send_half_of_result(sent: Path) -> None:
+    """A job that writes the start of a result to the pipe of its pool, which expects 1000 bytes more.
+
+    sent : folder: the job writes a file there and waits to be killed; other path: the job ends its process
+    """
+    sys._getframe(1).f_locals["result_queue"]._writer._send(struct.pack("!i", 1000))
+    if not sent.is_dir():
+        os._exit(11)
+    (sent / "half").touch()
+    time.sleep(100.0)

@@ -91,8 +91,7 @@ def test_textured_is_the_sum_of_two_profiles():
     np.testing.assert_allclose(made.z[3], first + second[3], rtol=1e-12)
 
 
-@pytest.mark.parametrize("D", [1.2, 1.4, 1.6, 1.8])
-@pytest.mark.parametrize("G", [1e-12, 1e-8])
+@pytest.mark.parametrize(("D", "G"), [(1.2, 1e-12), (1.4, 1e-8), (1.6, 1e-12), (1.8, 1e-8)])
 def test_round_trip_of_isotropic_surfaces(D, G):
     for seed in (1, 2):
         one = identify([synthesis.synthesize_isotropic(waves(512), D + 1, G, 20, seed)]).select_best_result()
@@ -387,9 +386,9 @@ def test_maps_without_any_chance_do_not_crash(shape):
     }
 
 
-def test_a_million_points_without_a_straight_range_are_identified_with_doubt():
+def test_many_points_without_a_straight_range_are_identified_with_doubt():
     """Roll-off at long waves, low-pass at short ones, texture, noise, gaps: hundreds of windows."""
-    n, rng = 1024, np.random.default_rng(1)
+    n, rng = 512, np.random.default_rng(1)
     frequency = np.hypot(np.fft.fftfreq(n)[:, None], np.fft.rfftfreq(n))
     amplitude = (frequency**2 + 0.01**2) ** -0.9 * np.exp(-((frequency / 0.15) ** 2))
     z = np.fft.irfft2(amplitude * np.exp(2j * np.pi * rng.random(frequency.shape)), (n, n))

@@ -8,12 +8,10 @@ on this machine are stored in the user's cache.
 import io
 import lzma
 import re
-import signal
 import tarfile
 import tempfile
-import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
@@ -24,7 +22,7 @@ from typing import NamedTuple
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.progress import set_status_text
+from jointfmu.progress import defer_interrupt, set_status_text
 
 from ...folders import find_source_folder
 from ...joint_parts.data import ParameterSplit
@@ -124,22 +122,6 @@ def _read_cache_file(cache_path: Path) -> bytes:
     return b""
 
 
-@contextmanager
-def _defer_interrupt() -> Iterator[None]:
-    """Context that defers Ctrl-C to its end, a second or two: CasADi ignores the interrupt."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    signals: list[int] = []
-    previous_handler = signal.signal(signal.SIGINT, lambda number, frame: signals.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous_handler)
-    if signals:
-        raise KeyboardInterrupt
-
-
 def compile_model(
     model: Model,
     parameters: ParameterFile,
@@ -151,7 +133,7 @@ def compile_model(
     set_status_text(f"compile {model.name}")
     from ..code.generate import generate_code
 
-    with _defer_interrupt():
+    with defer_interrupt():  # CasADi ignores the interrupt
         sources = generate_code(model, parameters, parameter_split)
     all_sources = sources | {"data.c": make_placeholder(model, parameter_split).make_source()}
     libraries_by_version = {

@@ -220,16 +220,15 @@ def test_no_closed_path_creates_energy(spring):
     """Work on the joint = heat + energy of the sliders >= heat, at constant preload and moment."""
     rng = np.random.default_rng(40)
     for preload, moment in LOADS:
-        for _ in range(2):
-            path = polygon(rng, corners=3, steps=30)
-            out = walk(spring, path, preload=preload, moment=moment)
-            force = np.array([six(o) for o in out])
-            work = -0.5 * np.sum((force[1:] + force[:-1]) * np.diff(path, axis=0))
-            moved = np.sum(np.abs(force[1:] * np.diff(path, axis=0)))
-            heat = float(out[-1]["E_loss"])
-            assert heat > 0.0
-            assert work > heat - 2e-3 * moved  # trapezoids over 30 steps a side
-            assert np.all(np.diff([float(o["E_loss"]) for o in out]) >= 0.0)
+        path = polygon(rng, corners=3, steps=30)
+        out = walk(spring, path, preload=preload, moment=moment)
+        force = np.array([six(o) for o in out])
+        work = -0.5 * np.sum((force[1:] + force[:-1]) * np.diff(path, axis=0))
+        moved = np.sum(np.abs(force[1:] * np.diff(path, axis=0)))
+        heat = float(out[-1]["E_loss"])
+        assert heat > 0.0
+        assert work > heat - 2e-3 * moved  # trapezoids over 30 steps a side
+        assert np.all(np.diff([float(o["E_loss"]) for o in out]) >= 0.0)
 
 
 def stored(spring, memory):
@@ -281,11 +280,10 @@ def test_work_is_stored_or_lost_step_by_step(spring):
 
     Measured: 1.6e-4 at 64 steps an oscillation (0.2 um each), 7e-8 at 640, 2.4e-9 at 2560 (5 nm).
     """
-    coarse, fine, finest = (missing(spring, steps, 12) for steps in (64, 640, 2560))
+    coarse, fine = (missing(spring, steps, 12) for steps in (64, 2560))
     assert coarse < 2e-4
-    assert fine < 2e-7
-    assert finest < 1e-8
-    assert np.log10(coarse / fine) > 2.5  # order
+    assert fine < 1e-8
+    assert np.log(coarse / fine) > 2.5 * np.log(2560 / 64)  # order
 
 
 def test_heat_never_falls(spring):

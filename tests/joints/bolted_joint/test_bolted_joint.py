@@ -194,7 +194,7 @@ def test_mixed_derivative_is_not_lost(spring):
 
 
 @pytest.mark.slow
-@settings(max_examples=4)
+@settings(max_examples=2)
 @given(load=loads, corners=st.lists(states, min_size=2, max_size=3))
 def test_closed_cycles_return_their_energy(spring, load, corners):
     """Work around a closed polygon through the tightened state, with normal and tangential motion."""

@@ -120,8 +120,8 @@ def relative(found: Any, expected: Any) -> float:
     return float(np.max(np.abs(np.asarray(found) - expected)) / np.max(np.abs(expected)))
 
 
-def test_the_preload_ramp_agrees_with_scipy(fmus: Path) -> None:
-    path = fmus / "BoltedJoint.fmu"
+def test_the_preload_ramp_agrees_with_scipy(native: Path) -> None:
+    path = native / "fmi3" / "BoltedJoint.fmu"
     c = ramp.run_ramp(path, "preload", 3e4, 100.0).columns
     assert len(c["preload"]) == 301
     assert np.all(np.diff(c["K_zz"]) > 0.0)

@@ -53,7 +53,7 @@ def field(closed=0.0, moment=0.0):
 FIELD = field()
 
 
-@pytest.fixture(scope="module", params=[0.0, 0.45], ids=["closed", "open"])
+@pytest.fixture(scope="module", params=[0.0, 0.3], ids=["closed", "open"])
 def reduced(request):
     shape = normalise_pressure_field(JOINT, field(request.param), PRELOAD)
     joint = replace(JOINT, A_0=float(FIELD.area.sum()))
@@ -289,10 +289,9 @@ def test_what_asks_for_bolts_refuses_a_field(imported):
         pressure_between_bolts(imported[0].values, PRELOAD)
 
 
-def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
+def test_fmus_have_the_field(tmp_path):
     """After import, through parameter file, native FMU and ramp, the stiffnesses are the direct sums over all
     nodes."""
-    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 10)
     shape = get_bolted_frame(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     many = ContactField(shape.area_share * JOINT.A_0, shape.position, mean * shape.preload_pressure_ratio)

@@ -139,7 +139,7 @@ def test_friction_along_a_path_is_the_packages(rumoca: Any):
     )
     names = "drive.flange_a.tau", "drive.flange_b.tau", "drive.tau_friction", "loss"
     times, *found = once(simulate(rumoca, text, 2.2, 2e-3, rtol=1e-8), *names)
-    fine = np.linspace(0.0, 2.2, 11001)
+    fine = np.linspace(0.0, 2.2, 5501)
     exact = follow(law, lambda t: way(law.joint.ratio, t), fine)
     for sign, mine, its in zip((-1.0, -1.0, 1.0), found[:3], exact[:3], strict=True):
         expected = np.interp(times, fine, its)
@@ -419,7 +419,7 @@ def test_at_a_temperature_the_component_is_the_package(rumoca):
         _WAY + _BODY,
     )
     times, friction = once(simulate(rumoca, text, 1.0, 2e-3, rtol=1e-8), "drive.tau_friction")
-    fine, memory, exact = np.linspace(0.0, 1.0, 4001), law.initial_history(), []
+    fine, memory, exact = np.linspace(0.0, 1.0, 2001), law.initial_history(), []
     for time in fine:
         out, memory = law.advance_motion(way(100.0, time), memory, 263.15)
         exact.append(float(out["tau_friction"]))
@@ -458,7 +458,7 @@ def test_all_losses_go_out_at_the_heat_port(rumoca):
     assert work == pytest.approx(stored - stored[0] + lost, abs=1e-5 * np.sum(np.abs(np.diff(work))))
     assert CAPACITY * (warmth - REFERENCE_TEMPERATURE) == pytest.approx(lost, abs=1e-6 * lost[-1])
     memory, wet = law.initial_history(), 0.0
-    fine = np.linspace(0.0, stop, 5501)
+    fine = np.linspace(0.0, stop, 2751)
     for time, kelvin in zip(fine, np.interp(fine, times, warmth), strict=True):
         motion = way(ratio, time)
         out, memory = law.advance_motion(motion, memory, kelvin)

@@ -98,7 +98,7 @@ def test_velocity_ripple_resonates_at_half_the_natural_frequency():
     law = default_spring(error_2=amplitude, d=damping)
     natural = float(np.sqrt(law.curve.stiffness[0] / inertia))
     zeta = damping / (2.0 * inertia * natural)
-    parts = np.array([0.48, 0.5, 0.52, 0.7])
+    parts = np.array([0.48, 0.5, 0.7])
     found = np.array([ripple(law, inertia, part * natural) for part in parts])
     r = 2.0 * parts
     top, bottom = 1.0 + (2.0 * zeta * r) ** 2, (1.0 - r**2) ** 2 + (2.0 * zeta * r) ** 2
