@@ -217,13 +217,13 @@ class Bolted:
             here, steps = self.rates(t, x), 1e-7 * np.maximum(np.abs(x), usual)
             return np.column_stack([(self.rates(t, x + d) - here) / d.sum() for d in np.diag(steps)])
 
-        for event in (Bolted.turned, Bolted.changed):
+        for event in (Bolted.reversal_function, Bolted.changed):
             event.terminal, event.direction = True, 1.0
         t, counts, events = 0.0, np.zeros(3, dtype=int), 0
         while t < stop:
             found = solve_ivp(
                 self.rates, (t, stop), x, "BDF", rtol=tolerance, atol=tolerance * usual, jac=jacobian,
-                events=[self.turned, self.changed] if self.kept else None,
+                events=[self.reversal_function, self.changed] if self.kept else None,
             )  # fmt: skip
             counts += len(found.t), found.nfev, found.njev
             t, x = found.t[-1], found.y[:, -1]

@@ -258,7 +258,7 @@ def compare_all(options):
     with ProcessPoolExecutor() as pool:
         spheres = [pool.submit(cases.sphere_errors, points, nu) for nu, points in SPHERES]
         grids = pool.map(grid, GRIDS)
-        rough = track_progress(pool.map(Surface.compared, surfaces), "surfaces", len(surfaces))
+        rough = track_progress(pool.map(Surface.compare, surfaces), "surfaces", len(surfaces))
         found = dict(zip(surfaces, rough, strict=True))
         print_solver(*deviation_from_tamaas())
         print_spheres(SPHERES, [one.result() for one in spheres])
