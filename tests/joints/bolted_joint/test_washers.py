@@ -17,9 +17,9 @@ def compliance(load_diameter, washer=None):
     from which it may separate. The pressure acts from the hole to `load_diameter` [m]; the deflection is the
     mean over this area."""
     outer, height = (0.5 * washer.outer_diameter, washer.thickness) if washer else (0.0, 0.0)
-    r = [np.linspace(0.5 * HOLE, 20e-3, 45), np.linspace(20e-3, RADIUS, 12), [0.5 * load_diameter, outer]]
-    z = [np.linspace(0.0, THICKNESS, 24), np.linspace(THICKNESS - 4e-3, THICKNESS, 13)]
-    z += [np.linspace(THICKNESS, THICKNESS + height, 9)] if washer else []
+    r = [np.linspace(0.5 * HOLE, 20e-3, 23), np.linspace(20e-3, RADIUS, 8), [0.5 * load_diameter, outer]]
+    z = [np.linspace(0.0, THICKNESS, 12), np.linspace(THICKNESS - 4e-3, THICKNESS, 7)]
+    z += [np.linspace(THICKNESS, THICKNESS + height, 5)] if washer else []
     r, z = (np.unique(np.round(np.concatenate(each), 8)) for each in (r, z))
     r = r[r > 0.0]
     mesh = skfem.MeshQuad.init_tensor(r, z)
