@@ -371,6 +371,15 @@ def test_one_measured_number_sets_the_height_of_a_roughness(tmp_path):
     assert found.rejection_reason() is None
 
 
+def test_measured_stiffnesses_set_the_level_of_a_table(tmp_path):
+    start, P = load_default("bolted_joint", "table"), np.array([4e3, 12e3])
+    path = save(
+        tmp_path / "k.csv", "preload [N], stiffness [N/m]", P, 1.4 * preload.joint_stiffness(start.values, P)
+    )
+    found = preload.fit(path, start)
+    assert found.solution.values == pytest.approx({"table.factor": 1.4}, rel=1e-6)
+
+
 def rough_joint():
     """The default joint with the law `roughness`."""
     from jointfmu.joints.bolted_joint import KIND

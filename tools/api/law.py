@@ -116,7 +116,7 @@ class Law(TableDisplay):
 
 
 def law(name: str, **parameters: Any) -> Law:
-    """Make an interface law: `roughness`, `zhao2018`, `hu2023` or `yu2022`.
+    """Make an interface law: `roughness`, `table`, `zhao2018`, `hu2023` or `yu2022`.
 
     parameters : values or arrays (n) [SI] by name, structured names as `**{"surface.D": 1.42}`. Parameters
         that are not named have the values of the shipped joint with this law.

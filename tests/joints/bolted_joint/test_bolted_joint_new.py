@@ -698,7 +698,10 @@ def test_what_does_not_fit_is_refused(capsys, tmp_path, words, text):
 
 def test_a_roughness_must_be_stated(capsys):
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL)
-    assert "the roughness is missing; expected --finish, --Ra, --Rq, --Rz or --surface" in line
+    assert (
+        "the roughness is missing; expected --finish, --Ra, --Rq, --Rz, --surface or --interface-table"
+        in line
+    )
     both = ["--surface", "scan.csv", "--finish", "ground"]
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL, *both)
     assert "--surface and --finish are both given; state one of them" in line
