@@ -303,15 +303,6 @@ ROW_DISTANCE_TOLERANCE = 1e-3
 
 def find_contradictions(joint: AnyBoltedJoint) -> Iterator[str]:
     """Yield one line for each parameter that contradicts the bolts of a parameter file."""
-    if any(side.alpha != joint.bolt.alpha for side in _sides(joint)):
-        needed = {"bolt_stiffness": joint.bolt_stiffness, "plate_stiffness": joint.plate_stiffness}
-        needed["side1.clamped_length"] = sum(side.clamped_length for side in _sides(joint))
-        for name, value in needed.items():
-            if not value > 0.0:
-                yield (
-                    f"{name} = 0 beside different thermal expansion coefficients: temperature would have no "
-                    f"effect; state {name}, or equal bolt.alpha, side1.alpha and side2.alpha"
-                )
     if isinstance(joint.pattern, NodalField):
         return
     section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
@@ -376,7 +367,9 @@ def thermal_mismatch(joint: AnyBoltedJoint, temperature: Number) -> Number:
 
     Washers expand as the bolt does.
     """
-    per_kelvin = sum((side.alpha - joint.bolt.alpha) * side.clamped_length for side in _sides(joint))
+    per_kelvin = sum(
+        (side.alpha - joint.bolt.alpha) * side.clamped_length for side in (joint.side1, joint.side2)
+    )
     return per_kelvin * (temperature - TIGHTENING_TEMPERATURE)
 
 
@@ -393,11 +386,6 @@ def preload_at_temperature(joint: AnyBoltedJoint, preload: Number, temperature: 
     product = joint.bolt_stiffness * joint.plate_stiffness
     stiffness = select(are_springs, product / select(are_springs, total, 1.0), 0.0 * total)
     return preload + stiffness * thermal_mismatch(joint, temperature)
-
-
-def _sides(joint: AnyBoltedJoint) -> tuple[ClampedSide, ClampedSide]:
-    """Both sides of a joint."""
-    return joint.side1, joint.side2
 
 
 def slip_force(joint: AnyBoltedJoint, working_force: Number) -> Number:
