@@ -155,7 +155,7 @@ static fmi2Status check_status_kind(const Instance *m, const char *function, con
                        "fmi2GetRealStatus with fmi2LastSuccessfulTime, fmi2GetBooleanStatus with fmi2Terminated, "
                        "fmi2GetStringStatus with fmi2PendingStatus",
                        function);
-    instance_log(m, DISCARD, LOG_WARNINGS, text.line);
+    instance_log(m, DISCARD, LOG_ERRORS, text.line);
     return fmi2Discard;
 }
 
