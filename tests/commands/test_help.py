@@ -183,8 +183,10 @@ def test_an_fmu_lists_its_parameters(name: str, capsys: pytest.CaptureFixture[st
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_law_lists_what_set_takes(law: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """Every default, set as it is listed, is taken."""
+    """Every default, set as it is listed, is taken; points of a table are in files only."""
     for name, row in listed(capsys, law).items():
+        if isinstance(row["default"], list):
+            continue
         value = 1e-6 if row["default"] is None else row["default"]
         setting = f"{name}={str(value).lower() if isinstance(value, bool) else value}"
         assert cli.main(["law", law, "--pressure", "1e6", "--set", setting]) == 0

@@ -42,7 +42,8 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
     for name in file.values_by_name:
         (row,) = re.findall(rf"<tr><td><code>{re.escape(name)}</code></td>(.*?)</tr>", page)
         assert f"<td>{file.origins.get(name, 'default')}</td>" in row, name
-        assert f">{file.sources.get(name, 'default choice')}</td>" in row, name
+        span = f"{file.ranges[name][0]:g} to {file.ranges[name][1]:g}; " if name in file.ranges else ""
+        assert f">{span}{file.sources.get(name, 'default choice')}</td>" in row, name
     for line in judge_joint_stiffness(file).format_lines():
         assert line in page
     (opening,) = re.findall(r"<main[^>]*>\s*<p>(.*?)</p>", page)

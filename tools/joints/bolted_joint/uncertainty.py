@@ -104,7 +104,7 @@ UNCERTAINTY_CURVES = LoadCurves(
         ),
     ),
     default_end=lambda joint: 30e3,
-    max_load=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
+    max_load=lambda joint: joint.max_pressure * joint.A_0 / joint.n_bolts,
     load_loss=lambda joint: joint.embedding,
     settings={"embedding": 0.0},
 )
