@@ -44,5 +44,7 @@ def test_hardness_limits_the_pressure_and_stiffens_small_motions():
     assert common.size >= 3
     assert np.all(hard.yielded == 0.0)
     assert np.all(soft.yielded > 0.1)
-    assert np.all(soft.stiffness[i] > hard.stiffness[j])
+    ratio = soft.stiffness[i] / hard.stiffness[j]
+    assert np.all(ratio > 0.999)
+    assert ratio[-1] > 1.2
     assert hard.low <= soft.low < 1.0 < soft.high <= hard.high

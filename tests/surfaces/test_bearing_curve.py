@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools.cli import main
+from jointfmu_tools.inputs.drawing.tables import find_row
 from jointfmu_tools.inputs.surfaces import bearing_curve, csvfile, form, solve, stiffness_table
 from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve, HeightSample
 from jointfmu_tools.inputs.surfaces.heights import ArealMap
@@ -145,3 +146,22 @@ def test_scans_of_different_spacing_are_no_pair():
 def test_drives_have_no_interface_table():
     assert stiffness_table.has_table_law("bolted_joint")
     assert not stiffness_table.has_table_law("harmonic_drive")
+
+
+@pytest.mark.parametrize(("options", "is_known"), [("--finish ground", True), ("--Ra 0.8", False)])
+def test_a_finish_gives_gamma_the_range_of_its_skewness(capsys, tmp_path, options, is_known):
+    out = tmp_path / "contact.toml"
+    words = f"new gear-contact --radii 20 30 --width 10 --load 500 --material steel {options}"
+    assert main([*words.split(), "--out", str(out)]) == 0
+    assert ("does not tell the shape of the heights" in capsys.readouterr().err) != is_known
+    file = load_parameter_file(out)
+    assert file.values.gamma == 0.45
+    if is_known:
+        numbers = find_row("finishes", "ground").numbers
+        expected = [
+            0.45 * bearing_curve.skewed_tail_ratio(numbers[f"skewness_{end}"].value / np.sqrt(2.0))
+            for end in ("low", "high")
+        ]
+        assert file.ranges["gamma"] == pytest.approx(expected, rel=1e-6)
+    else:
+        assert "gamma" not in file.ranges

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
+from .form import Mask, remove_form
 from .heights import MIN_AREAL_POINTS, ArealMap
 
 MAX_SIDE_POINTS = 256
@@ -126,8 +126,6 @@ def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedSti
 
 def _sub_areas(grid: ArealMap) -> Iterator[ArealMap]:
     """Equal parts of a grid, each without its tilt."""
-    from .form import remove_form
-
     rows, columns = (n // SUB_AREAS for n in grid.z.shape)
     for i in range(SUB_AREAS):
         for j in range(SUB_AREAS):
@@ -183,7 +181,7 @@ def _press(
         yield _bonded_stiffness(half_space, touching) / area, float(flowing.sum() / count), count
 
 
-def _bonded_stiffness(half_space: Any, touching: NDArray[np.bool_]) -> float:
+def _bonded_stiffness(half_space: Any, touching: Mask) -> float:
     """Stiffness [N/m] of small motions: force on all points in contact for a common unit displacement."""
     from scipy.sparse.linalg import LinearOperator, cg
 

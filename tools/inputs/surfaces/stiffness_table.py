@@ -13,7 +13,6 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
-from ..drawing.tables import TableRow
 from .bearing_curve import TABLE_FACTOR_RANGE, BearingCurve
 from .heights import ArealMap
 
@@ -60,13 +59,13 @@ class MaterialPair:
     names: str
 
     @classmethod
-    def from_rows(cls, rows: Sequence[TableRow]) -> "MaterialPair":
-        """Pair from two rows of the table of materials."""
-        sides = [ElasticConstants(**{name: row.numbers[name].value for name in ("E", "nu")}) for row in rows]
+    def from_sides(
+        cls, sides: Sequence[ElasticConstants], hardness: float, names: Sequence[str]
+    ) -> "MaterialPair":
+        """Pair of two bodies with the hardness of the softer one [Pa] and the names of the materials."""
         modulus = float(contact_modulus(*sides))
         ratio = 4.0 * float(contact_shear_modulus(*sides)) / modulus
-        hardness = min(row.numbers["H"].value for row in rows)
-        return cls(modulus, ratio, hardness, " and ".join(dict.fromkeys(row.title for row in rows)))
+        return cls(modulus, ratio, hardness, " and ".join(dict.fromkeys(names)))
 
 
 def points_from_tail(curve: BearingCurve, materials: MaterialPair, files: str) -> InterfacePoints:

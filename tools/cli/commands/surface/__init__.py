@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu.contact.laws import ROUGHNESS_LAW, TABLE_LAW
+from jointfmu.contact.surface import ElasticConstants
 from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter_text
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
@@ -169,7 +170,10 @@ def _find_points(
     """Stiffness over pressure: by boundary elements with --solve, else from the tail of the heights."""
     names = expand_to_sides("material", args.material)
     assert names is not None  # the option has a default
-    materials = MaterialPair.from_rows([find_row("materials", name) for name in names])
+    rows = [find_row("materials", name) for name in names]
+    sides = [ElasticConstants(**{name: row.numbers[name].value for name in ("E", "nu")}) for row in rows]
+    hardness = min(row.numbers["H"].value for row in rows)
+    materials = MaterialPair.from_sides(sides, hardness, [row.title for row in rows])
     files = " and ".join(Path(name).name for name in identification.file_names)
     if not args.solve:
         return points_from_tail(identification.bearing_curve, materials, files)
