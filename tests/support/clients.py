@@ -294,7 +294,7 @@ CLIENTS = {
     ),
     "Pinocchio": Client(
         script("import pinocchio; pinocchio.Model().createData()"),
-        "inverse dynamics of a robot; the code on the page of Pinocchio gives the numbers of `jointfmu robot`",
+        "dynamics of a robot; the code on the page of Pinocchio gives the numbers of `jointfmu robot`",
         "`pip install pin`",
     ),
     "pyNastran": Client(
