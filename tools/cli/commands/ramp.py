@@ -3,6 +3,7 @@
 import argparse
 import math
 import sys
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -79,10 +80,16 @@ def _run_command(args: argparse.Namespace) -> CommandResult:
     return _run_loops(args) if args.loop else _run_ramp(args)
 
 
+def _print_messages(messages: Iterable[str], driven_input: str) -> None:
+    """Print messages of the FMU, except that the driven input begins at 0 in place of its start value."""
+    for message in messages:
+        if not (message.startswith(f"{driven_input} = 0") and "in place of its start value" in message):
+            print(message, file=sys.stderr)
+
+
 def _run_ramp(args: argparse.Namespace) -> CommandResult:
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
-    for message in result.messages:
-        print(message, file=sys.stderr)
+    _print_messages(result.messages, args.input)
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.format_csv())
@@ -152,8 +159,7 @@ def _run_loops(args: argparse.Namespace) -> CommandResult:
         stated["centre"] = stated.pop("about")
     swing = loops.CyclicPath(**stated)
     found = loops.run_loops(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
-    for message in found.messages:
-        print(message, file=sys.stderr)
+    _print_messages(found.messages, args.input)
     if args.csv:
         write_text(args.csv, found.format_csv())
     if args.plot:
