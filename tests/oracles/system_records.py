@@ -45,7 +45,7 @@ connect = [{motor_side}, ["drive.flange2", "link.flange_b"]]
 
 [drive]
 model = "HarmonicDriveSpring"
-parameters = "drive.toml"
+parameters = "arm_drive.toml"
 {drive}
 {motor}
 [link]
@@ -94,7 +94,7 @@ def write_system(folder: Path, values: dict[str, float], start_ratio: float = 1.
         component, _, parameter = name.partition(".")
         entries[component] += _format_entry(parameter, start_ratio * value)
     drive = "".join(_format_entry(name, value) for name, value in _DRIVE_VALUES.items())
-    (folder / "drive.toml").write_text(_DRIVE + drive)
+    (folder / "arm_drive.toml").write_text(_DRIVE + drive)
     if entries["motor"]:
         motor_side = '["motor.flange_b", "drive.flange1"]'
         entries["motor"] = f'[motor]\nmodel = "RotationalInertia"\n{entries["motor"]}'

@@ -116,7 +116,7 @@ def test_the_written_system_has_the_fitted_values(tmp_path):
     written = tmp_path / "new.toml"
     written.write_text(format_fitted_system(path, fitted, units, written))
     document = read_document(written, "a system")
-    assert document["drive"]["parameters"] == "start/drive.toml"
+    assert document["drive"]["parameters"] == "start/arm_drive.toml"
     entry = {"value": 0.5, "unit": "kg.m2", "kind": "measured", "source": "fitted to x.csv"}
     assert document["link"] == {"model": "RotationalInertia", "J": entry}
     assert document["drive"]["surface"]["G"]["value"] == 2e-9
