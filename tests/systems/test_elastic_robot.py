@@ -18,6 +18,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.api import drive
 from jointfmu_tools.exchange.robots import elastic, pictures, poses
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
+from jointfmu_tools.run.proof.run import prove
 
 from jointfmu.parameters import format_parameter_file
 
@@ -143,6 +144,8 @@ def test_plugin_and_fmu_wind_up_as_is_said(tmp_path, capsys, few_poses):
     for _ in range(3000):
         mujoco.mj_step(model, data)
     file = str(tmp_path / "fmi2/six_axis.fmu")
+    proved = prove(Path(file))
+    assert (proved.failures, proved.executed_experiment_count) == ([], 3)
     outputs = [f"{name}.drive.phi_rel" for name in said["wind_up"]]
     damped = {f"{name}.drive.d": 2000.0 for name in said["wind_up"]}
     swing = fmpy.simulate_fmu(file, stop_time=1.0, output_interval=1e-2, output=outputs, start_values=damped)

@@ -40,6 +40,9 @@ STOP_TIME = 0.2
 """Stop time [s] of the default experiment."""
 COMMUNICATION_STEP = 1e-3
 """Communication step [s] of the default experiment."""
+REFERENCE_INTERVAL = 1e-4
+"""Interval [s] of the references of the proof: short, because the friction of each load step is that of a
+straight path."""
 RESERVED_NAMES = ("payload", "tip")
 """First parts of names of variables, which no joint may have."""
 _XYZ = ("x", "y", "z")
@@ -458,4 +461,4 @@ def make_robot_system(arm: RobotArm, name: str, description: str, payload: float
             starts = {v.name: file.start_value(v.name) for v in model.inputs}
             components.append(SystemComponent(f"{joint.name}.drive", model, file, sources, starts))
     components.append(arm.make_component(payload))
-    return SystemModel(name, description, components, STOP_TIME, COMMUNICATION_STEP, COMMUNICATION_STEP)
+    return SystemModel(name, description, components, STOP_TIME, COMMUNICATION_STEP, REFERENCE_INTERVAL)
