@@ -17,6 +17,7 @@ from jointfmu.files.writing import write_text
 INPUTS = frozenset(
     [
         "params",
+        "data",
         "file",
         "files",
         "fmu",

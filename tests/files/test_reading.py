@@ -182,6 +182,7 @@ LINES = {
     ("fit loop", "params"): "loop.csv --params PIPE",
     ("fit preload", "file"): "PIPE",
     ("fit preload", "params"): "decay.csv --params PIPE",
+    ("fit system", "data"): "robot_joint PIPE.csv --free link.J",
     ("fit torque-angle", "file"): "PIPE",
     ("fit torque-angle", "params"): "angle.csv --params PIPE",
     ("footprint compute", "assembly"): "PIPE",

@@ -30,6 +30,7 @@ NAMES_OF_OTHER_PROGRAMS = {
     "chroot",
     "debootstrap",
     "eulerdamp",
+    "gbode",
     "FMI2_FUNCTION_PREFIX",
     "FMI3_FUNCTION_PREFIX",
     "fmi3CompletedIntegratorStep",
@@ -39,6 +40,7 @@ NAMES_OF_OTHER_PROGRAMS = {
     "LIAISON_SOLIDE",
     "NSLE",
     "parse_component",
+    "prefer",
     "pypi",
     "pyssp_standard",
 }

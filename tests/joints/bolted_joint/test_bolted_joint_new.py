@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from clients import needs
-from conftest import Fmu, here_alone, refused_line
+from conftest import Fmu, here_alone, refused_line, warnings_but_shape
 from jointfmu_tools import cli
 from jointfmu_tools.common.shown import list_parameter_file_entries
 from jointfmu_tools.fem.bolted_contact import BoltedContact
@@ -52,7 +52,7 @@ def made(capsys, *words, path=None):
     """JSON object that the command prints."""
     out = ["--out", str(path)] if path else []
     assert cli.main(["new", "bolted-joint", *map(str, words), *out, "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
+    return warnings_but_shape(json.loads(capsys.readouterr().out))
 
 
 def positions(count, **given):

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 import pytest
 from clients import needs
-from conftest import refused_line
+from conftest import refused_line, warnings_but_shape
 from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_tools import cli
 from jointfmu_tools.cli.commands.assembly import replace_assembly_parameters
@@ -333,7 +333,7 @@ def test_the_bolt_that_gets_most_decides_when_the_interface_opens():
 
 def made(capsys, *words):
     assert cli.main(["new", "bolted-joint", *words, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    found = warnings_but_shape(json.loads(capsys.readouterr().out))
     return {name: fact["value"] for name, fact in found["facts"].items()}, found
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import refused_line, warnings_but_shape
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.export.exports import require_export
 from jointfmu_tools.joints.gear_mesh.involute import InvoluteGearPair
@@ -27,7 +27,7 @@ FACES = ["--material", "hardened steel", "--Ra", "0.4"]
 def made(capsys, *words, path=None):
     out = ["--out", str(path)] if path else []
     assert cli.main(["new", "gear-mesh", *words, *out, "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
+    return warnings_but_shape(json.loads(capsys.readouterr().out))
 
 
 def wheels(helix=0.0, width=0.01):

@@ -259,7 +259,8 @@ class TableLaw(CheckedParameters):
 def loss_factor(traction_ratio: Number, exponent: Number) -> Number:
     """Loss factor eta_t [1] of a shear cycle with the amplitude x mu F of the force, for K ~ p^n.
 
-    x, n : traction ratio and exponent [1]
+    traction_ratio : x [1]
+    exponent       : n [1]
 
     The tangential stiffness on first loading to the share t of mu F is that of the pressure p (1 - t) (Jaeger
     1995, Ciavarella 1998), so the displacement is s ~ integral of (1 - t)^-n dt. By Masing's rule
