@@ -320,7 +320,7 @@ def test_fmus_have_the_field(tmp_path):
         np.testing.assert_allclose(got, np.delete(expected, 2), rtol=1e-5)  # 120 of the points
         assert shear[0] == pytest.approx(shear[1], rel=5e-3)  # the patches of the friction
         assert found["p_max"][i] == pytest.approx(peak, rel=1e-7)  # the curve's table, 1e-8
-    library.write_library(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0)]})
+    library.write_library(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0, 293.15)]})
     assert any("field_of_field_csv" in path.name for path in tmp_path.rglob("*.mo"))
 
 
