@@ -121,7 +121,7 @@ def print_coupling() -> None:
 
 
 def read_axes():
-    """Rigid model of the arm, its axes with drives, and the parameter files of the drives."""
+    """Read the six-axis arm: rigid MuJoCo model, driven axes, and parameter files of the drives."""
     spec = elastic.read_robot(ROBOT)
     files = {f"joint{i}": drive(size).file for i, size in enumerate(SIZES, 1)}
     axes = elastic.make_axes(spec, {name: make_transmission(file) for name, file in files.items()})

@@ -26,10 +26,12 @@ def test_a_midline_beyond_its_end_warns_as_the_fmu_does():
     drive = jointfmu.load("HarmonicDriveSpring")
     end = float(drive.wind_up(30.0))
     with pytest.warns(UserWarning, match=r"torque = 1e\+09 N\.m is outside .*: outside the tabulated law"):
-        drive.wind_up(1e9)
+        far = drive.wind_up(1e9)
     with pytest.warns(UserWarning, match=r"wind-up = 1 rad is outside .* rad: outside the tabulated law"):
-        drive.torque([0.0, -1.0])
-    drive.torque([end, -end])  # no warning, which would be an error
+        torque = drive.torque([0.0, -1.0])
+    assert far > end  # the last tangent continues
+    assert torque[0] == 0.0 > torque[1]
+    np.testing.assert_allclose(drive.torque([end, -end]), [30.0, -30.0])  # a warning would be an error
 
 
 def test_no_pressure_gives_empty_columns():

@@ -70,7 +70,7 @@ class Variable:
 
     @property
     def minimum_margin(self) -> float:
-        """Largest amount below `minimum`, in the unit, at which the input counts as `minimum`."""
+        """Tolerance [unit of the variable]: an input below `minimum` by at most this counts as `minimum`."""
         return MINIMUM_MARGIN_RATIO * self.nominal if math.isfinite(self.minimum) else 0.0
 
     def round_to_minimum(self, value: float) -> float:

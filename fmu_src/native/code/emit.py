@@ -139,7 +139,7 @@ def format_function(
 
 
 def count_workspace(function_text: str) -> int:
-    """Number of intermediate values that a function with a workspace needs in y behind its results."""
+    """Number of intermediate values that a C function stores in its array y, after the results."""
     return max((int(index) + 1 for index in re.findall(r"\bw\[(\d+)\]", function_text)), default=0)
 
 

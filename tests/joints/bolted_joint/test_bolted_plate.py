@@ -445,7 +445,9 @@ def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypat
 def test_rigid_sides_need_no_modes(capsys, monkeypatch):
     """The finite elements would take half a minute, and their result would not be used."""
     monkeypatch.setattr(plate_finite_elements, "compute_joint_of_assembly", None)
-    made(capsys, *M16, *LOAD, "--sides", "rigid")
+    facts, _ = made(capsys, *M16, *LOAD, "--sides", "rigid")
+    assert "interface_K_zz" in facts
+    assert "joint_K_zz" not in facts
 
 
 def test_heads_that_do_not_fit_are_said(capsys):

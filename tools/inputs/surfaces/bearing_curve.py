@@ -145,7 +145,10 @@ class BearingCurve:
         return float(excess / gaussian_mean_excess(np.array(TYPICAL_SHARE)))
 
     def pressure(self, modulus: float) -> Array:
-        """Nominal pressure p (n) [Pa] that each section carries, with the contact modulus E* [Pa]."""
+        """Nominal contact pressure p (n) [Pa] at which the contact reaches each section of the heights.
+
+        modulus : contact modulus E* [Pa]
+        """
         from scipy.special import erfinv
 
         p = 2.0 / np.sqrt(np.pi) * erfinv(self.share) * modulus * self.slope / SECTION_AREA_FACTOR

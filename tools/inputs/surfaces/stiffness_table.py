@@ -39,7 +39,7 @@ class InterfacePoints:
     yielded: Array = field(default_factory=lambda: np.zeros(0))
 
     def to_csv(self) -> str:
-        """Text of a file for `new --interface-table`."""
+        """Format the points as the CSV file that `new --interface-table` reads."""
         low, high = self.factor_range
         rows = [
             f"{p:.6g},{k:.6g},{low * k:.6g},{high * k:.6g},{self.ratio:.6g}"

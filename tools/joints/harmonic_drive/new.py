@@ -22,6 +22,8 @@ from .friction import (
 )
 
 if TYPE_CHECKING:
+    from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+
     from .fit.drive import CatalogueRow
 
 _OPTION_COLUMNS = ("ratio", *STIFFNESS_COLUMN_NAMES, "rated_torque", *FRICTION_COLUMNS)
@@ -215,7 +217,7 @@ def _make_joint_with_catalogue_law(
     """Make a drive with the three lines of the catalogue as stiffness (law `catalogue`)."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-    from .efficiency import LOST_MOTION_TORQUE_RATIO, lost_motion
+    from .efficiency import LOST_MOTION_TORQUE_RATIO
     from .fit import catalogue
 
     _catalogue_row(sourced_numbers)  # raises ValueError for an implausible row
@@ -239,16 +241,12 @@ def _make_joint_with_catalogue_law(
     sourced_numbers |= friction_numbers
     file = catalogue.make_drive_with_catalogue_law(drive_name, sourced_numbers)
     spring = HarmonicDriveSpring.tabulate(file.values)
-    angle = float(spring.curve.inverse(rated))
-    facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, on the midline")
-    text = (
-        f"computed between +-{LOST_MOTION_TORQUE_RATIO:g} times the rated torque, in the middle of the loop"
-    )
-    computed_angle = lost_motion(spring)
+    facts |= wind_up_facts(spring, LOST_MOTION_TORQUE_RATIO)
     if printed_angle:
+        computed_angle, unit, text = facts["lost_motion"]
         relation = "below" if computed_angle < printed_angle.value else "above"
         text += f"; {relation} {printed_angle.value:.4g} rad: {_short_source(printed_angle)}"
-    facts["lost_motion"] = (computed_angle, "rad", text)
+        facts["lost_motion"] = (computed_angle, unit, text)
     if friction_numbers:
         facts["efficiency"] = (rated_efficiency(file.values), "1", "at rated torque and 2000 rev/min")
     kinds = {name: number.kind for name, number in sourced_numbers.items() if name in file.values_by_name}
@@ -257,6 +255,29 @@ def _make_joint_with_catalogue_law(
     if file.values.corner == 0.0:
         notes.append("corner = 0: the stiffness jumps at T1 and T2, and the FMU signals no event there")
     return NewJoint(file, facts, notes)
+
+
+def wind_up_facts(
+    spring: "HarmonicDriveSpring", lost_motion_torque_ratio: float
+) -> dict[str, tuple[float, str, str]]:
+    """Facts about a drive: wind-up at rated torque, and lost motion.
+
+    lost_motion_torque_ratio : torque over rated torque [1] at which catalogues state the lost motion
+    """
+    from .efficiency import lost_motion
+
+    rated = spring.joint.rated_torque
+    text = (
+        f"computed between +-{lost_motion_torque_ratio:g} times the rated torque, in the middle of the loop"
+    )
+    return {
+        "wind_up": (
+            float(spring.curve.inverse(rated)),
+            "rad",
+            f"at the rated torque {rated:g} N.m, on the midline",
+        ),
+        "lost_motion": (lost_motion(spring, lost_motion_torque_ratio), "rad", text),
+    }
 
 
 def _make_joint_with_contact_pair_law(

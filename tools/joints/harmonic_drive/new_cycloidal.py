@@ -14,7 +14,6 @@ from dataclasses import replace
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity.units import conversion_factor
 
 from ...common.options import Option
 from ...inputs.catalogue import SourcedNumber
@@ -29,6 +28,7 @@ from .new import (
     check_efficiency,
     read_friction_parameters,
     set_temperature,
+    wind_up_facts,
 )
 
 LOST_MOTION_TORQUE_RATIO = 0.03
@@ -36,8 +36,6 @@ LOST_MOTION_TORQUE_RATIO = 0.03
 motion."""
 LOST_MOTION_TOLERANCE = 1e-9
 """Relative tolerance [1] of the parameter `lost_motion`: far below the two digits that makers print."""
-ARCMIN = conversion_factor("arcmin", "rad")
-"""Size of an arc minute [rad]."""
 RIGIDITY_CHANGE_TORQUE_RATIO = 0.5
 """Torque over rated torque [1] at which the first torsional rigidity ends and the second begins."""
 
@@ -111,6 +109,8 @@ def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, sourc
     """
     from scipy.optimize import brentq
 
+    from .fit.drive import RAD_PER_ARCMIN
+
     printed = parse_value("lost_motion", lost_motion_text)
 
     def excess(play: float) -> float:
@@ -119,9 +119,9 @@ def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, sourc
         return lost_motion(HarmonicDriveSpring.tabulate(drive), LOST_MOTION_TORQUE_RATIO) - printed
 
     if (elastic := excess(0.0)) > 0.0:
+        lowest = (elastic + printed) / RAD_PER_ARCMIN
         raise ValueError(
-            f"--lost-motion = {lost_motion_text!r} is outside [{(elastic + printed) / ARCMIN:.4g}, inf) "
-            "arcmin: the torsional rigidity alone gives this angle between -3 % and +3 % of rated torque"
+            f"--lost-motion = {lost_motion_text!r} is outside [{lowest:.4g}, inf) arcmin: the torsional rigidity alone gives this angle between -3 % and +3 % of rated torque"
         )
     high = printed
     while excess(high) < 0.0:
@@ -135,18 +135,7 @@ def _drive_facts(joint: NewJoint) -> dict[str, tuple[float, str, str]]:
     """Wind-up at rated torque, lost motion and hysteresis loss, as computed with the parameters."""
     drive = joint.file.values
     spring = HarmonicDriveSpring.tabulate(drive)
-    facts = {
-        "wind_up": (
-            float(spring.curve.inverse(drive.rated_torque)),
-            "rad",
-            f"at the rated torque {drive.rated_torque:g} N.m, on the midline",
-        ),
-        "lost_motion": (
-            lost_motion(spring, LOST_MOTION_TORQUE_RATIO),
-            "rad",
-            f"computed between +-{LOST_MOTION_TORQUE_RATIO:g} times the rated torque, midway in the loop",
-        ),
-    }
+    facts = wind_up_facts(spring, LOST_MOTION_TORQUE_RATIO)
     if drive.hysteresis_loss:
         text = "computed angle between the branches at zero torque, after rated torque"
         facts["hysteresis_loss"] = (hysteresis_loss(spring), "rad", text)
