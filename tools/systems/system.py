@@ -162,23 +162,23 @@ class System:
 
 
 def _scale_partner(
-    partner: Component, before: FlangeRating, after: FlangeRating, joint_name: str
+    partner: Component, rating_before: FlangeRating, rating_after: FlangeRating, joint_name: str
 ) -> Component:
     """Body or load scaled from the rated values of one joint to those of another one.
 
     Loads scale with the rated load, inertias with the rated load over the motion of the flange. A load that
     stays, `ramp_height`, is increased by the friction of the new joint.
     """
-    load = after.load / before.load
-    inertia = load * before.motion / after.motion
-    if (load, inertia, after.friction) == (1.0, 1.0, before.friction):
+    load = rating_after.load / rating_before.load
+    inertia = load * rating_before.motion / rating_after.motion
+    if (load, inertia, rating_after.friction) == (1.0, 1.0, rating_before.friction):
         return partner
     values, sources = dict(partner.values), dict(partner.sources)
     for name, unit in partner.units.items():
         if factor := {"N.m": load, "N": load, "kg.m2": inertia, "kg": inertia}.get(unit):
             values[name] = factor * values[name]
             if name == "ramp_height":
-                values[name] += after.friction - before.friction
+                values[name] += rating_after.friction - rating_before.friction
             sources[name] += f"; scaled to {joint_name}"
     return replace(partner, values=values, sources=sources)
 

@@ -38,8 +38,8 @@ def read_links(model: "MjModel", driven_joints: Collection[str]) -> list[Link]:
                 name=name,
                 parent=parent,
                 is_slide=bool(model.jnt_type[k] == mujoco.mjtJoint.mjJNT_SLIDE),
-                rotation=_round(carrier.T @ axes),
-                origin=_round(carrier.T @ (origin - start)),
+                rotation=_clear_rounding_errors(carrier.T @ axes),
+                origin=_clear_rounding_errors(carrier.T @ (origin - start)),
                 mass=mass,
                 centre=centre,
                 inertia=inertia,
@@ -62,7 +62,9 @@ def find_frame(model: "MjModel", body: int) -> Frame:
     for k in reversed(chain[:-1]):
         axes, origin = _joint_axes(data.xaxis[k], axes), data.xanchor[k]
     return Frame(
-        link, _round(axes.T @ data.xmat[body].reshape(3, 3)), _round(axes.T @ (data.xpos[body] - origin))
+        link,
+        _clear_rounding_errors(axes.T @ data.xmat[body].reshape(3, 3)),
+        _clear_rounding_errors(axes.T @ (data.xpos[body] - origin)),
     )
 
 
@@ -147,10 +149,14 @@ def _merge_bodies(
         own_axes, lever = data.ximat[b].reshape(3, 3), own_centre - centre
         inertia += own_axes @ np.diag(model.body_inertia[b]) @ own_axes.T
         inertia += own_mass * (lever @ lever * np.eye(3) - np.outer(lever, lever))
-    return mass, _round(axes.T @ (centre - origin)), _round(axes.T @ inertia @ axes, np.abs(inertia).max())
+    return (
+        mass,
+        _clear_rounding_errors(axes.T @ (centre - origin)),
+        _clear_rounding_errors(axes.T @ inertia @ axes, np.abs(inertia).max()),
+    )
 
 
-def _round(values: Array, scale: float = 1.0) -> Array:
+def _clear_rounding_errors(values: Array, scale: float = 1.0) -> Array:
     """Copy of an array whose entries at rounding error are zero."""
     return np.where(np.abs(values) <= ROUNDING * scale, 0.0, values)
 

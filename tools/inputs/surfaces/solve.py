@@ -175,23 +175,23 @@ def _press(
                 half_space, z, hardness=limit, initial_forces=np.maximum(forces, -limit), **options
             )
         force = np.asarray(result.jac)
-        touching = force > 0.0
+        contact_mask = force > 0.0
         flowing = force >= (1.0 - 1e-6) * limit
-        count = int(touching.sum())
-        yield _bonded_stiffness(half_space, touching) / area, float(flowing.sum() / count), count
+        count = int(contact_mask.sum())
+        yield _bonded_stiffness(half_space, contact_mask) / area, float(flowing.sum() / count), count
 
 
-def _bonded_stiffness(half_space: Any, touching: Mask) -> float:
+def _bonded_stiffness(half_space: Any, contact_mask: Mask) -> float:
     """Stiffness [N/m] of small motions: force on all points in contact for a common unit displacement."""
     from scipy.sparse.linalg import LinearOperator, cg
 
-    field = np.zeros(touching.shape)
+    field = np.zeros(contact_mask.shape)
 
     def displacement(force: Array) -> Array:
-        field[touching] = -force  # forces of the package act on the half-space
-        return np.asarray(half_space.evaluate_disp(field))[touching]
+        field[contact_mask] = -force  # forces of the package act on the half-space
+        return np.asarray(half_space.evaluate_disp(field))[contact_mask]
 
-    count = int(touching.sum())
+    count = int(contact_mask.sum())
     operator = LinearOperator((count, count), displacement, dtype=float)
     scale = float(displacement(np.ones(count)).mean())
     start = np.full(count, 1.0 / scale)

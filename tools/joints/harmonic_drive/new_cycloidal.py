@@ -121,7 +121,8 @@ def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, sourc
     if (elastic := excess(0.0)) > 0.0:
         lowest = (elastic + printed) / RAD_PER_ARCMIN
         raise ValueError(
-            f"--lost-motion = {lost_motion_text!r} is outside [{lowest:.4g}, inf) arcmin: the torsional rigidity alone gives this angle between -3 % and +3 % of rated torque"
+            f"--lost-motion = {lost_motion_text!r} is outside [{lowest:.4g}, inf) arcmin: the torsional "
+            "rigidity alone gives this angle between -3 % and +3 % of rated torque"
         )
     high = printed
     while excess(high) < 0.0:

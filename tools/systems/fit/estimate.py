@@ -215,7 +215,7 @@ class _Estimation:
             solve_rows(bounded, max(int(share * self.fitted_count), 2), SHARE_TOLERANCE)
         for update in range(MAX_NOISE_UPDATES):
             solution = solve_rows(current, self.fitted_count, TOLERANCE)
-            previous, misfit = noise, self.misfit(solution.values, self.fitted_count)
+            previous, misfit = noise, solution.residuals.reshape(noise.size, -1).T * noise
             noise = np.maximum(np.sqrt(np.mean(misfit**2, axis=0)), smallest)
             if update and np.max(np.abs(np.log(noise / previous))) < NOISE_TOLERANCE:
                 break

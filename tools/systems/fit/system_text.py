@@ -13,28 +13,28 @@ _BARE_KEY_PATTERN = re.compile(r"[\w-]+", re.ASCII)
 
 
 def format_fitted_system(
-    path: Path, fitted: ParameterFile, fitted_units: Mapping[str, str], target: Path
+    path: Path, fitted_values: ParameterFile, fitted_units: Mapping[str, str], target: Path
 ) -> str:
     """Text of a system file with fitted values.
 
-    path         : the original system file
-    fitted       : parameters of all components, with origins and sources
-    fitted_units : {COMPONENT.PARAMETER: SI unit} of the values to write; other names are states
-    target       : file to write; paths of parameter files become relative to its folder
+    path          : the original system file
+    fitted_values : parameters of all components, with origins and sources
+    fitted_units  : {COMPONENT.PARAMETER: SI unit} of the values to write; other names are states
+    target        : file to write; paths of parameter files become relative to its folder
 
     Raises ValueError as `check_sections`.
     """
     document = check_sections(path, fitted_units)
     for section in document.values():
         _move_paths(section, path.parent, target.parent)
-    for name in fitted_units.keys() & fitted.values_by_name.keys():
+    for name in fitted_units.keys() & fitted_values.values_by_name.keys():
         component, _, parameter = name.partition(".")
         entries = document[component]
         *groups, leaf = parameter.split(".")
         for group in groups:
             entries = entries.setdefault(group, {})
-        kind, source = fitted.describe_source(name)
-        value = float(fitted.values_by_name[name])
+        kind, source = fitted_values.describe_source(name)
+        value = float(fitted_values.values_by_name[name])
         entries[leaf] = {"value": value, "unit": fitted_units[name], "kind": kind, "source": source}
     return _format_document(document)
 
