@@ -152,3 +152,12 @@ def test_the_file_of_a_library_goes_with_its_joint(tmp_path, monkeypatch):
     del contact, again
     gc.collect()
     assert not [*tmp_path.iterdir()]
+
+
+def test_without_history_the_compiled_joint_gives_the_numbers_of_the_python_law():
+    file = load_default("bolted_joint").with_values({"memory": False}, "user", "test")
+    model = KINDS["bolted_joint"].models[0].with_parameters("bolted_joint", file.values)
+    compiled, python = CompiledJoint(model, file), PythonJoint(model, file)
+    moments = {"s_rel_y": 1e-6, "theta_x": 1e-5, "theta_y": 2e-5, "theta_z": 1e-5}  # not only round-off
+    path = a_path(python, 3) | moments
+    assert largest_difference(compiled.follow(path), python.follow(path)) <= SAME

@@ -137,10 +137,10 @@ FULL_STICK_RATIO = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class SliderProperties:
-    """Properties (..., n) of sliders at an approach, per area.
+    """Properties (..., n) of sliders at an approach, per area of their patch.
 
     stiffness       : [Pa/m] tangential; 0 without contact
-    friction_limit  : [Pa] friction limit
+    friction_limit  : [Pa] share of the slider in mu times the pressure of the patch
     stiffness_slope : [Pa/m2] derivative of the stiffness with respect to the approach
     """
 

@@ -348,6 +348,8 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fra
             corrections = 0;
             jacobian_is_current = true;
         }
+        /* Whether this correction is expected to end the load step: its trial then computes works, losses and
+         * history, too, which saves an evaluation. Python has no such case. */
         const bool is_last = step_fraction == 1.0 && n > 0 && norm < JACOBIAN_REUSE_RATIO * last_norm &&
                              norm * norm < last_norm * tolerance; /* by its order of convergence */
         double *correction = e->corrections[corrections];

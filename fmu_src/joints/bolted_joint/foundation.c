@@ -49,8 +49,8 @@ END_OPTIMIZE_FOR_SIZE
 
 /* Sums over the springs of a range, and its sliders in full contact. The friction limit is linear in the approach from
  * the height of the last spring on, and is stored by its intercept at zero approach. Repeats `partial_contact` at that
- * height, and the growth from there in `Foundation.slider_properties`: a change of the friction limit goes into all
- * three, and into `full_range_rates`. */
+ * height, and the growth from there in `Foundation.slider_properties`. docs/architecture.md, "The friction limit",
+ * lists all places that contain the limit. */
 static void set_range(Foundation *f, int i)
 {
     const double width = f->height[i + 1] - f->height[i];
@@ -151,8 +151,9 @@ PatchState patch_state(const Foundation *f, double approach, int near)
     return p;
 }
 
-/* Arguments of `partial_contact`. */
-enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_D2P, X_WIDTH, N_PARTIAL_CONTACT };
+/* Arguments of `partial_contact`. Those before X_LOAD have no rates: `constant_count` in native.py counts them. */
+enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_BEND, X_WIDTH, N_PARTIAL_CONTACT };
+enum { N_CONSTANT_ARGUMENTS = X_LOAD };
 
 static inline void partial_contact_arguments(const Foundation *f, int i, const PatchState *p, double *x)
 {
@@ -161,7 +162,7 @@ static inline void partial_contact_arguments(const Foundation *f, int i, const P
     x[X_WIDTH] = p->approach - f->height[i];
     x[X_LOAD] = p->y[0] - f->load[i] - f->stiffness[i] * x[X_WIDTH];
     x[X_STIFFNESS] = p->y[1] - f->stiffness[i];
-    x[X_D2P] = p->y[2];
+    x[X_BEND] = p->y[2];
 }
 
 /* Repeats `Foundation.slider_properties`, for one range. */
@@ -709,7 +710,7 @@ typedef struct {
 static PropertiesRate properties_rate(const Foundation *f, int i, const PatchState *p, double rate, double bend)
 {
     PropertiesRate pairs = {.at = slider_properties(f, i, p)};
-    double x[2 * N_PARTIAL_CONTACT - X_LOAD];
+    double x[2 * N_PARTIAL_CONTACT - N_CONSTANT_ARGUMENTS];
     if (p->approach < f->height[i])
         return pairs;
     if (i < p->full_ranges) {

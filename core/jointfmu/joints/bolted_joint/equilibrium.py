@@ -10,8 +10,11 @@ S modal stiffness, p contact pressure, t traction, A area, k_b and e stiffness a
 is at least the negative preload of the bolt, see `BoltSprings`.
 
 Newton's method takes the part of H (below) for a as its first Jacobian, and corrects it by Broyden's update.
-Later it computes J. A load step that does not converge is divided: q is then prescribed at step fractions
-between 0 (start of the load step) and 1 (end). Shapes: n points, m patches, b bolts, k modes.
+It computes J after an iteration that reduces the residual too little, see JACOBIAN_REUSE_RATIO, and after a
+correction that the line search shortens or drops. A load step that does not converge is divided: q is then
+prescribed at step fractions between 0 (start of the load step) and 1 (end). The fractions only lead a to the
+solution: friction always gets one straight increment from the start of the load step to the trial state, so
+its history does not contain them. Shapes: n points, m patches, b bolts, k modes.
 
 Five derivatives of forces occur, in this module and in the C code under the same names:
 
@@ -352,8 +355,9 @@ def solve_newton(
 ) -> tuple[TrialState, bool]:
     """Newton's method at a step fraction [1]: last trial state, and whether the method converged.
 
-    It starts at modal coordinates a (k) [m] with the Jacobian J (k, k) [N/m] of an earlier state. J is
-    reused, with Broyden's update, after an iteration that reduces the residual to JACOBIAN_REUSE_RATIO.
+    It starts at modal coordinates a (k) [m] with the Jacobian (k, k) [N/m] of an earlier state: in a divided
+    load step, too, that at the start of the load step. The Jacobian is reused, with Broyden's update, after a
+    full correction that reduces the residual below JACOBIAN_REUSE_RATIO; otherwise J is computed.
     """
     q = load_step.displacement_at(step_fraction)
     tolerance_factor = 1.0 if step_fraction == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
@@ -375,7 +379,7 @@ def solve_newton(
             break
         corrections.append(correction)
         state, is_full = search_line(load_step, q, state, correction, jacobian_is_current)
-        last_norm = norm if is_full else 0.0  # 0: the next iteration computes J
+        last_norm = norm if is_full else 0.0  # 0: no residual is below it, so J is computed
         jacobian_is_current = False
     return state, False
 
@@ -389,10 +393,11 @@ def search_line(
 ) -> tuple[TrialState, bool]:
     """State after a correction (k) [m] of the modal coordinates, and whether it is the full correction.
 
-    The energy slope [J] is residual . correction. If it exceeds MAX_ENERGY_SLOPE_RATIO times its first value
-    at the end, the correction is shortened by regula falsi, or dropped if the Jacobian was computed at an
-    earlier state. If the first value is positive, too, regula falsi has no zero: the correction is shortened
-    to MIN_LENGTH_RATIO.
+    The energy slope [J] is residual . correction: where friction sticks, the derivative of the potential
+    energy along the correction. With slip there is no potential, but the slope still vanishes at the
+    solution. If it exceeds MAX_ENERGY_SLOPE_RATIO times its first value at the end, the correction is
+    shortened by regula falsi, or dropped if the Jacobian was computed at an earlier state. If the first value
+    is positive, too, regula falsi has no zero: the correction is shortened to MIN_LENGTH_RATIO.
     """
     length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
     for shortenings in range(MAX_LINE_SEARCH):
