@@ -239,8 +239,8 @@ def test_a_tools_page_says_what_a_user_needs(path: Path) -> None:
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site, built with the extra `docs` alone. The generator stops at links that lead nowhere.
 
-    The generator runs one example itself, and takes the notebooks of the others from test_examples.py. A notebook
-    that this machine cannot run is missing: its page has no output.
+    The generator runs one example itself, and takes the notebooks of the others from test_examples.py. A
+    notebook that this machine cannot run is missing: its page has no output.
     """
     out, notebooks = tmp_path_factory.mktemp("site"), tmp_path_factory.mktemp("notebooks")
     for script in SCRIPTS:
