@@ -1,7 +1,8 @@
 """Write the site (Zensical, configured by mkdocs.yml): `python docs/make_site.py --out FOLDER`.
 
 Pages link to files of the repository, so they are laid out in a folder together with what the site carries
-along: linked files, README and CONTRIBUTING as pages, the laboratory, the reference of Python."""
+along: linked files, README and CONTRIBUTING as pages, the laboratory, the reference of Python, the examples
+with their output."""
 
 import argparse
 import posixpath
@@ -13,9 +14,13 @@ from pathlib import Path
 from runpy import run_path
 from tempfile import TemporaryDirectory
 
+from notebooks import EXAMPLES, write_page
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE_OF_TEXT = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
 """{text of the repository: page of the site that shows it}."""
+PAGES_OF_FILES = PAGE_OF_TEXT | {f"examples/{p.name}": f"examples/{p.stem}.md" for p in EXAMPLES}
+"""{file of the repository: page of the site that shows it}."""
 LABORATORY = "laboratory/page.html"
 """Path of the laboratory page in the site."""
 SCRIPTS = {"reference.md": "reference.py", "variables.md": "variables.py"}
@@ -49,8 +54,8 @@ def repository_path(source: str, target: str) -> str | None:
 
 def site_path(path: str) -> str:
     """Address of a repository file in the site."""
-    if path in PAGE_OF_TEXT:
-        return PAGE_OF_TEXT[path]
+    if path in PAGES_OF_FILES:
+        return PAGES_OF_FILES[path]
     return f"files/{path}.txt" if path.endswith((".md", ".py")) else f"files/{path}"
 
 
@@ -92,21 +97,27 @@ def redirect_links(markdown: str, source: str) -> tuple[str, set[str]]:
             return match[0]
         if (ROOT / path).is_dir():
             return str(text)
-        if path not in PAGE_OF_TEXT:
+        if path not in PAGES_OF_FILES:
             linked.add(path)
         return f"[{text}]({posixpath.relpath(site_path(path), here)}{anchor or ''})"
 
     return _LINK.sub(lead, markdown), linked
 
 
-def copy_inputs(docs: Path) -> None:
-    """Copy all inputs of the site generator into the folder `docs`."""
+def copy_inputs(docs: Path, notebooks: Path | None) -> None:
+    """Copy all inputs of the site generator into the folder `docs`.
+
+    notebooks : folder with notebooks of the examples that were run before
+    """
     shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     made = {LABORATORY: laboratory()} | {page: page_of(script) for page, script in SCRIPTS.items()}
     made |= {page: convert_text(name) for name, page in PAGE_OF_TEXT.items()}
     for page_path, text in made.items():
         (docs / page_path).parent.mkdir(exist_ok=True)
         (docs / page_path).write_text(text, encoding="utf-8")
+    (docs / "examples").mkdir()
+    for script in EXAMPLES:
+        write_page(script, docs / "examples", notebooks)
     for page in sorted(docs.rglob("*.md")):
         text, linked = redirect_links(page.read_text(encoding="utf-8"), page.relative_to(docs).as_posix())
         page.write_text(text, encoding="utf-8")
@@ -127,12 +138,12 @@ def add_policy(site: Path) -> None:
             )
 
 
-def build(out: Path) -> int:
+def build(out: Path, notebooks: Path | None) -> int:
     """Build the site into the folder `out`; returns the exit status of the generator, which fails for broken
     links."""
     with TemporaryDirectory() as name:
         work = Path(name)
-        copy_inputs(work / "docs")
+        copy_inputs(work / "docs", notebooks)
         shutil.copy(ROOT / "mkdocs.yml", work)
         done = subprocess.run([sys.executable, "-m", "zensical", "build", "--strict"], cwd=work)
         if done.returncode == 0:
@@ -146,4 +157,12 @@ if __name__ == "__main__":
     parser.add_argument(
         "--out", type=Path, default=ROOT / "dist/docs", metavar="FOLDER", help="default: dist/docs"
     )
-    sys.exit(build(parser.parse_args().out))
+    parser.add_argument(
+        "--notebooks",
+        type=Path,
+        metavar="FOLDER",
+        help="take notebooks with output from this folder, for example dist/docs/examples, and run only the "
+        "examples that it does not have",
+    )
+    arguments = parser.parse_args()
+    sys.exit(build(arguments.out, arguments.notebooks))

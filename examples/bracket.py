@@ -1,5 +1,12 @@
-"""A bolted bracket from its drawing: shear loops over the preload, and an FMU of it."""
+# %% [markdown]
+"""
+# A bracket from its drawing
 
+A bolted bracket from its drawing: shear loops over the preload, and an FMU of the bracket.
+Needs the extra `fem`.
+"""
+
+# %%
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -9,6 +16,8 @@ bracket = jointfmu.bolted_joint(
     plate=(200, 100), bolts="4xM12", at=(160, 60), grip=40, material="steel", Ra=0.8
 )
 print(bracket)
+
+# %%
 tightened = bracket.values["inputs.preload"]  # N of each bolt
 
 figure, axes = plt.subplots(layout="constrained")
@@ -21,5 +30,6 @@ axes.set(xlabel="shear motion [um]", ylabel="shear force [kN]")
 axes.legend(title="bolts", frameon=False)
 figure.savefig("bracket.png")
 
+# %%
 bracket.save("bracket.toml")
 print(*bracket.build("dist", "fmi2"))

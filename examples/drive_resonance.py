@@ -1,5 +1,11 @@
-"""A drive by its name: the resonance of an axis increases with the torque on its drive."""
+# %% [markdown]
+"""
+# A drive by its name
 
+The resonance of an axis increases with the torque on its drive.
+"""
+
+# %%
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -10,6 +16,7 @@ INERTIA = 1.2  # kg.m2, what the axis turns
 drive = jointfmu.drive("CSG-25-100")
 print(drive)  # every number with its unit and source
 
+# %%
 tau = np.linspace(0.0, drive.values["rated_torque"], 200)  # N.m
 frequency = np.sqrt(drive.stiffness(tau) / INERTIA) / (2.0 * np.pi)
 

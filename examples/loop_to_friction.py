@@ -1,5 +1,11 @@
-"""A measured loop of force over motion becomes the friction of a bolted joint."""
+# %% [markdown]
+"""
+# A loop to friction
 
+A measured loop of force over motion becomes the friction of a bolted joint.
+"""
+
+# %%
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -9,6 +15,7 @@ import jointfmu
 
 PRELOAD = 9e3  # N of each bolt
 
+# %%
 # A stand-in for your own record: a joint whose friction the fit does not know, with noise in the force.
 motion = np.concatenate([a * np.sin(np.linspace(0.0, 6.0 * np.pi, 241)) for a in (1e-6, 3e-6, 9e-6)])
 joint = jointfmu.load("BoltedJoint").with_values(mu=0.17)

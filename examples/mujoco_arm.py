@@ -1,5 +1,11 @@
-"""A drive between motor and link of an arm in MuJoCo. Needs the extra `mujoco`."""
+# %% [markdown]
+"""
+# A drive in MuJoCo
 
+A drive between motor and link of an arm in MuJoCo. Needs the extra `mujoco`.
+"""
+
+# %%
 import matplotlib.pyplot as plt
 import mujoco
 import numpy as np
@@ -24,8 +30,11 @@ ARM = """
 </mujoco>
 """
 
+# %%
 fmu = jointfmu.drive("CSG-14-100").build("dist", "fmi3", fmu="HarmonicDriveSpring")[0]
 mujoco.mj_loadPluginLibrary(str(plugin(fmu, "dist/mujoco")))
+
+# %%
 model = mujoco.MjModel.from_xml_string(ARM)
 data, rows = mujoco.MjData(model), []
 while data.time < 2.0:
@@ -34,6 +43,7 @@ while data.time < 2.0:
     rows.append((data.time, data.joint("elbow").qpos[0], data.sensor("drive").data[2]))
 time, elbow, wind_up = np.transpose(rows)
 
+# %%
 figure, axes = plt.subplots(2, sharex=True, layout="constrained")
 axes[0].plot(time, np.rad2deg(elbow))
 axes[0].set(ylabel="elbow [deg]")

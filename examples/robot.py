@@ -1,5 +1,12 @@
-"""A robot with six drives of the catalogue: load, wind-up, error of its tip beside constant springs."""
+# %% [markdown]
+"""
+# A robot with six drives
 
+A robot with six drives of the catalogue: load, wind-up, and the error of the tip with the drives and with
+constant springs.
+"""
+
+# %%
 import subprocess
 import sys
 
@@ -28,6 +35,7 @@ def tip(angles):
     return place
 
 
+# %%
 subprocess.run([sys.executable, "-m", "jointfmu", "system", "six_axis_robot", "--csv=robot.csv"], check=True)
 run = np.genfromtxt("robot.csv", delimiter=",", names=True, deletechars="")[::20]
 motors = [-run[f"{name}_motor.phi_[rad]"] / 100.0 for name in ARM]  # against the links
@@ -36,6 +44,8 @@ for K in ("K1", "K3"):
     springs = {name: jointfmu.drive(drive).values[K] for name, (*_, drive) in ARM.items()}  # N.m/rad
     wound = [-run[f"{name}_drive.tau2_[N.m]"] / k for name, k in springs.items()]
     links[f"constant springs {K}"] = [q + w for q, w in zip(motors, wound, strict=True)]
+
+# %%
 figure, (load, wind_up, error) = plt.subplots(1, 3, figsize=(12.0, 4.2), layout="constrained")
 for name, motor, link in zip(ARM, motors, links["drives as FMUs"], strict=True):
     load.plot(run["time_[s]"], run[f"{name}_drive.tau2_[N.m]"], label=name)

@@ -1,5 +1,11 @@
-"""A surface scan becomes the stiffness of a bolted joint. Needs the extra `surface`."""
+# %% [markdown]
+"""
+# A scan to a joint
 
+A surface scan becomes the stiffness of a bolted joint. Needs the extra `surface`.
+"""
+
+# %%
 import subprocess
 import sys
 
@@ -14,11 +20,13 @@ def shell(words: str) -> None:
     subprocess.run([sys.executable, "-m", "jointfmu", *words.split()], check=True)
 
 
+# %%
 # A stand-in for your own scan: 1 mm x 1 mm of a rough surface, heights in metres.
 shell("surface synthesize --size 1e-3 --points 256 --D 2.4 --G 1e-8 --seed 1 --out scan.csv")
 # Both sides are like the scan, whose roughness goes into the parameter file of the joint.
 shell("surface scan.csv --side both --joint bolted_joint --out scanned.toml --plot scan.png")
 
+# %%
 scanned, shipped = jointfmu.load("scanned.toml"), jointfmu.load("BoltedJoint")
 preload = np.linspace(1e3, 30e3, 30)  # N of each bolt
 figure, axes = plt.subplots(layout="constrained")

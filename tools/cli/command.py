@@ -6,13 +6,13 @@ import re
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
 from jointfmu.files.outputs import FileKind
 
 from ..common.judgement import Plausibility
+from ..common.names import find_similar_names
 from ..common.options import format_option_flag
 from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
 
@@ -66,7 +66,7 @@ _INVALID_CHOICE_PATTERN = re.compile(r"invalid choice: '?([^' ]*)'? \(choose fro
 
 def suggest_word(word: str, known_words: Iterable[str]) -> str:
     """Format a suggestion for an error message: the known word most similar to `word`; empty if none is."""
-    matches = get_close_matches(word, [*known_words], 1)
+    matches = find_similar_names(word, known_words, 1)
     return f"; did you mean {matches[0]}?" if matches else ""
 
 

@@ -1,8 +1,9 @@
 """Figures for the command line: common style and saving (matplotlib, loaded only when drawing)."""
 
 import io
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +42,7 @@ def check_picture_path(path: str | Path) -> None:
     """
     if Path(path).suffix.lower() not in PICTURE_FORMATS:
         raise ValueError(f"{path}: suffix {Path(path).suffix!r} is not a picture, allowed are .png, .svg")
-    _load_style_context()
+    _load_settings()
 
 
 def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
@@ -70,30 +71,48 @@ def open_figure(path: str | Path, figure_size: tuple[float, float] = (7.2, 4.2))
 def apply_style() -> Iterator[None]:
     """Apply the common style in a `with` block, or as a decorator of a function that draws.
 
+    Other settings stay as the block leaves them: the first figure of a notebook makes pyplot interactive.
     Raises ValueError if matplotlib is missing.
     """
-    with _load_style_context()(STYLE_SETTINGS):
-        yield
-
-
-def _load_style_context() -> Callable[..., AbstractContextManager[None, bool | None]]:
+    settings = _load_settings()
+    former = {name: settings[name] for name in STYLE_SETTINGS}
+    settings.update(STYLE_SETTINGS)
     try:
-        from matplotlib import rc_context
+        yield
+    finally:
+        settings.update(former)
+
+
+def _load_settings() -> Any:
+    try:
+        from matplotlib import rcParams
     except ImportError:
         raise ValueError(
             "the package matplotlib is missing, needed for plots; install it with: pip install matplotlib"
         ) from None
-    return rc_context
+    return rcParams
 
 
 def create_figure(figure_size: tuple[float, float]) -> "Figure":
-    """Create an empty figure of a size [inch] that `pyplot.show` and notebooks display."""
+    """Create an empty figure of a size [inch] that `pyplot.show` and notebooks display, each of them once."""
+    from matplotlib import pyplot
+
+    figure = pyplot.figure(figsize=figure_size, layout="constrained")
+    setattr(figure, "_repr_mimebundle_", partial(_close_in_notebook, figure))  # noqa: B010 (unknown to mypy)
+    return figure
+
+
+def _close_in_notebook(figure: "Figure", **_: object) -> dict[str, str]:
+    """Close a figure that IPython displays as the result of a cell.
+
+    A notebook displays the open figures at the end of a cell, and would display this one twice. Returns {}:
+    IPython makes the picture as for other figures.
+    """
     from matplotlib import get_backend, pyplot
 
-    canvas = pyplot.figure(figsize=figure_size, layout="constrained")
     if "inline" in get_backend():
-        pyplot.close(canvas)  # a notebook would show the figure twice: as result of the cell and as open
-    return canvas
+        pyplot.close(figure)
+    return {}
 
 
 def save_figure(figure: "Figure", path: str | Path) -> None:

@@ -8,16 +8,15 @@ other drives are scaled from them.
 """
 
 import csv
-import math
 import re
 from collections.abc import Iterator, Mapping
-from difflib import SequenceMatcher
 from functools import cache
 from importlib.resources import files
 from typing import TypeAlias
 
 from jointfmu.quantity.units import conversion_factor
 
+from ...common.names import find_similar_names
 from ...inputs.catalogue import CatalogueColumn, CatalogueEntry, SourcedNumber
 from .friction import add_friction_estimates, collect_published_friction
 
@@ -59,10 +58,6 @@ SERIES_WITH_PUBLISHED_TORQUES = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with published torques, in the order in which they serve as estimates for other series."""
 TorqueTable: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
 """Published torques: {(series, size, ratio): row of the file}."""
-_MAX_SIZE_DIGITS = 3
-"""Digits of the largest size and of the largest ratio."""
-_SUGGESTION_COUNT = 3
-"""Number of similar names in the error for an unknown name."""
 
 
 def find_drive(drive_name: str) -> CatalogueEntry:
@@ -80,11 +75,9 @@ def find_drive(drive_name: str) -> CatalogueEntry:
     joined = [item for key, item in known.items() if _join_name(key) == _join_name(wanted)]
     if len(joined) == 1:
         return joined[0]
-    similar = sorted(known, key=lambda key: _name_distance(key, wanted))[:_SUGGESTION_COUNT]
-    raise ValueError(
-        f"catalogue {drive_name!r} is unknown; nearest are {', '.join(known[key].name for key in similar)} "
-        "(jointfmu catalogue)"
-    )
+    similar = ", ".join(find_similar_names(drive_name, (item.name for item in list_drives())))
+    hint = f"nearest are {similar}" if similar else "allowed are the names of the catalogue"
+    raise ValueError(f"catalogue {drive_name!r} is unknown; {hint} (jointfmu catalogue)")
 
 
 def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
@@ -107,19 +100,6 @@ def _stem(drive: CatalogueEntry) -> str:
     parts, ratio = drive.name.split("-"), f"{drive.numbers['ratio'].value:g}"
     places = [place for place, part in enumerate(parts) if part == ratio]
     return "-".join(part for place, part in enumerate(parts) if place != (places or [len(parts)])[-1])
-
-
-def _name_distance(known_name: str, wanted_name: str) -> tuple[float, ...]:
-    """Distance between two names, for sorting: difference of the letters, then of size, then of ratio.
-
-    A number that is longer than any size is size and ratio without a separator; then the texts are compared.
-    """
-    if re.search(rf"\d{{{_MAX_SIZE_DIGITS + 1}}}", wanted_name) and not re.search(r"\d-\d", wanted_name):
-        return (-SequenceMatcher(None, _join_name(known_name), _join_name(wanted_name)).ratio(),)
-    letters, wanted_letters = (re.sub("[^a-z]", "", name) for name in (known_name, wanted_name))
-    numbers = ([float(n) for n in re.findall(r"[1-9]\d*", name)] for name in (known_name, wanted_name))
-    distances = [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
-    return -SequenceMatcher(None, letters, wanted_letters).ratio(), *distances
 
 
 @cache

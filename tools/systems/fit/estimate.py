@@ -30,7 +30,7 @@ from ..fmu.assembly import assemble_system
 from ..system import System
 from .compiled_system import CompiledSystem
 from .correlated_residuals import whiten_jacobian
-from .record import Record, describe_nearest, read_record
+from .record import Record, list_similar_names, read_record
 
 FITTED_SHARES = (0.125, 0.25, 0.5)
 """Shares of the fitted rows [1] that are fitted first, one after the other."""
@@ -124,7 +124,7 @@ def _make_unknowns(
             raise ValueError(f"{name} is fixed in the compiled system; {_list_free(name, numbers)}")
         else:
             raise ValueError(
-                f"{name!r} is no parameter of {system.name}, {describe_nearest(name, [*numbers, *states])}"
+                f"{name!r} is no parameter of {system.name}, {list_similar_names(name, [*numbers, *states])}"
             )
     return unknowns
 

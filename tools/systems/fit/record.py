@@ -1,8 +1,7 @@
 """Measured time series of a system: a table whose columns are named as variables of the system."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import CELSIUS_UNIT, CELSIUS_ZERO_IN_KELVIN, UNITS, UnitSizes, unit_sizes
 
 from ...common import columns
+from ...common.names import find_similar_names
 
 MIN_ROWS = 8
 """Smallest number of rows of a record."""
@@ -57,7 +57,8 @@ def read_record(path: Path, model: Model, stated_headings: Sequence[str] = ()) -
     for heading in unused:
         if "." in heading:
             raise ValueError(
-                f"{path}: column {heading!r} is no variable of the system, {describe_nearest(heading, units)}"
+                f"{path}: column {heading!r} is no variable of the system, "
+                f"{list_similar_names(heading, units)}"
             )
     table = columns.read_columns(path, known, MIN_ROWS, stated_headings=stated)
     time = table.require_column("time", known)
@@ -89,11 +90,10 @@ def read_record(path: Path, model: Model, stated_headings: Sequence[str] = ()) -
     return Record(path, time, inputs, outputs, unused)
 
 
-def describe_nearest(name: str, known_names: Sequence[str] | Mapping[str, object]) -> str:
-    """Known names that are similar to a name, as text; all of them if none is similar."""
-    by_lower = {known.lower(): known for known in known_names}
-    nearest = [by_lower[text] for text in get_close_matches(name.lower(), by_lower, 3)] or [*known_names]
-    return f"{'nearest' if len(nearest) <= 3 else 'allowed'} are {', '.join(nearest)}"
+def list_similar_names(name: str, known_names: Iterable[str]) -> str:
+    """Known names that are similar to a name, for an error message; all of them if none is similar."""
+    similar = find_similar_names(name, known_names)
+    return f"{'nearest' if similar else 'allowed'} are {', '.join(similar or known_names)}"
 
 
 def _accepted_units(unit: str) -> UnitSizes:

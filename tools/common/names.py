@@ -1,0 +1,30 @@
+"""Known names that are similar to an unknown name, for error messages."""
+
+import math
+import re
+from collections.abc import Iterable
+from difflib import SequenceMatcher
+
+MIN_SIMILARITY = 0.6
+"""Smallest ratio of equal letters [1] (`SequenceMatcher.ratio`) of two similar names."""
+
+
+def find_similar_names(name: str, known_names: Iterable[str], count: int = 3) -> list[str]:
+    """Find the known names that are most similar to a name, at most `count`; empty if none is similar.
+
+    They are sorted by their letters, then by the ratios of their numbers; case and separators do not matter.
+    Digits written together may be two numbers, as in csg32100: then the complete texts are compared.
+    """
+    wanted = name.lower()
+    joined = bool(re.search(r"\d{4}", wanted)) and not re.search(r"\d[\W_]\d", wanted)
+    compared = r"[\W_]" if joined else "[^a-z]"
+
+    def distance(known: str) -> tuple[float, ...]:
+        texts = (re.sub(compared, "", text) for text in (known.lower(), wanted))
+        similarity = SequenceMatcher(None, *texts).ratio()
+        numbers = ([float(n) for n in re.findall(r"[1-9]\d*", text)] for text in (known, wanted))
+        ratios = () if joined else [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
+        return -similarity, *ratios
+
+    similar = [(d, known) for known in known_names if (d := distance(known))[0] <= -MIN_SIMILARITY]
+    return [known for _, known in sorted(similar, key=lambda pair: pair[0])[:count]]
