@@ -17,6 +17,7 @@ from jointfmu_tools.studies.published import computed, reference, validation
 
 from jointfmu import __version__
 from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
+from jointfmu.contact.laws import zhao2018
 from jointfmu.joints import KINDS
 from jointfmu.parameters import format_parameter_file, load_default
 from jointfmu.quantity import flatten_parameters
@@ -350,6 +351,17 @@ def test_a_missed_point_gives_status_1(run, monkeypatch):
     status, out, err = run("validate")
     assert (status, err) == (1, "")
     assert out.splitlines()[-1].endswith("missed: spot_stiffness.ratio")
+
+
+def test_the_last_line_names_a_law_that_missed(run, monkeypatch):
+    """The summary of the published numbers, below that of the laws, says that it missed none."""
+    normal_stiffness = zhao2018.normal_stiffness
+    monkeypatch.setattr(zhao2018, "normal_stiffness", lambda law, a: 1.01 * normal_stiffness(law, a))
+    status, out, _ = run("validate")
+    assert status == 1
+    *_, summary, last = out.splitlines()
+    assert summary.endswith("missed: none")
+    assert last.startswith("missed in both tables: zhao2018.K_N, ")
 
 
 def test_a_missed_calibration_point_is_shown(run, monkeypatch):

@@ -282,6 +282,8 @@ def test_the_yield_strength_limits_the_torque(capsys):
     )
     line = refused_line(capsys, "new", "bolted-joint", *words, "110")
     assert "1.18 times the yield strength of M12-8.8; expected up to 83.6 N.m (VDI 2230: 90%)" in line
+    for torque, advice in (("84000", "check the unit, as in 84000N.mm"), ("0.084", "as in 0.084kN.m")):
+        assert refused_line(capsys, "new", "bolted-joint", *words, torque).rstrip().endswith(advice)
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *FACES, "--torque", "840")
     assert "times the yield strength of M12-12.9, the strongest class" in line
 

@@ -125,6 +125,7 @@ def test_parts_and_pressure_of_a_given_midline():
             {"corner": 0.5},
             r"corner = 0.5 is outside \[0, 0.425868\): the corners at T1 and T2 must not overlap",
         ),
+        ({"K1": 67.0}, r"K1 = 67 N.m/rad is outside \(561.7\d*, 1e\+12\]: it is too far below K2"),
         ({"corner": -0.1}, r"corner = -0.1 is outside \[0, 1\)"),
     ],
 )

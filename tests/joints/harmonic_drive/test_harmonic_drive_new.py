@@ -329,10 +329,13 @@ START = ("--starting-torque", "0.03")
     [
         (["--motor-drag", "-1"], "--motor-drag = '-1' is outside [0, inf) N.m"),
         (["--motor-drag", "1 N"], "unit 'N.m' does not measure what 'N' does"),
-        (["--temperature", "318"], "is 591.15 K, outside [-80, 200] degC; write kelvin as 318.15K"),
+        (["--temperature", "318"], "is read as 318 degC, outside [-80, 200] degC; if it is in K, write 318K"),
         (["--temperature", "warm"], "is not a temperature; expected 45, 45degC or 318.15K"),
-        (["--efficiency", "1.5"], "--efficiency = '1.5' is outside (0, 1)"),
-        (["--starting-torque", "0.03", "--efficiency", "70"], "--efficiency = '70' is outside (0, 1)"),
+        (["--efficiency", "1.5"], "--efficiency = '1.5' is outside [0.1, 1)"),
+        ([*START, "--efficiency", "70"], "--efficiency = '70' is outside [0.1, 1); write percent as 70%"),
+        (["--efficiency", "0.03"], "--efficiency = '0.03' is outside [0.1, 1)"),
+        (["--hysteresis", "60"], "plausible are 0.01 to 20 arcmin; if it is in arcsec, write 60arcsec"),
+        ([*START, "--back-driving-torque", "5000"], "is above the rated torque, 21 N.m; check the unit"),
         (["--starting-torque", "0.03N"], "unit 'N.m' does not measure what 'N' does"),
         ([*START, "--running-torque", "0.02"], "--running-torque = 0.02 N.m is outside [0.03, inf) N.m"),
         (

@@ -93,7 +93,8 @@ def _run_validate(args: argparse.Namespace) -> CommandResult:
             rows += compare_natural_frequencies()
     laws = law_reference.compare_laws()
     counts = asdict(validation.count_points(rows))
-    misses = [*validation.missed_points(rows), *law_reference.missed_quantities(laws)]
+    missed_laws = law_reference.missed_quantities(laws)
+    misses = [*missed_laws, *validation.missed_points(rows)]
     return CommandResult(
         json_document={
             "laws": [law.to_json() for law in laws],
@@ -107,6 +108,7 @@ def _run_validate(args: argparse.Namespace) -> CommandResult:
             "",
             validation.format_table(rows),
             validation.format_summary(rows),
+            *([f"missed in both tables: {', '.join(misses)}"] if missed_laws else []),
         ],
         exit_status=int(bool(misses)),
     )

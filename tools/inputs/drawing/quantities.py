@@ -203,7 +203,7 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "T2": _declare_torque("torque T2", 0.01, 1e5),
     "rated_torque": _declare_torque("rated torque", 0.01, 1e5),
     "hysteresis": DrawingQuantity(
-        "hysteresis loss", "arcmin", "rad", (0.01, 60.0), other_units=("rad", "deg", "arcsec")
+        "hysteresis loss", "arcmin", "rad", (0.01, 20.0), other_units=("rad", "deg", "arcsec")
     ),
     "lost_motion": DrawingQuantity(
         "lost motion", "arcmin", "rad", (0.01, 60.0), other_units=("rad", "deg", "arcsec")
@@ -219,7 +219,7 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "starting_torque": _declare_torque("starting torque", 1e-4, 100.0),
     "running_torque": _declare_torque("running torque", 1e-4, 100.0),
     "back_driving_torque": _declare_torque("back-driving torque", 1e-3, 1e4),
-    "efficiency": DrawingQuantity("efficiency", "1", "1"),
+    "efficiency": DrawingQuantity("efficiency", "1", "1", extra_units={"%": 0.01}),
     "motor_drag": _declare_torque("motor drag", 1e-5, 100.0, allows_zero=True),
     "corner": DrawingQuantity("relative width of a corner", "1", "1", has_sign=True),
 }
@@ -305,8 +305,9 @@ def _parse_value(option: str, text: str, default_unit: str | None) -> float:
         and not low <= abs(magnitude) <= high
         and (advice := _advise_unit(quantity, match[1], abs(magnitude)))
     ):
+        interval = f"are {low:g} to {high:g}" if high < math.inf else f"is at least {low:g}"
         raise ValueError(
-            f"{flag} = {text!r} is read as {magnitude:g} {quantity.unit}, plausible are {low:g} to {high:g} "
+            f"{flag} = {text!r} is read as {magnitude:g} {quantity.unit}, plausible {interval} "
             f"{quantity.unit}; {advice}"
         )
     _check_limits(option, text, magnitude)

@@ -68,12 +68,15 @@ def parse_temperature(option: str, temperature_text: str) -> float:
             "or 318.15K"
         )
     kelvin = float(match[1]) + (0.0 if match[2] == "K" else CELSIUS_ZERO_IN_KELVIN)
-    if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
-        low, high = (end - CELSIUS_ZERO_IN_KELVIN for end in LUBRICANT_TEMPERATURES)
+    low, high = LUBRICANT_TEMPERATURES
+    if not low <= kelvin <= high:
+        advice = ""
+        if not match[2] and low <= float(match[1]) <= high:
+            advice = f"; if it is in K, write {match[1]}K"
         raise ValueError(
-            f"{format_option_flag(option)} = {temperature_text!r} is {kelvin:g} K, outside [{low:g}, "
-            f"{high:g}] degC; write "
-            "kelvin as 318.15K"
+            f"{format_option_flag(option)} = {temperature_text!r} is read as "
+            f"{kelvin - CELSIUS_ZERO_IN_KELVIN:g} degC, outside [{low - CELSIUS_ZERO_IN_KELVIN:g}, "
+            f"{high - CELSIUS_ZERO_IN_KELVIN:g}] degC{advice}"
         )
     return kelvin
 

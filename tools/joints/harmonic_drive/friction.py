@@ -237,6 +237,13 @@ def _check_stated_numbers(
         if name in stated_names and sourced_numbers[name].value < (1.0 - _STATED_LIMIT_TOLERANCE) * lowest:
             value = f"{format_option_flag(name)} = {sourced_numbers[name].value:g} N.m"
             raise ValueError(f"{value} is outside [{lowest:.6g}, inf) N.m: it is at least {bound_text}")
+    if "back_driving_torque" in stated_names and "rated_torque" in sourced_numbers:
+        back, rated = (sourced_numbers[name].value for name in ("back_driving_torque", "rated_torque"))
+        if back > rated:
+            raise ValueError(
+                f"--back-driving-torque = {back:g} N.m is above the rated torque, {rated:g} N.m; check the "
+                f"unit, as in {back:g}mN.m"
+            )
     if "efficiency" in stated_names and "rated_torque" in sourced_numbers:
         highest, stated_value = (
             1.0 / (1.0 + _no_load_torque_ratio(sourced_numbers)),

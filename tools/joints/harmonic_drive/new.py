@@ -159,8 +159,11 @@ def read_friction_parameters(
     Empty for a fixed wave generator. Raises ValueError for stated numbers that contradict each other.
     """
     stated = [name for name in FRICTION_COLUMNS if options[name] is not None]
-    if "efficiency" in stated and not sourced_numbers["efficiency"].value < 1.0:
-        raise ValueError(f"--efficiency = {options['efficiency']!r} is outside (0, 1)")
+    if "efficiency" in stated and not MIN_EFFICIENCY <= sourced_numbers["efficiency"].value < 1.0:
+        raise ValueError(
+            f"--efficiency = {options['efficiency']!r} is outside [{MIN_EFFICIENCY:g}, 1); write percent as "
+            "70%"
+        )
     if options["fixed"] == "wave-generator":
         if stated:
             raise ValueError(

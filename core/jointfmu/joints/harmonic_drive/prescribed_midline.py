@@ -124,9 +124,14 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
             *super().find_parameter_limits(),
             ParameterLimit("T2", Interval.from_bounds(gt=self.T1), "it must exceed T1"),
             ParameterLimit(
+                "K1",
+                Interval.from_bounds(gt=self._min_first_stiffness, le=MAX_STIFFNESS),
+                "it is too far below K2 for smooth corners at T1 and T2; check the value and the unit of K1",
+            ),
+            ParameterLimit(
                 "corner",
                 Interval.from_bounds(ge=0.0, lt=(second - first) / (second + first)),
-                "the corners at T1 and T2 must not overlap; check first that K1, K2, T1 and T2 are right",
+                "the corners at T1 and T2 must not overlap; check first that T1 and T2 are right",
             ),
             ParameterLimit(
                 "lost_motion",
@@ -149,6 +154,13 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         """Wind-up [rad] of the lines at T1 and T2."""
         first = self.T1 / self.K1
         return first, first + (self.T2 - self.T1) / self.K2
+
+    @property
+    def _min_first_stiffness(self) -> Number:
+        """Stiffness K1 [N.m/rad] below which corners of the default half-width, or smaller ones, overlap."""
+        corner = np.minimum(self.corner, DEFAULT_CORNER_HALF_WIDTH_RATIO)
+        torque_ratio = self.T1 / np.maximum(self.T2 - self.T1, self.T1)
+        return 2.0 * corner / (1.0 - corner) * self.K2 * torque_ratio
 
     @property
     def corner_half_width_ratio(self) -> Number:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from ....common.options import format_option_flag
 from ....inputs.drawing import vdi2230
 from ....inputs.drawing.part import DrawingOptions, ParameterSheet
-from ....inputs.drawing.quantities import StatedNumber, parse_quantity
+from ....inputs.drawing.quantities import QUANTITIES, StatedNumber, parse_quantity
 from ....inputs.drawing.tables import (
     Thread,
     TighteningMethod,
@@ -184,7 +184,7 @@ def _check_strength(
 
     A preload above the proof load is warned of by `common.pressure`.
 
-    Raises ValueError for a torque at which the bolt, or the strongest bolt, yields.
+    Raises ValueError for a torque that hardly tightens, or at which the bolt, or the strongest bolt, yields.
     """
     stated = options["property_class"]
     name = stated or vdi2230.STRONGEST_PROPERTY_CLASS
@@ -192,13 +192,21 @@ def _check_strength(
     utilisation = vdi2230.comparative_stress(thread, preload.force, thread_friction) / strength
     bolt = f"{thread.name}-{name}" + ("" if stated else ", the strongest class")
     allowed = vdi2230.assembly_preload(thread, strength, thread_friction)
-    if options["torque"] is not None and utilisation > 1.0:
-        highest = parse_quantity("torque", options["torque"]).value * allowed / preload.force
-        raise ValueError(
-            f"--torque = {options['torque']!r} tightens to {preload.force * 1e-3:.4g} kN, {utilisation:.3g} "
-            f"times the yield strength of {bolt}; expected up to {highest:.3g} N.m (VDI 2230: "
-            f"{vdi2230.YIELD_UTILISATION:.0%})"
-        )
+    if options["torque"] is not None:
+        torque, lowest = parse_quantity("torque", options["torque"]).value, QUANTITIES["preload"].plausible[0]
+        if preload.force < lowest:
+            raise ValueError(
+                f"--torque = {options['torque']!r} tightens to {preload.force:.3g} N, plausible is at least "
+                f"{lowest:g} N; check the unit, as in {torque:g}kN.m"
+            )
+        if utilisation > 1.0:
+            highest = torque * allowed / preload.force
+            advice = f"; check the unit, as in {torque:g}N.mm" if utilisation > 10.0 else ""
+            raise ValueError(
+                f"--torque = {options['torque']!r} tightens to {preload.force * 1e-3:.4g} kN, "
+                f"{utilisation:.3g} times the yield strength of {bolt}; expected up to {highest:.3g} N.m "
+                f"(VDI 2230: {vdi2230.YIELD_UTILISATION:.0%}){advice}"
+            )
     if stated is None:
         return preload
     proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
