@@ -115,7 +115,7 @@ def run_pipeline(out_folder: Path) -> PipelineResult:
         outcome.fmu_paths = build_fmus([], list(FLAVOUR_BUILDERS), None, out_folder, pool=pool)
         outcome.system_files = build_systems(out_folder, build_joints=False, pool=pool)
         components = [path for path in outcome.system_files if path.suffix == ".fmu"]
-        arms = pool.submit(cosimulation.simulate_arms, folder)
+        arms = pool.submit(cosimulation.simulate_arms)
         ringdowns = pool.submit(decays.simulate_example_decays, folder)
         ringing = pool.submit(simulate_example_vibrations, folder)
         page = pool.submit(write_laboratory, out_folder / "report" / "laboratory.html")

@@ -1,4 +1,4 @@
-"""Co-simulation of a system of FMI 2.0 FMUs, by a sequential or a parallel master."""
+"""Simulation of systems: of separate FMUs (FMI 2.0) by a sequential or a parallel master; of an arm as one."""
 
 from contextlib import ExitStack
 from itertools import accumulate
@@ -9,6 +9,8 @@ import numpy as np
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
+from .fit.compiled_system import CompiledSystem
+from .fmu.assembly import assemble_system
 from .master import Slave
 from .ssp import MASTERS, MasterKind, find_fmu_names, list_values
 from .system import System, load_systems
@@ -80,10 +82,23 @@ def simulate_system(
     return {"time": time} | {column: rows[:, k] for column, k in position.items()}
 
 
-def simulate_arms(folder: Path) -> dict[str, tuple[System, dict[str, Array]]]:
-    """Simulate the shipped systems that are arms, {name: (system, results)}; `folder` has FMI 2.0 FMUs."""
-    return {
-        name: (system, simulate_system(system, folder))
-        for name, system in load_systems().items()
-        if system.arm
-    }
+def simulate_arm(system: System) -> dict[str, Array]:
+    """Simulate an arm with coupled links, by the equations of its one FMU, compiled for this machine.
+
+    Returns {COMPONENT.OUTPUT: values} of all connected outputs except loads, position of the tip `tip.x`,
+    `tip.y`, `tip.z` [m], and `time` [s].
+
+    Raises ValueError if the motion cannot be computed, and as `CompiledSystem`.
+    """
+    compiled = CompiledSystem(assemble_system(system))
+    loads = {f"{name}_load" for name in system.arm.axis_names}
+    names = dict.fromkeys(f"{s.source}.{s.output}" for s in find_signals(system) if s.source not in loads)
+    names |= dict.fromkeys(f"tip.{x}" for x in "xyz")
+    time = system.interval * np.arange(round(system.stop_time / system.interval) + 1, dtype=np.float64)
+    rows = compiled.simulate({}, time, {}, [*names])
+    return {"time": time} | dict(zip(names, rows.T, strict=True))
+
+
+def simulate_arms() -> dict[str, tuple[System, dict[str, Array]]]:
+    """Simulate the shipped systems that are arms, {name: (system, results)}."""
+    return {name: (system, simulate_arm(system)) for name, system in load_systems().items() if system.arm}

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointfmu.quantity import Array, Number
+from jointfmu.quantity import Array, CheckedParameters, Number, quantity_field
 
 Vector = list[Number]
 Matrix = list[Vector]
@@ -85,6 +85,29 @@ class Body:
     mass: Number
     centre: Sequence[Number]
     inertia: Sequence[Number]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Payload(CheckedParameters):
+    """Rigid body at the tip, in the frame of the tip body."""
+
+    m: float = quantity_field("kg", "mass of the payload", ge=0.0)
+    x: float = quantity_field("m", "centre of mass of the payload along x of the tip body")
+    y: float = quantity_field("m", "centre of mass of the payload along y of the tip body")
+    z: float = quantity_field("m", "centre of mass of the payload along z of the tip body")
+    J_x: float = quantity_field(
+        "kg.m2", "moment of inertia of the payload about x through its centre", ge=0.0
+    )
+    J_y: float = quantity_field(
+        "kg.m2", "moment of inertia of the payload about y through its centre", ge=0.0
+    )
+    J_z: float = quantity_field(
+        "kg.m2", "moment of inertia of the payload about z through its centre", ge=0.0
+    )
+
+    def make_body(self, tip: Frame) -> Body:
+        """The payload as a body in the frame of the tip."""
+        return Body(tip, self.m, (self.x, self.y, self.z), (self.J_x, self.J_y, self.J_z))
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,7 +66,11 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
         from ...systems import cosimulation
 
         try:
-            run = cosimulation.simulate_system(described, args.out / "fmi2")
+            run = (
+                cosimulation.simulate_arm(described)
+                if described.arm
+                else cosimulation.simulate_system(described, args.out / "fmi2")
+            )
         except ValueError as error:
             text = f"experiment.interval = {described.interval:g} s may be too long"
             raise ValueError(f"{error}; {text}") from None

@@ -23,6 +23,7 @@ from ...systems.multibody import (
     Frame,
     FrameMotion,
     Link,
+    Payload,
     RotorMotion,
     TreeMotion,
     forward_dynamics,
@@ -62,25 +63,6 @@ class Coordinate(NamedTuple):
 
 HINGE = Coordinate("phi", "w", "tau", "rotation", "angle", "rad", "N.m")
 SLIDE = Coordinate("s", "v", "f", "displacement", "position", "m", "N")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Payload(CheckedParameters):
-    """Rigid body at the tip, in the frame of the tip body."""
-
-    m: float = quantity_field("kg", "mass of the payload", ge=0.0)
-    x: float = quantity_field("m", "centre of mass of the payload along x of the tip body")
-    y: float = quantity_field("m", "centre of mass of the payload along y of the tip body")
-    z: float = quantity_field("m", "centre of mass of the payload along z of the tip body")
-    J_x: float = quantity_field(
-        "kg.m2", "moment of inertia of the payload about x through its centre", ge=0.0
-    )
-    J_y: float = quantity_field(
-        "kg.m2", "moment of inertia of the payload about y through its centre", ge=0.0
-    )
-    J_z: float = quantity_field(
-        "kg.m2", "moment of inertia of the payload about z through its centre", ge=0.0
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -311,9 +293,7 @@ class RobotArm:
                 torque = values[f"{name}.tau_motor"] + values[f"{name}.tau1"]
                 motion = {"speed": values[f"{name}.motor.w"], "torque": torque}
             rotors[joint.link.name] = RotorMotion(own.motor.J, is_coupled=joint.is_coupled, **motion)
-        load = parameters.payload
-        payload = Body(self.tip, load.m, (load.x, load.y, load.z), (load.J_x, load.J_y, load.J_z))
-        return positions, speeds, forces, given, rotors, payload
+        return positions, speeds, forces, given, rotors, parameters.payload.make_body(self.tip)
 
     def make_component(self, payload: float) -> SystemComponent:
         """Component of a system, with the payload [kg] at the origin of the tip body."""

@@ -6,6 +6,7 @@ from jointfmu_fmu_src.partners import load_partner_parameters as partner_paramet
 
 from ..system import System
 from ..wiring import find_connections, find_model, find_signals
+from .arm_links import ArmLinks
 from .model import LAG_PARAMETERS, InputSource, SystemComponent, SystemModel
 
 MIN_COMMUNICATION_INTERVAL = 1e-3
@@ -14,6 +15,8 @@ MIN_COMMUNICATION_INTERVAL = 1e-3
 
 def assemble_system(system: System) -> SystemModel:
     """Make the model of a system: components in the order of evaluation, with the sources of their inputs.
+
+    The links of an arm are coupled: see `arm_links`.
 
     Raises ValueError as `wiring.find_connections`, and for a system without a body.
     """
@@ -26,8 +29,13 @@ def assemble_system(system: System) -> SystemModel:
                 variable: None for m, variable in first.variables_by_member.items() if m != first.flow_member
             }
             feeds[first.component.name] |= zero_inputs
-    components = []
+    components, replaced = [], set[str]()
+    if system.arm:  # one component replaces the links and the torques on them
+        components.append(ArmLinks(system.arm).make_component())
+        replaced = {f"{name}_{part}" for name in system.arm.axis_names for part in ("link", "load")}
     for name, component in system.components.items():
+        if name in replaced:
+            continue
         model = find_model(component)
         if model.state_count:
             model = replace(model, fixed_parameters=LAG_PARAMETERS)

@@ -9,7 +9,7 @@
 #include "instance.h"
 #include "system.h"
 
-#define DEFAULT_TOLERANCE 1e-5 /* of the speeds of a step, relative to `speed_scale`; a host may set a smaller one, */
+#define DEFAULT_TOLERANCE 1e-4 /* of the speeds of a step, relative to `speed_scale`; a host may set a smaller one, */
 #define MIN_TOLERANCE 1e-10    /* down to this one */
 #define NEWTON_TOLERANCE_RATIO 1e-2    /* residual correction of Newton's method over the tolerance */
 #define WHOLE_STEP_TOLERANCE_RATIO 1.0 /* the same for a whole step, whose error may be 15 tolerances */
@@ -113,11 +113,14 @@ static bool factorize(StepWork *w)
         const double pivot = w->matrix[k][k];
         if (!(fabs(pivot) > 0.0 && fabs(pivot) < INFINITY))
             return false;
+        const double *restrict pivot_row = w->matrix[k];
         for (size_t i = k + 1; i < N_STATES; i++) {
-            const double factor = w->matrix[i][k] / pivot;
-            w->matrix[i][k] = factor;
-            for (size_t j = k + 1; j < N_STATES && factor != 0.0; j++)
-                w->matrix[i][j] -= factor * w->matrix[k][j];
+            double *restrict row = w->matrix[i];
+            const double factor = row[k] /= pivot;
+            if (factor == 0.0)
+                continue;
+            for (size_t j = k + 1; j < N_STATES; j++)
+                row[j] -= factor * pivot_row[j];
         }
     }
     return true;
@@ -165,7 +168,6 @@ static bool solve_step(Instance *m, const TrialStep *s, double *to, double *hist
     StepWork *w = &m->joint->work;
     const double precision = w->tolerance * (s->is_whole_step ? WHOLE_STEP_TOLERANCE_RATIO : NEWTON_TOLERANCE_RATIO);
     double *k = w->accelerations, previous = INFINITY;
-    bool factorized = false;
     for (int n = 0; n < MAX_ITERATIONS; n++) {
         for (size_t stage = MIDDLE; stage <= END; stage++) {
             if (!evaluate_stage(m, s, stage, history_end))
@@ -176,13 +178,14 @@ static bool solve_step(Instance *m, const TrialStep *s, double *to, double *hist
         if (!w->tangents_are_current) {
             update_tangents(m, s);
             w->tangents_are_current = true;
-            factorized = false;
+            w->factorized_size = 0.0;
         }
-        if (!factorized) {
+        if (w->factorized_size != s->size) { /* both half steps share the matrix */
+            w->factorized_size = 0.0;
             assemble(w, s->size);
             if (!factorize(w))
                 return false;
-            factorized = true;
+            w->factorized_size = s->size;
         }
         solve(w);
         double size = 0.0;
@@ -276,6 +279,7 @@ Status instance_integrate(Instance *m, double size)
         state->tolerance > 0.0 ? fmax(fmin(state->tolerance, DEFAULT_TOLERANCE), MIN_TOLERANCE) : DEFAULT_TOLERANCE;
     w->tangents_are_current =
         false; /* no reuse from the step before: a restored FMU state continues with the same bits */
+    w->factorized_size = 0.0;
     w->correction_ratio = 1.0;
     double elapsed = 0.0, last_half = 0.0, next = state->previous_step_size > 0.0 ? state->previous_step_size : size;
     memcpy(from, state->values + X, (N_STATES + N_BODIES) * sizeof *from);

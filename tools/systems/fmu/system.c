@@ -84,6 +84,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
 {
     size_t body = 0;
     (void)inputs;
+    memset(result, 0, N_OUTPUTS * sizeof *result);
     memcpy(result, seed + N_INPUTS, N_STATES * sizeof *result);
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
@@ -102,11 +103,12 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
         for (size_t k = c->n_inputs; k < c->n_inputs + c->n_states; k++)
             has_rate |= rate[k] != 0.0;
         body += n_bodies;
-        if (has_rate)
-            c->derivative(joint->component[i], values + FIRST_INPUT, history + c->first_history,
-                          history_end ? history_end + c->first_history : NULL, rate, output_rates);
+        if (!has_rate)
+            continue;
+        c->derivative(joint->component[i], values + FIRST_INPUT, history + c->first_history,
+                      history_end ? history_end + c->first_history : NULL, rate, output_rates);
         for (size_t k = c->n_states; k < c->n_outputs; k++)
-            result[targets[k] - FIRST_OUTPUT] = has_rate ? output_rates[k] : 0.0;
+            result[targets[k] - FIRST_OUTPUT] = output_rates[k];
     }
 }
 

@@ -42,6 +42,7 @@ typedef struct {
     bool tangents_are_current;
     double correction_ratio; /* size of the last correction of Newton's method over the one before */
     double matrix[N_STATES][N_STATES], residual[N_STATES]; /* linear system of Newton's method */
+    double factorized_size; /* size of the step whose matrix is factorized; 0: none */
     unsigned short pivot[N_STATES];
     double speed_scale[N_BODIES];          /* speed that the tolerance refers to [m/s, rad/s] */
     double tolerance;                      /* relative tolerance of the speeds */

@@ -22,6 +22,7 @@ through rated torque. This angle is the wind-up of the law, 2 phi(0.04 rated_tor
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -216,11 +217,26 @@ def error_amplitudes(drive: DriveParameters) -> list[Number]:
 def kinematic_error(drive: DriveParameters, phi1: Number) -> tuple[Number, Number, Number]:
     """Kinematic error (...) [rad] at angles phi1 (...) [rad]; its first [1] and second derivative [1/rad]."""
     error = slope = bend = 0.0
-    for n, amplitude in zip(KINEMATIC_ERROR_HARMONICS, error_amplitudes(drive), strict=True):
-        angle = n * phi1 + getattr(drive, f"error_{n}_phase")
-        wave, wave_slope = amplitude * np.sin(angle), n * amplitude * np.cos(angle)
+    harmonics = compute_harmonics(phi1, KINEMATIC_ERROR_HARMONICS)
+    for (n, (sine, cosine)), amplitude in zip(harmonics.items(), error_amplitudes(drive), strict=True):
+        phase = getattr(drive, f"error_{n}_phase")
+        wave = amplitude * (sine * np.cos(phase) + cosine * np.sin(phase))
+        wave_slope = n * amplitude * (cosine * np.cos(phase) - sine * np.sin(phase))
         error, slope, bend = error + wave, slope + wave_slope, bend - n * n * wave
     return error, slope, bend
+
+
+def compute_harmonics(angle: Number, orders: Sequence[int]) -> dict[int, tuple[Number, Number]]:
+    """{n: (sin(n angle), cos(n angle))} of orders n that are powers of 2, by the formulas of the double angle.
+
+    Sine and cosine are evaluated once: they take a large part of the time of a drive.
+    """
+    order, sine, cosine = 1, np.sin(angle), np.cos(angle)
+    harmonics = {order: (sine, cosine)}
+    while order < max(orders):
+        order, sine, cosine = 2 * order, 2.0 * sine * cosine, (cosine - sine) * (cosine + sine)
+        harmonics[order] = sine, cosine
+    return {n: harmonics[n] for n in orders}
 
 
 def lost_motion_angle(drive: DriveParameters, torque: Number) -> tuple[Number, Number, Number]:

@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
 from ...quantity import Array, Number
-from .drive import FRICTION_HARMONICS, PLAY_WIDTH_RATIO, DriveParameters
+from .drive import FRICTION_HARMONICS, PLAY_WIDTH_RATIO, DriveParameters, compute_harmonics
 from .hysteresis import slider_shares
 
 FRICTION_SLIDERS = 8
@@ -94,9 +94,9 @@ def friction_limits(
 def friction_ripple(drive: DriveParameters, phi1: Number) -> Number:
     """Periodic part (...) [N.m] of the dry friction at angles phi1 (...) [rad] of the wave generator."""
     ripple = 0.0
-    for n in FRICTION_HARMONICS:
+    for n, (sine, cosine) in compute_harmonics(phi1, FRICTION_HARMONICS).items():
         amplitude, phase = getattr(drive, f"friction_{n}"), getattr(drive, f"friction_{n}_phase")
-        ripple = ripple + amplitude * np.sin(n * phi1 + phase)
+        ripple = ripple + amplitude * (sine * np.cos(phase) + cosine * np.sin(phase))
     return ripple
 
 
