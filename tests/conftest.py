@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import cache, partial, wraps
 from hashlib import sha256
 from pathlib import Path
@@ -28,6 +28,7 @@ from jointfmu_fmu_src.native.compiled.cache import (
 )
 from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries
 from jointfmu_tools.run.host import Instance
+from surroundings import Enter
 
 from jointfmu.progress import STATUS_DELAY_ENVIRONMENT_VARIABLE
 
@@ -280,6 +281,14 @@ def here_alone(versions: str = "23") -> Iterator[None]:
         patch.setattr(compiled_models, "compile_libraries", libraries_here)
         patch.setattr(system, "compile_libraries", libraries_here)
         yield
+
+
+@pytest.fixture
+def enter() -> Iterator[Enter]:
+    """Function that enters a context for the rest of the test: `chdir`, and those of
+    `tests/support/surroundings.py`."""
+    with ExitStack() as stack:
+        yield stack.enter_context
 
 
 REFINEMENT = {"bodies": 0.5}

@@ -42,6 +42,7 @@ from natives import VERSIONS
 from proofs import BOTH, MEASURED
 from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
+from surroundings import Enter, environment, missing_package
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import format_parameter_file, load_default
@@ -298,8 +299,10 @@ def test_a_python_fmu_without_its_libraries_is_refused(
     assert not (tmp_path / "out").exists()
 
 
-def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+def test_ctrl_c_is_heard_after_what_swallows_it(
+    tmp_path: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "nothing kept")))
 
     def swallowing(*_: object) -> dict[str, str]:
         with suppress(KeyboardInterrupt):
@@ -313,11 +316,9 @@ def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pyt
     assert everything(tmp_path) == []
 
 
-def test_a_refused_build_leaves_no_folder(
-    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
-    monkeypatch.setitem(sys.modules, "ziglang", None)
+def test_a_refused_build_leaves_no_folder(tmp_path: Path, capsys: Capture, enter: Enter) -> None:
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "nothing kept")))
+    enter(missing_package("ziglang"))
     line = refused_line(capsys, "build", "GearContact", "--out", tmp_path / "new" / "dist")
     assert "the package ziglang is missing" in line
     assert everything(tmp_path) == []
@@ -358,10 +359,8 @@ def test_an_existing_fmu_survives_a_failed_build(
     assert set(sys.modules) == modules
 
 
-def test_a_bad_source_date_is_refused_by_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
-) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+def test_a_bad_source_date_is_refused_by_name(tmp_path: Path, enter: Enter, capsys: Capture) -> None:
+    enter(environment(SOURCE_DATE_EPOCH="yesterday"))
     line = refused_line(capsys, "build", "GearContact", "--flavour", "python", "--out", tmp_path)
     assert "SOURCE_DATE_EPOCH" in line
     assert [p for p in everything(tmp_path) if p.is_file()] == []

@@ -14,6 +14,7 @@ from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.cli.parser import COMMAND_GROUPS, COMMANDS, COMPLETION_SHELLS, build_parser
+from surroundings import Enter, environment
 
 from jointfmu import progress
 
@@ -33,10 +34,10 @@ class Terminal(io.StringIO):
 
 
 def test_long_work_says_what_it_does_on_a_terminal(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    enter: Enter, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     monkeypatch.setattr(progress, "STATUS_DELAY", 0.2)
-    monkeypatch.setenv(progress.STATUS_DELAY_ENVIRONMENT_VARIABLE, "inf")
+    enter(environment(**{progress.STATUS_DELAY_ENVIRONMENT_VARIABLE: "inf"}))
     for stream, shown in ((Terminal(), True), (io.StringIO(), False)):
         monkeypatch.setattr(sys, "stderr", stream)
         out = sys.stdout
@@ -66,9 +67,9 @@ def test_an_interrupt_is_deferred_to_the_end_of_the_outermost_context():
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_long_work_prints_one_line_where_there_is_no_terminal(monkeypatch):
+def test_long_work_prints_one_line_where_there_is_no_terminal(enter, monkeypatch):
     """In a pipe or a notebook, a command without output would look like a program that hangs."""
-    monkeypatch.setenv(progress.STATUS_DELAY_ENVIRONMENT_VARIABLE, "0.2")
+    enter(environment(**{progress.STATUS_DELAY_ENVIRONMENT_VARIABLE: "0.2"}))
     monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
     with progress.show_status("jointfmu report"):
         progress.set_status_text("loops")

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from contextlib import chdir
 
 import pytest
 from conftest import refused_line
@@ -26,8 +27,8 @@ MARKS = {
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, enter):
+    enter(chdir(tmp_path))
     return tmp_path
 
 

@@ -5,6 +5,7 @@ import re
 import struct
 import threading
 import zipfile
+from contextlib import chdir
 from importlib.resources import files
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from jointfmu_tools.cli.parser import _iterate_parsers, build_parser
 from jointfmu_tools.inputs.surfaces.reading import read_heights as heights
 from jointfmu_tools.run import host
 from jointfmu_tools.run.proof.manifest import RelatedFiles
+from surroundings import Enter
 
 from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes
@@ -223,10 +225,10 @@ def test_a_command_refuses_a_pipe_at_once(
     command: str,
     name: str,
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    enter: Enter,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     for path, text in FILES.items():
         Path(path).write_text(text)
     for path in PIPES:

@@ -4,6 +4,7 @@ import doctest
 import json
 import subprocess
 import sys
+from contextlib import chdir
 from importlib import import_module
 
 import numpy as np
@@ -12,6 +13,7 @@ from clients import needs
 from conftest import here_alone
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
+from surroundings import environment, missing_package
 
 import jointfmu
 
@@ -29,8 +31,8 @@ ROW = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9}
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, enter):
+    enter(chdir(tmp_path))
 
 
 @pytest.fixture
@@ -61,8 +63,8 @@ def test_a_name_that_is_not_there():
         _ = jointfmu.drives
 
 
-def test_the_core_alone_names_the_missing_package(monkeypatch):
-    monkeypatch.setitem(sys.modules, "jointfmu_tools", None)
+def test_the_core_alone_names_the_missing_package(enter, monkeypatch):
+    enter(missing_package("jointfmu_tools"))
     monkeypatch.delitem(vars(jointfmu), "load", raising=False)
     with pytest.raises(ImportError, match=r"^jointfmu.load needs the package jointfmu_tools, .* pip install"):
         _ = jointfmu.load
@@ -266,7 +268,7 @@ def test_a_required_name_is_said_by_python():
 
 
 @pytest.mark.slow  # a process of its own
-def test_a_missing_package_is_named_with_what_brings_it(tmp_path, monkeypatch):
+def test_a_missing_package_is_named_with_what_brings_it(tmp_path, enter):
     """Without extras, numbers are computed; what needs a package names the extra in one line."""
     asked = """
 import sys
@@ -281,7 +283,7 @@ for call in (drive.build, drive.plot, law.plot, law.at_pressure([1e6, 2e6]).plot
     except ValueError as error:
         print(error)
 """
-    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "nothing kept")))
     done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
     said = done.stdout.splitlines()
     assert len(said) == 4

@@ -1,6 +1,7 @@
 """Toy joint of another package in less than 100 lines, through all tools: a new joint is a new folder."""
 
 import json
+from contextlib import chdir
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -122,10 +123,10 @@ def test_its_parameter_file_is_read_and_written():
         file.with_values({"c": 0.0}, "user", "test")
 
 
-def test_it_has_a_page_of_its_own_file(tmp_path, monkeypatch):
+def test_it_has_a_page_of_its_own_file(tmp_path, enter):
     """The joint defines neither page contents nor loops: the page has the curve over the load and the
     parameters."""
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     Path("mine.toml").write_text(format_parameter_file(load_default("toy")))
     assert cli.main(["report", "mine.toml"]) == 0
     page = Path("mine.html").read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ from conftest import RELEASED, Fmu, run_host
 from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.native.code.generate import generate_sources
-from jointfmu_fmu_src.native.compiled import cache, compiled_models
+from jointfmu_fmu_src.native.compiled import compiled_models
 from jointfmu_fmu_src.native.compiled.binary import fill_library
 from jointfmu_fmu_src.native.compiled.compile_ahead import list_code_structures
 from jointfmu_fmu_src.native.data import (
@@ -23,6 +23,7 @@ from jointfmu_fmu_src.native.data import (
     split_parameters,
 )
 from natives import close
+from surroundings import Enter, environment
 from test_bare import EXTRAS
 from test_native_binaries import check_signature, images, members
 
@@ -93,10 +94,10 @@ def test_a_part_is_read_as_it_was_written() -> None:
 
 
 def test_it_is_compiled_once_and_again_where_the_file_is_broken(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compiled = []
-    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path))
+    enter(environment(JOINTFMU_CACHE=str(tmp_path)))
     monkeypatch.setattr(compiled_models, "compile_model", lambda *_: compiled.append(1) or a_part())
     model, file = of(NAMES[0])
     for _ in range(3):
@@ -109,9 +110,11 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
     assert [p for p in tmp_path.rglob("*") if p.is_file()] == [found]
 
 
-def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cache_that_cannot_be_written_is_no_error(
+    tmp_path: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "file").write_text("mine")
-    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "file" / "below"))
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "file" / "below")))
     monkeypatch.setattr(compiled_models, "compile_model", lambda *_: a_part())
     model, file = of(NAMES[0])
     assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()

@@ -35,6 +35,7 @@ from jointfmu_fmu_src.native.terminals import terminal_files
 from lxml import etree
 from PIL import Image
 from scipy.constants import zero_Celsius
+from surroundings import Enter, environment
 from test_fmu_description import dimension, si_value
 
 from jointfmu import __version__
@@ -445,16 +446,14 @@ def test_fmi_3_says_how_to_compile_the_sources(name: str, tmp_path: Path) -> Non
         assert libraries == (["m"] if "linux" in str(c.get("platform")) else [])
 
 
-def test_there_is_a_date_only_if_it_is_given(
-    name: str, version: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+def test_there_is_a_date_only_if_it_is_given(name: str, version: int, enter: Enter) -> None:
+    enter(environment(SOURCE_DATE_EPOCH=None))
     undated = description(name, version)
     assert etree.fromstring(undated).get("generationDateAndTime") is None
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    enter(environment(SOURCE_DATE_EPOCH="1700000000"))
     dated = etree.fromstring(description(name, version))
     assert dated.get("generationDateAndTime") == "2023-11-14T22:13:20Z"
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    enter(environment(SOURCE_DATE_EPOCH="yesterday"))
     with pytest.raises(ValueError, match="SOURCE_DATE_EPOCH = 'yesterday' is not a date"):
         description(name, version)
 

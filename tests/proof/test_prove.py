@@ -25,6 +25,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.run.proof.importers import SUPPORTED_FMI_VERSIONS as KNOWN
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
+from surroundings import Enter, environment
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import load_default
@@ -271,12 +272,12 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
 
 
 def test_an_importer_whose_library_does_not_load_is_refused(
-    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], enter: Enter
 ) -> None:
     """An importer is refused if its library does not load, as on a machine without a library that
     it needs."""
     (tmp_path / "ecospy.py").write_text("raise OSError('libtbb.so.12: cannot open shared object file')\n")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    enter(environment(PYTHONPATH=str(tmp_path)))
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert line.endswith(
         "ecos cannot be loaded (OSError: libtbb.so.12: cannot open shared object file); "

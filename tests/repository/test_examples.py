@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 from runpy import run_path
 from typing import Any
@@ -14,6 +15,7 @@ from clients import needs
 from conftest import here_alone
 from jointfmu_tools import cli
 from PIL import Image
+from surroundings import Enter
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = sorted((ROOT / "examples").glob("*.py"))
@@ -46,12 +48,12 @@ def run_in_this_process(command: list[str], **options: Any) -> Any:
 @pytest.mark.slow
 @pytest.mark.parametrize("script", [pytest.param(s, marks=NEEDED.get(s.stem, ())) for s in SCRIPTS], ids=stem)
 def test_an_example_runs_and_writes_its_picture(
-    script: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    script: Path, tmp_path: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if script.stem not in ALONE:
         import matplotlib.pyplot as plt
 
-        monkeypatch.chdir(tmp_path)
+        enter(chdir(tmp_path))
         monkeypatch.setattr(subprocess, "run", run_in_this_process)
         plt.switch_backend("agg")
         with here_alone():

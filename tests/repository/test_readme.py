@@ -7,6 +7,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ from jointfmu_tools.inputs.fields import nodal_result
 from jointfmu_tools.inputs.fields.nodal_result import ContactField
 from jointfmu_tools.studies.published import validation
 from oracles import system_records
+from surroundings import environment
 
 from jointfmu.files.outputs import write_parameter_text
 from jointfmu.mechanics.footprint import bolts
@@ -42,7 +44,7 @@ def test_the_readme_is_short():
 
 @pytest.mark.slow
 @needs("git and a checkout", "gmsh")
-def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monkeypatch):
+def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, enter):
     """The blocks run in a clone; `.ci/run` runs the installation and the complete build in an environment of
     its own."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -58,8 +60,8 @@ def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monk
     subprocess.run(["bash", "-ec", with_nothing], cwd=tmp_path, env=environment, check=True, timeout=100)
     work = tmp_path / "joints"
     assert (work / ".venv" / "bin" / "python").exists()
-    monkeypatch.chdir(work)
-    monkeypatch.setenv("MPLBACKEND", "agg")
+    enter(chdir(work))
+    enter(environment(MPLBACKEND="agg"))
     with here_alone():
         for language, block in first:
             if language == "python":
@@ -99,8 +101,8 @@ def folder(tmp_path_factory, native):
 
 
 @needs("gmsh")
-def test_python_blocks_run(folder, few_points, monkeypatch):
-    monkeypatch.chdir(folder)
+def test_python_blocks_run(folder, few_points, enter):
+    enter(chdir(folder))
     names = {}
     for page in (FMUS, PYTHON):
         (block,) = blocks("python", page)
@@ -136,10 +138,10 @@ MESHED = ("jointfmu footprint compute ", "jointfmu modes ", "jointfmu new bolted
         if not line.startswith(ELSEWHERE)
     ],
 )
-def test_commands_run(line, folder, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(folder)
+def test_commands_run(line, folder, tmp_path, enter, capsys):
+    enter(chdir(folder))
     if line.startswith("jointfmu cache"):  # a cache of years takes long to count
-        monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path))
+        enter(environment(JOINTFMU_CACHE=str(tmp_path)))
     with here_alone():
         assert cli.main(shlex.split(line, comments=True)[1:]) == 0
     assert capsys.readouterr().out

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from contextlib import chdir
 from dataclasses import replace
 
 import numpy as np
@@ -33,8 +34,8 @@ def line():
 
 
 @pytest.fixture
-def folder(tmp_path, area, line, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, area, line, enter):
+    enter(chdir(tmp_path))
     (tmp_path / "area.csv").write_text(csvfile.csv_text(area))
     (tmp_path / "line.csv").write_text(csvfile.csv_text(line))
     return tmp_path

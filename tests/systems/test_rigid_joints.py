@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import struct
+from contextlib import chdir
 
 import mujoco
 import numpy as np
@@ -37,8 +38,8 @@ def cube():
 
 
 @pytest.fixture
-def arm(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def arm(tmp_path, enter, monkeypatch):
+    enter(chdir(tmp_path))
     monkeypatch.setattr(pictures, "ANGLES_PER_GRID_AXIS", 7)
     folder = tmp_path / "robot" / "assets" / "m & m"
     folder.mkdir(parents=True)

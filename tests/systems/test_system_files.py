@@ -4,6 +4,7 @@ import dataclasses
 import math
 import re
 import zipfile
+from contextlib import chdir
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -433,8 +434,8 @@ def test_a_picture_shows_the_peaks_of_a_run():
     assert np.all(np.diff(drawn.x) > 0.0)
 
 
-def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_ring_without_fmus_says_what_writes_them(tmp_path, enter, capsys):
+    enter(chdir(tmp_path))
     said = refused_line(capsys, "ring", "robot_joint")
     assert "has no HarmonicDriveSpring.fmu; `jointfmu system robot_joint` writes it" in said
     said = refused_line(capsys, "ring", "six_axis_robot", "--joint", "elbow_drive")

@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+from contextlib import chdir
 from pathlib import Path
 
 import numpy as np
@@ -164,8 +165,8 @@ class TestFits:
         with pytest.raises(ValueError, match=r"drive.T2 = 40 N.m has no effect on link.phi; fit other"):
             fit_system(read_system(path), record, ["drive.T2", "link.phi"])
 
-    def test_the_command_prints_what_its_page_says(self, tmp_path, monkeypatch, capsys):
-        monkeypatch.chdir(tmp_path)
+    def test_the_command_prints_what_its_page_says(self, tmp_path, enter, capsys):
+        enter(chdir(tmp_path))
         system_records.make_chirp_record(tmp_path, 1)
         command = re.search(r"\njointfmu (fit system arm.*)\n", PAGE.read_text(encoding="utf-8"))
         assert cli.main(shlex.split(command[1])) == 0

@@ -2,7 +2,6 @@
 `jointfmu new`."""
 
 import json
-import sys
 import warnings
 from dataclasses import replace
 from functools import partial
@@ -19,6 +18,7 @@ from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.inputs.drawing import vdi2230
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
+from surroundings import missing_package
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import STIFFNESS_UNITS, Compliances
@@ -420,10 +420,10 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
 
 
 @pytest.mark.parametrize("package", ["gmsh", "threadpoolctl"])
-def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypatch, tmp_path, package):
+def test_without_finite_elements_the_complete_joint_is_refused(capsys, enter, tmp_path, package):
     """The file would describe another joint than requested, so it is written only if `--sides
     rigid` is set."""
-    monkeypatch.setitem(sys.modules, package, None)
+    enter(missing_package(package))
     path = tmp_path / "joint.toml"
     other_plate = ["--plate", "80x81"]  # not solved before by this process
     line = refused_line(capsys, "new", "bolted-joint", *M16, *other_plate, *LOAD, "--out", path)
