@@ -295,10 +295,18 @@ REFINEMENT = {"bodies": 0.5}
 """Refinement of the elements of plates in tests, for `jointfmu new`."""
 
 
-@pytest.fixture
-def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+@contextmanager
+def refined_bodies() -> Iterator[None]:
     """Use the element sizes of the product instead of coarse ones, for tests of exact numbers."""
-    monkeypatch.setitem(REFINEMENT, "bodies", 1.0)
+    REFINEMENT["bodies"], before = 1.0, REFINEMENT["bodies"]
+    yield
+    REFINEMENT["bodies"] = before
+
+
+@pytest.fixture
+def fine_elements(enter: Enter) -> None:
+    """Elements of `refined_bodies`."""
+    enter(refined_bodies())
 
 
 @pytest.fixture

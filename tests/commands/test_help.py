@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import chdir
 from pathlib import Path
 
+import coarse
 import numpy as np
 import pytest
 from conftest import here_alone
@@ -112,16 +113,11 @@ def folder(read: Path, tmp_path: Path) -> Path:
     sorted({line for line in HELPS.values() if not line.startswith((*NEED, "new bolted-joint"))}),
     ids=lambda line: line[:24],
 )
-def test_an_example_runs(
-    line: str, folder: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_example_runs(line: str, folder: Path, enter: Enter, capsys: pytest.CaptureFixture[str]) -> None:
     """All examples except that of a plate, which tests/drawing/test_new.py runs."""
     enter(chdir(folder))
     enter(environment(JOINTFMU_CACHE=str(folder / "parts")))  # a user's may be large
-    if line.startswith("robot"):
-        monkeypatch.setattr(
-            "jointfmu_tools.exchange.robots.pictures.ANGLES_PER_GRID_AXIS", 7
-        )  # few poses are drawn as many are
+    enter(coarse.poses())
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out
 

@@ -7,12 +7,12 @@ import sys
 from contextlib import chdir
 from importlib import import_module
 
+import coarse
 import numpy as np
 import pytest
 from clients import needs
 from conftest import here_alone
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 from surroundings import environment, missing_package
 
 import jointfmu
@@ -36,13 +36,9 @@ def folder(tmp_path, enter):
 
 
 @pytest.fixture
-def plate(monkeypatch):
+def plate(enter):
     """Function that makes the bolted joint of PLATE without the finite elements of its members."""
-    monkeypatch.setattr(
-        plate_finite_elements,
-        "compute_joint_or_warning",
-        lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
-    )
+    enter(coarse.interface_alone())
     return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
 
 
@@ -63,9 +59,9 @@ def test_a_name_that_is_not_there():
         _ = jointfmu.drives
 
 
-def test_the_core_alone_names_the_missing_package(enter, monkeypatch):
+def test_the_core_alone_names_the_missing_package(enter):
     enter(missing_package("jointfmu_tools"))
-    monkeypatch.delitem(vars(jointfmu), "load", raising=False)
+    vars(jointfmu).pop("load", None)  # of an earlier test; it is found again
     with pytest.raises(ImportError, match=r"^jointfmu.load needs the package jointfmu_tools, .* pip install"):
         _ = jointfmu.load
 

@@ -15,6 +15,7 @@ from conftest import here_alone
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import joints as builders
 from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
+from jointfmu_fmu_src.folders import find_fmu_parts
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica import library
 from jointfmu_tools.studies.checks import check_ramp, compare_flavour, run_default_ramp
@@ -42,6 +43,13 @@ def built(toy, tmp_path_factory):
     with here_alone():
         build_fmus(["ToySpring"], list(FLAVOUR_BUILDERS), None, out)
     return out
+
+
+def test_a_joint_without_fmu_parts_cannot_be_built():
+    own = builders.FMU_PARTS.pop("toy")
+    with pytest.raises(ValueError, match=r"joint 'toy' has no FMU parts; .*: harmonic_drive"):
+        find_fmu_parts(joints.MODELS["ToySpring"])
+    builders.FMU_PARTS["toy"] = own
 
 
 def test_it_is_short():

@@ -25,7 +25,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.run.proof.importers import SUPPORTED_FMI_VERSIONS as KNOWN
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
-from surroundings import Enter, environment
+from surroundings import Enter, environment, missing_package
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import load_default
@@ -257,7 +257,7 @@ def test_a_broken_proof_is_refused_in_one_line(
 
 
 def test_what_cannot_be_proved_is_refused_in_one_line(
-    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], enter: Enter
 ) -> None:
     text = tmp_path / "text.fmu"
     text.write_text("no FMU")
@@ -266,7 +266,7 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     )
     assert "is not an FMU" in refused_line(capsys, "prove", text)
     assert "invalid choice: 'simulink'" in refused_line(capsys, "prove", text, "--in", "simulink")
-    monkeypatch.setattr("jointfmu_tools.run.proof.run.find_spec", lambda name: None)
+    enter(missing_package("ecospy"))
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert "the package ecospy is missing" in line
 

@@ -10,6 +10,7 @@ import sys
 from contextlib import chdir
 from pathlib import Path
 
+import coarse
 import pytest
 from clients import needs
 from conftest import here_alone
@@ -23,7 +24,6 @@ from oracles import system_records
 from surroundings import environment
 
 from jointfmu.files.outputs import write_parameter_text
-from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import load_default
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -86,8 +86,7 @@ def folder(tmp_path_factory, native):
     (place / "models/assemblies").mkdir(parents=True)
     (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
     joint = load_default("bolted_joint").values
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bolts, "CELLS_ACROSS_FLANGE", 3)  # few nodes are read as many are
+    with coarse.contact_cells(3):  # few nodes are read as many are
         shape, mean = joint.pattern.pressure_distribution(), 9e3 * joint.n_bolts / joint.A_0
     field = ContactField(joint.A_0 * shape.area_share, shape.position, mean * shape.preload_pressure_ratio)
     (place / "my_field.csv").write_text(nodal_result.csv_text(field))

@@ -1,5 +1,6 @@
-"""Surroundings of a test: environment variables, missing packages, the temporary folder."""
+"""Surroundings of a test: environment variables, missing packages, the temporary folder, a full disk."""
 
+import io
 import os
 import sys
 import tempfile
@@ -15,6 +16,14 @@ class Enter(Protocol):
     """Type of the fixture `enter`."""
 
     def __call__(self, surroundings: AbstractContextManager[T]) -> T: ...
+
+
+class Terminal(io.StringIO):
+    """Stream that is a terminal, for `redirect_stdout` and `redirect_stderr`."""
+
+    def isatty(self) -> bool:
+        """Whether it is a terminal."""
+        return True
 
 
 @contextmanager
@@ -58,3 +67,16 @@ def temporary_folder(folder: Path) -> Iterator[Path]:
         yield folder
     finally:
         tempfile.tempdir = before
+
+
+@contextmanager
+def full_disk(free: int) -> Iterator[None]:
+    """Refuse to write more than `free` bytes into a file (Linux or macOS)."""
+    import resource
+
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (free, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)

@@ -7,12 +7,12 @@ import shutil
 import struct
 from contextlib import chdir
 
+import coarse
 import mujoco
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.exchange.robots import pictures
 
 import jointfmu
 
@@ -38,9 +38,9 @@ def cube():
 
 
 @pytest.fixture
-def arm(tmp_path, enter, monkeypatch):
+def arm(tmp_path, enter):
     enter(chdir(tmp_path))
-    monkeypatch.setattr(pictures, "ANGLES_PER_GRID_AXIS", 7)
+    enter(coarse.poses())
     folder = tmp_path / "robot" / "assets" / "m & m"
     folder.mkdir(parents=True)
     (folder / "cube.stl").write_bytes(cube())

@@ -154,10 +154,9 @@ class TestFits:
         held = sum(sum(system_records.count_held(fit, LINEAR).values()) for fit in fits)
         assert held >= 26
 
-    def test_what_a_ring_down_does_not_determine(self, tmp_path, monkeypatch):
+    def test_what_a_ring_down_does_not_determine(self, tmp_path):
         """Ratios of stiffness, inertia and damping alone, while the motion stays in the linear part."""
-        monkeypatch.setattr(system_records, "RELEASED_ANGLE", 3e-4)
-        path, record = system_records.make_ring_down(tmp_path, 1)
+        path, record = system_records.make_ring_down(tmp_path, 1, 3e-4)
         fit = fit_system(read_system(path), record, ["link.J", "drive.K1", "drive.d", "link.phi"])
         (line,) = [text for text in fit.warnings() if text.startswith("the data do not determine")]
         assert line.removeprefix("the data do not determine ").startswith("link.J, drive.K1, drive.d:")
