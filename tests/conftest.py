@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import cache, partial, wraps
 from hashlib import sha256
 from pathlib import Path
@@ -28,6 +28,7 @@ from jointfmu_fmu_src.native.compiled.cache import (
 )
 from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries
 from jointfmu_tools.run.host import Instance
+from surroundings import Enter
 
 from jointfmu.progress import STATUS_DELAY_ENVIRONMENT_VARIABLE
 
@@ -282,14 +283,30 @@ def here_alone(versions: str = "23") -> Iterator[None]:
         yield
 
 
+@pytest.fixture
+def enter() -> Iterator[Enter]:
+    """Function that enters a context for the rest of the test: `chdir`, and those of
+    `tests/support/surroundings.py`."""
+    with ExitStack() as stack:
+        yield stack.enter_context
+
+
 REFINEMENT = {"bodies": 0.5}
 """Refinement of the elements of plates in tests, for `jointfmu new`."""
 
 
-@pytest.fixture
-def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+@contextmanager
+def refined_bodies() -> Iterator[None]:
     """Use the element sizes of the product instead of coarse ones, for tests of exact numbers."""
-    monkeypatch.setitem(REFINEMENT, "bodies", 1.0)
+    REFINEMENT["bodies"], before = 1.0, REFINEMENT["bodies"]
+    yield
+    REFINEMENT["bodies"] = before
+
+
+@pytest.fixture
+def fine_elements(enter: Enter) -> None:
+    """Elements of `refined_bodies`."""
+    enter(refined_bodies())
 
 
 @pytest.fixture

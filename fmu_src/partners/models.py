@@ -115,11 +115,16 @@ PARTNERS: dict[str, Model] = {
 
 
 def load_partner_parameters(partner_name: str) -> ParameterFile:
-    """Load the parameter file of a partner, models/partners/NAME.toml.
+    """Load the parameter file of a partner, models/partners/NAME.toml, see `read_partner_parameters`."""
+    path = Path(str(files("jointfmu_models") / "partners" / f"{partner_name}.toml"))
+    return read_partner_parameters(path, partner_name)
+
+
+def read_partner_parameters(path: Path, partner_name: str) -> ParameterFile:
+    """Read the parameter file of a partner.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """
-    path = Path(str(files("jointfmu_models") / "partners" / f"{partner_name}.toml"))
     document = read_document(path, "a partner's parameter file")
     if document.get("partner") != partner_name:
         raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {partner_name!r}")

@@ -16,6 +16,7 @@ from joint_cases import CASES, NAMES, PUBLIC
 from jointfmu_fmu_src.building import build_fmus
 from lxml import etree
 from scipy.constants import zero_Celsius
+from surroundings import Enter, environment
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import load_default
@@ -238,11 +239,9 @@ def test_calibration_parameters_say_so_and_no_other(root: Any, name: str) -> Non
     assert CASES[name].description.calibration <= described
 
 
-def test_equal_content_gives_an_equal_guid_and_file(
-    fmus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_equal_content_gives_an_equal_guid_and_file(fmus: Path, tmp_path: Path, enter: Enter) -> None:
     names = ["GearContact", "BoltedJoint"]  # without and with a memory; all share the builder
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    enter(environment(SOURCE_DATE_EPOCH="1700000000"))
     first = build_fmus(names, ["python"], None, tmp_path / "a")
     second = build_fmus(names, ["python"], None, tmp_path / "b")
     for a, b in zip(first, second, strict=True):

@@ -13,21 +13,21 @@ from conftest import refused_line
 from jointfmu_fmu_src.native.compiled import cache, compiled_models, compiler
 from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_tools.cli import main
+from surroundings import Enter, environment, missing_package
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import load_default
 
 
 def test_only_what_is_kept_is_removed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, enter: Enter, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path))
+    enter(environment(JOINTFMU_CACHE=str(tmp_path)))
     for name in ("parts/casadi-1_ziglang-1/A.tar.xz", "zig/o/b", "mine.txt"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("12345")
     assert main(["cache", "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == {"folder": str(tmp_path), "files": 2, "bytes": 10}
-    monkeypatch.setattr(cache, "_MAX_DELETION_WAIT", 60.0)
     for _ in range(2):
         assert main(["cache", "--clear"]) == 0
         assert capsys.readouterr().out.startswith(f"{tmp_path}: 0 files, 0.0 MB")
@@ -46,17 +46,17 @@ def part() -> compiled_models.CompiledModel:
 
 
 @pytest.fixture
-def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def cached(tmp_path: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Compiled part of a joint in a cache. Compiling it again fails the test."""
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
-    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "cache")))
     monkeypatch.setattr(compiled_models, "SHIPPED_MODEL_FOLDER", tmp_path / "none")
     place = compiled_models._candidate_paths(
         compiled_models.compiled_model_name(model, split_parameters(model, file))
     )[-1]
     compiled_models._write_cache_file(place, compiled_models.pack_model(part()))
-    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: pytest.fail("is compiled"))
+    enter(missing_package("ziglang"))
     return place
 
 
@@ -111,22 +111,17 @@ def test_a_cache_of_another_user_is_refused(
 @pytest.mark.parametrize(
     "variable", [cache.CACHE_ENVIRONMENT_VARIABLE, cache.COMPILER_CACHE_ENVIRONMENT_VARIABLE]
 )
-def test_what_the_compiler_keeps_is_checked_too(
-    variable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delenv(cache.COMPILER_CACHE_ENVIRONMENT_VARIABLE, raising=False)
-    monkeypatch.setenv(variable, str(tmp_path))
+def test_what_the_compiler_keeps_is_checked_too(variable: str, tmp_path: Path, enter: Enter) -> None:
+    enter(environment(**{cache.COMPILER_CACHE_ENVIRONMENT_VARIABLE: None}))
+    enter(environment(**{variable: str(tmp_path)}))
     tmp_path.chmod(0o777)
     with pytest.raises(ValueError, match="every user may write to it"):
         compiler.compile_libraries("x", {"x.c": "int x;"}, ["x.c"], ["x86_64-linux"])
 
 
-def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(cache.CACHE_ENVIRONMENT_VARIABLE, str(tmp_path / "none"))
-    monkeypatch.setattr(compiled_models, "SHIPPED_MODEL_FOLDER", tmp_path / "none")
-    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: part())
+def test_a_missing_cache_is_empty(tmp_path: Path, enter: Enter) -> None:
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "none")))
     assert cache.count_cached_files() == (0, 0)
-    assert found() == part()
 
 
 @pytest.mark.parametrize(

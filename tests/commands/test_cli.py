@@ -341,8 +341,15 @@ def test_validate_as_json(run):
             assert abs(row["error"]) <= row["tolerance"]
 
 
-def test_a_missed_point_gives_status_1(run, monkeypatch):
-    monkeypatch.setitem(PUBLISHED_NUMBERS.observable_functions, "spot_stiffness_ratio", lambda values: 1.0)
+@pytest.fixture
+def wrong(monkeypatch, request):
+    """Wrong value of one computed quantity."""
+    name, value = request.param
+    monkeypatch.setitem(PUBLISHED_NUMBERS.observable_functions, name, lambda *_, **__: value)
+
+
+@pytest.mark.parametrize("wrong", [("spot_stiffness_ratio", 1.0)], indirect=True)
+def test_a_missed_point_gives_status_1(run, wrong):
     status, out, err = run("validate", "--json")
     assert (status, err) == (1, "")
     found = json.loads(out)
@@ -364,9 +371,9 @@ def test_the_last_line_names_a_law_that_missed(run, monkeypatch):
     assert last.startswith("missed in both tables: zhao2018.K_N, ")
 
 
-def test_a_missed_calibration_point_is_shown(run, monkeypatch):
+@pytest.mark.parametrize("wrong", [("p_max", 8e6)], indirect=True)
+def test_a_missed_calibration_point_is_shown(run, wrong):
     """The table shows the miss; the exit status depends on the points that are not calibrated."""
-    monkeypatch.setitem(PUBLISHED_NUMBERS.observable_functions, "p_max", lambda values, preload: 8e6)
     status, out, err = run("validate")
     assert (status, err) == (0, "")
     assert "no test, moved" in out

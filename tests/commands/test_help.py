@@ -5,17 +5,19 @@ import json
 import shlex
 import shutil
 from collections.abc import Iterator
+from contextlib import chdir
 from pathlib import Path
 
+import coarse
 import numpy as np
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.native.build import build_native_fmu as native_build
-from jointfmu_fmu_src.native.compiled.cache import CACHE_ENVIRONMENT_VARIABLE
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.cli.examples import EXAMPLES
 from jointfmu_tools.cli.parser import build_parser
+from surroundings import Enter, environment
 from test_readme import commands
 
 from jointfmu.contact.laws import LAWS
@@ -111,16 +113,11 @@ def folder(read: Path, tmp_path: Path) -> Path:
     sorted({line for line in HELPS.values() if not line.startswith((*NEED, "new bolted-joint"))}),
     ids=lambda line: line[:24],
 )
-def test_an_example_runs(
-    line: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_example_runs(line: str, folder: Path, enter: Enter, capsys: pytest.CaptureFixture[str]) -> None:
     """All examples except that of a plate, which tests/drawing/test_new.py runs."""
-    monkeypatch.chdir(folder)
-    monkeypatch.setenv(CACHE_ENVIRONMENT_VARIABLE, str(folder / "parts"))  # a user's may be large
-    if line.startswith("robot"):
-        monkeypatch.setattr(
-            "jointfmu_tools.exchange.robots.pictures.ANGLES_PER_GRID_AXIS", 7
-        )  # few poses are drawn as many are
+    enter(chdir(folder))
+    enter(environment(JOINTFMU_CACHE=str(folder / "parts")))  # a user's may be large
+    enter(coarse.poses())
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out
 
@@ -149,13 +146,13 @@ def built(tmp_path_factory: pytest.TempPathFactory, native: Path) -> Path:
     ids=lambda line: line[:24],
 )
 def test_an_example_with_fmus_runs(
-    line: str, built: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    line: str, built: Path, enter: Enter, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if line.startswith("footprint import"):
         computed = shlex.split(EXAMPLES["footprint compute"])
-        monkeypatch.chdir(built)
+        enter(chdir(built))
         assert cli.main([*computed, "--field", "my_field.csv"]) == 0
-    monkeypatch.chdir(built)
+    enter(chdir(built))
     with here_alone():
         assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out

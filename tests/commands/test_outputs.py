@@ -3,6 +3,7 @@
 import os
 import stat
 import threading
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
@@ -71,8 +72,8 @@ def test_every_path_is_declared_as_input_or_output(prog):
 @pytest.mark.parametrize(
     ("prog", "name", "kind"), [one for one in FILES if "input.toml" in words(one[0], one[1], "output")]
 )
-def test_an_output_that_is_an_input_is_refused(tmp_path, monkeypatch, capsys, prog, name, kind):
-    monkeypatch.chdir(tmp_path)
+def test_an_output_that_is_an_input_is_refused(tmp_path, enter, capsys, prog, name, kind):
+    enter(chdir(tmp_path))
     source = Path("input.toml")
     source.write_text("precious")
     os.link(source, "hard" + kind.endings[0])
@@ -84,8 +85,8 @@ def test_an_output_that_is_an_input_is_refused(tmp_path, monkeypatch, capsys, pr
 
 
 @pytest.mark.parametrize(("prog", "name", "kind"), FILES)
-def test_a_foreign_file_is_not_replaced(tmp_path, monkeypatch, capsys, prog, name, kind):
-    monkeypatch.chdir(tmp_path)
+def test_a_foreign_file_is_not_replaced(tmp_path, enter, capsys, prog, name, kind):
+    enter(chdir(tmp_path))
     Path("input.toml").write_text("x")
     path = Path(f"mine{kind.endings[0]}")
     path.write_text("measured by me\n")
@@ -108,8 +109,8 @@ def test_a_command_runs_twice_and_edits_are_kept(tmp_path, capsys):
     assert "my note" not in out.read_text()
 
 
-def test_two_outputs_in_one_file_are_refused(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_two_outputs_in_one_file_are_refused(tmp_path, enter, capsys):
+    enter(chdir(tmp_path))
     line = ["ramp", "no.fmu", "--input", "f", "--to", "1", "--step", "1", "--csv", "a.png", "--plot", "A.png"]
     assert "state two files" in refused_line(capsys, *line)
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import redirect_stderr
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.cli.parser import COMMAND_GROUPS, COMMANDS, COMPLETION_SHELLS, build_parser
+from surroundings import Enter, Terminal, environment
 
 from jointfmu import progress
 
@@ -27,24 +29,15 @@ def test_the_help_lists_every_command_once_under_its_heading():
     assert len({*COMMANDS}) == len(COMMANDS)
 
 
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_long_work_says_what_it_does_on_a_terminal(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
-    monkeypatch.setattr(progress, "STATUS_DELAY", 0.2)
-    monkeypatch.setenv(progress.STATUS_DELAY_ENVIRONMENT_VARIABLE, "inf")
+def test_long_work_says_what_it_does_on_a_terminal(enter: Enter, capsys: pytest.CaptureFixture[str]):
+    enter(environment(**{progress.STATUS_DELAY_ENVIRONMENT_VARIABLE: "inf"}))
     for stream, shown in ((Terminal(), True), (io.StringIO(), False)):
-        monkeypatch.setattr(sys, "stderr", stream)
         out = sys.stdout
-        with progress.show_status("jointfmu new"):
+        with redirect_stderr(stream), progress.show_status("jointfmu new"):
             progress.set_status_text("members by finite elements")
-            time.sleep(0.8)
+            time.sleep((progress.STATUS_DELAY + 0.8) if shown else 0.0)
             print("done")
-        assert ("\rjointfmu new: members by finite elements, 1 s\x1b[K" in stream.getvalue()) == shown
+        assert ("\rjointfmu new: members by finite elements, 2 s\x1b[K" in stream.getvalue()) == shown
         assert stream.getvalue().endswith("\r\x1b[K" * shown)  # and is gone again
         assert sys.stdout is out
         assert capsys.readouterr().out == "done\n"
@@ -66,10 +59,10 @@ def test_an_interrupt_is_deferred_to_the_end_of_the_outermost_context():
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_long_work_prints_one_line_where_there_is_no_terminal(monkeypatch):
+def test_long_work_prints_one_line_where_there_is_no_terminal(enter):
     """In a pipe or a notebook, a command without output would look like a program that hangs."""
-    monkeypatch.setenv(progress.STATUS_DELAY_ENVIRONMENT_VARIABLE, "0.2")
-    monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
+    enter(environment(**{progress.STATUS_DELAY_ENVIRONMENT_VARIABLE: "0.2"}))
+    stream = enter(redirect_stderr(io.StringIO()))
     with progress.show_status("jointfmu report"):
         progress.set_status_text("loops")
         time.sleep(0.6)

@@ -4,11 +4,11 @@ import json
 import re
 import subprocess
 import sys
+from contextlib import chdir
 
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.exchange.export import exports
 from jointfmu_tools.exchange.export.exports import CONTENTS_BY_FORMAT
 
 from jointfmu import __version__
@@ -26,8 +26,8 @@ MARKS = {
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, enter):
+    enter(chdir(tmp_path))
     return tmp_path
 
 
@@ -173,12 +173,6 @@ def test_refusals_are_one_line_and_write_nothing(arguments, said, folder, capsys
 def test_place_that_cannot_be_written(folder, capsys):
     assert "is a folder" in refused_line(capsys, "export", "csv", "contact", "--out", folder)
     assert "the following arguments are required: --out" in refused_line(capsys, "export", "csv", "contact")
-
-
-def test_a_joint_without_the_part_is_refused(monkeypatch):
-    monkeypatch.setattr(exports, "load_tool_module", lambda kind, tool: None)
-    with pytest.raises(ValueError, match="curve of a gear_contact cannot be written"):
-        exports.require_export("gear_contact", "curve")
 
 
 def test_what_can_be_written_and_fitted_is_known_without_scipy():

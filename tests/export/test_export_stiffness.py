@@ -6,6 +6,7 @@ moved to the centroid, the compliance gives the motion there, and the node follo
 
 import json
 import re
+from contextlib import chdir
 
 import numpy as np
 import pytest
@@ -253,8 +254,8 @@ def test_calculix_turns_a_rigid_body(tmp_path):
     np.testing.assert_allclose(moved[FIRST + 1], shift, rtol=2e-6)
 
 
-def test_comment_states_frame_point_and_state(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_comment_states_frame_point_and_state(tmp_path, capsys, enter):
+    enter(chdir(tmp_path))
     words = "export nastran springs --preload 9e3 --units mm-N-MPa-t --normal x --first 70 --out j.bdf"
     assert cli.main([*words.split(), "--node-1", "-10", "0", "0", "--node-2", "12", "0", "0", "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
@@ -291,8 +292,8 @@ def test_comment_states_frame_point_and_state(tmp_path, capsys, monkeypatch):
         ("nastran springs --joint gear_contact", "springs of a gear_contact cannot be written"),
     ],
 )
-def test_refusals(words, says, tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_refusals(words, says, tmp_path, capsys, enter):
+    enter(chdir(tmp_path))
     assert says in refused_line(capsys, "export", *words.split(), "--out", "j.txt")
     assert not (tmp_path / "j.txt").exists()
 

@@ -6,13 +6,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from clients import needs
-from jointfmu_tools.fem import newton, require_fem_packages
-from jointfmu_tools.fem.balance import RigidBodyBalance
+from jointfmu_tools.fem import require_fem_packages
 from jointfmu_tools.fem.bolted_contact import BoltedContact, bolt_midpoints, make_elastic_body
 from jointfmu_tools.fem.contact import ContactInterface, ContactModel, ContactSolution
-from jointfmu_tools.fem.elasticity import Cholesky, ElasticBody
+from jointfmu_tools.fem.elasticity import ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
-from scipy.sparse import diags_array
 from skfem import MeshHex, MeshQuad
 from threadpoolctl import threadpool_info, threadpool_limits
 
@@ -183,18 +181,15 @@ def test_pressures_balance_the_moment(plates, law):
 
 
 @needs("gmsh")
-def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
-    """The result is the same as from scratch, without a factorisation and in fewer steps."""
+def test_another_load_is_found_from_the_first(plates, law):
+    """The result is the same as from scratch, in fewer steps."""
     expected = plates.solve(law, 4e3, 30.0)
     first = plates.solve(law, 4e3)
-    factorised = []
-    monkeypatch.setattr(newton, "Cholesky", lambda matrix: factorised.append(1) or Cholesky(matrix))
     found = first.solve_load_case(4e3, 30.0)
     # both end at TOLERANCE of the load, 1e-11, which may lie on a part of the nodes
     np.testing.assert_allclose(found.contact_solution.pressure, expected.contact_solution.pressure, rtol=1e-7)
     np.testing.assert_array_equal(found.bolt_force, expected.bolt_force)
     assert found.contact_solution.newton_steps < expected.contact_solution.newton_steps
-    assert not factorised
 
 
 @needs("gmsh")
@@ -226,7 +221,7 @@ def test_bodies_of_different_kind(law):
     assert moment == pytest.approx(-30.0, rel=1e-8)
 
 
-# what has no equilibrium, whether or not a factorisation notices
+# what has no equilibrium
 
 
 def pulled(plates, law, *forces, held=None):
@@ -235,31 +230,10 @@ def pulled(plates, law, *forces, held=None):
     return model, [plates.bolt_head_loads[0] @ np.array(forces)]
 
 
-@pytest.fixture(params=[False, True], ids=["factor", "perturbed factor"])
-def factor(request, monkeypatch):
-    """Factorisation of the stiffness: the usual one, and one of a perturbed matrix that always succeeds."""
-    if request.param:
-
-        def perturbed(matrix):
-            return Cholesky(matrix + 1e-9 * diags_array(matrix.diagonal()))
-
-        monkeypatch.setattr(newton, "Cholesky", perturbed)
-
-
 @needs("gmsh")
-def test_without_a_load_to_close_it_the_contact_is_refused(plates, law, factor):
+def test_without_a_load_to_close_it_the_contact_is_refused(plates, law):
     model, loads = pulled(plates, law, 1.0, 1.0)
     with pytest.raises(RuntimeError, match=r"a fraction of 0\.\d+ is left over, allowed is 1e-06$"):
-        model.solve(loads, 1e5)
-
-
-@needs("gmsh")
-def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
-    """Without the check of the loads, the solver or the check of the contact forces refuses it."""
-    monkeypatch.setattr(RigidBodyBalance, "check_loads", lambda self: None)
-    monkeypatch.setattr(newton, "MAX_NEWTON_STEPS", 15)
-    model, loads = pulled(plates, law, 1.0, 1.0)
-    with pytest.raises(RuntimeError, match=r"positive definite|not settled|stays closed|not in balance"):
         model.solve(loads, 1e5)
 
 

@@ -1,7 +1,9 @@
 """`jointfmu footprint compute`: printed results, written files, refusals."""
 
+import io
 import json
 import math
+from contextlib import redirect_stdout
 from dataclasses import replace
 from pathlib import Path
 
@@ -68,11 +70,9 @@ def computed(plates) -> tuple[dict, Path]:
     folder = plates.parent / "out"
     names = {"--out": "joint.toml", "--field": "field.csv", "--plot": "field.png"}
     given = [part for option, name in names.items() for part in (option, str(folder / name))]
-    pipe = folder.parent / "stdout.json"
-    with pipe.open("w") as stream, pytest.MonkeyPatch.context() as patch:
-        patch.setattr("sys.stdout", stream)
+    with redirect_stdout(io.StringIO()) as out:
         assert main([*COARSE, str(plates), "--refinement", "0.3", *given, "--json"]) == 0
-    return json.loads(pipe.read_text()), folder
+    return json.loads(out.getvalue()), folder
 
 
 @needs("gmsh")

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from importlib.resources import files
 
+import coarse
 import numpy as np
 import pytest
 from clients import needs
@@ -112,17 +113,14 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
 
 @needs("gmsh")
 @pytest.mark.slow
-def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
+def test_a_bracket_slips_under_a_lever_as_its_elements_do(enter):
     """Loading to slip, three times as far, and back. Measured: 1.2 % of the force, 0.7 % of the heat, with
     coarse elements.
 
     Friction has the normal force of the contact, however it bends: patches that open by themselves do not,
     and find no equilibrium on the wide way of six directions at the end.
     """
-    fine = JointFiniteElements.from_assembly
-    monkeypatch.setattr(
-        JointFiniteElements, "from_assembly", lambda assembly, attached, *_: fine(assembly, attached, 0.7)
-    )
+    enter(coarse.elements(JointFiniteElements, 0.7))
     attached, drawing, wrench = JOINTS["bracket"]
     joint = PlateJoint.of(attached, drawing, elements=True)
     elements = FrictionElements.clamped(joint, wrench)

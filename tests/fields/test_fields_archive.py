@@ -1,6 +1,5 @@
 """ANSYS archives (CDWRITE) together with listings of contact pressure."""
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ from jointfmu_tools.inputs.fields.contact_surface import ContactPlane
 from jointfmu_tools.inputs.fields.mesh import nodal_areas
 from jointfmu_tools.inputs.fields.reading import FieldReader
 from mapdl_archive import examples
+from surroundings import missing_package
 from test_fields_files import UNITS, blocks, faces, listing
 
 
@@ -132,8 +132,8 @@ def test_what_is_no_archive_is_one_line(tmp_path, text, message):
     assert "\n" not in str(error.value)
 
 
-def test_without_the_package_it_says_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "mapdl_archive", None)
+def test_without_the_package_it_says_what_to_install(tmp_path, enter):
+    enter(missing_package("mapdl_archive"))
     with pytest.raises(ValueError, match=r"mapdl_archive is missing, .*: pip install 'jointfmu\[field\]'"):
         ansys.read_archive(tmp_path / "mesh.cdb")
 

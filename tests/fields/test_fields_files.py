@@ -1,6 +1,7 @@
 """Nodal contact results from files: formats, areas from faces, and refusals that name the place in
 the file."""
 
+from contextlib import chdir
 from pathlib import Path
 
 import meshio
@@ -253,9 +254,9 @@ def test_volume_mesh_of_two_bodies(tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".vtk", ".vtu", ".xdmf"])
-def test_surface_mesh_in_another_plane(tmp_path, suffix, monkeypatch):
+def test_surface_mesh_in_another_plane(tmp_path, suffix, enter):
     """The contact lies in the y-z plane: the normal is x, so y is along the rows unless stated otherwise."""
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     points, cells = grid(4, 3)
     place = np.column_stack([np.full(len(points), 7.0), points])
     p = 1.0 + points[:, 0]

@@ -5,9 +5,11 @@ import tomllib
 from dataclasses import replace
 
 import pytest
+from clients import needs
 from hypothesis import given
 from hypothesis import strategies as st
 from jointfmu_tools.cli.command import parse_setting
+from surroundings import full_disk
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
@@ -338,15 +340,11 @@ def test_write_text(tmp_path):
     assert path.stat().st_mode & 0o777 == 0o644
 
 
-def refuse_to_replace(source, target):
-    raise OSError(28, "No space left on device")
-
-
-def test_a_failed_write_leaves_nothing_behind(tmp_path, monkeypatch):
+@needs("Linux or macOS")
+def test_a_failed_write_leaves_nothing_behind(tmp_path):
     path = tmp_path / "file.csv"
     path.write_text("old")
-    monkeypatch.setattr(os, "replace", refuse_to_replace)
-    with pytest.raises(ValueError, match="No space left") as error:
+    with full_disk(2), pytest.raises(ValueError, match="File too large") as error:
         write_text(path, "new")
     assert str(error.value).startswith(f"{path}: cannot be written")
     assert os.listdir(tmp_path) == ["file.csv"]

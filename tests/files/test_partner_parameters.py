@@ -38,17 +38,13 @@ def test_a_file_gives_every_parameter_with_its_source(name: str) -> None:
         ("lag_b", "lag_c", "unknown name 'lag_c'"),
     ],
 )
-def test_a_wrong_file_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, words: str
-) -> None:
+def test_a_wrong_file_is_refused(tmp_path: Path, old: str, new: str, words: str) -> None:
     text = (SHIPPED / "TranslationalMass.toml").read_text(encoding="utf-8")
     assert old in text
-    path = tmp_path / "partners" / "TranslationalMass.toml"
-    path.parent.mkdir()
+    path = tmp_path / "TranslationalMass.toml"
     path.write_text(text.replace(old, new), encoding="utf-8")
-    monkeypatch.setattr(models, "files", lambda package: tmp_path)
     with pytest.raises(ValueError, match=r"TranslationalMass\.toml: ") as error:
-        load_partner_parameters("TranslationalMass")
+        models.read_partner_parameters(path, "TranslationalMass")
     assert str(error.value).startswith(f"{path}: ")
     assert words in str(error.value)
     assert "\n" not in str(error.value)

@@ -5,6 +5,7 @@ import re
 import struct
 import threading
 import zipfile
+from contextlib import chdir
 from importlib.resources import files
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from jointfmu_tools.cli.parser import _iterate_parsers, build_parser
 from jointfmu_tools.inputs.surfaces.reading import read_heights as heights
 from jointfmu_tools.run import host
 from jointfmu_tools.run.proof.manifest import RelatedFiles
+from surroundings import Enter, temporary_folder
 
 from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes
@@ -67,14 +69,9 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("kind", REFUSED)
-def test_an_archive_is_refused_before_anything_is_unpacked(
-    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_archive_is_refused_before_anything_is_unpacked(kind: str, tmp_path: Path, enter: Enter) -> None:
     members, words = REFUSED[kind]
-    path, own = archive(tmp_path / "bomb.fmu", members), tmp_path / "own"
-    own.mkdir()
-    monkeypatch.setattr("tempfile.tempdir", str(own))
-    monkeypatch.setattr(zipfile.ZipFile, "open", lambda *_: pytest.fail("a member is read"))
+    path, own = archive(tmp_path / "bomb.fmu", members), enter(temporary_folder(tmp_path / "own"))
     for read in (
         archives.FmuMembers,
         RelatedFiles,
@@ -121,13 +118,12 @@ def test_other_compression_is_refused(tmp_path: Path) -> None:
             host.read_description(archive(tmp_path / f"{method}.fmu", {"resources/x": ZEROS}, method))
 
 
-def test_what_was_unpacked_of_a_broken_fmu_is_removed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path, own = archive(tmp_path / "broken.fmu", {"resources/x": ZEROS}), tmp_path / "own"
+def test_what_was_unpacked_of_a_broken_fmu_is_removed(tmp_path: Path, enter: Enter) -> None:
+    path, own = (
+        archive(tmp_path / "broken.fmu", {"resources/x": ZEROS}),
+        enter(temporary_folder(tmp_path / "own")),
+    )
     larger(path, "resources/x", 10)
-    own.mkdir()
-    monkeypatch.setattr("tempfile.tempdir", str(own))
     with pytest.raises(ValueError, match="Bad CRC-32"), host.unpack_fmu(path):
         pass
     assert [*own.iterdir()] == []
@@ -223,10 +219,10 @@ def test_a_command_refuses_a_pipe_at_once(
     command: str,
     name: str,
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    enter: Enter,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     for path, text in FILES.items():
         Path(path).write_text(text)
     for path in PIPES:

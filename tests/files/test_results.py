@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from clients import needs
 from jointfmu_fmu_src.native.compiled.compiled_models import get_kernel_result
+from surroundings import environment
 
 from jointfmu.files import results
 from jointfmu.files.results import compute_once, set_result_store
@@ -48,8 +49,8 @@ def test_a_result_is_computed_once_for_each_name_and_argument(store):
     assert len(counted) == len(store) == 4
 
 
-def test_points_and_patches_of_another_process_have_the_same_bits(tmp_path, monkeypatch):
-    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "cache"))
+def test_points_and_patches_of_another_process_have_the_same_bits(tmp_path, enter):
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "cache")))
     texts = [
         subprocess.run(
             [sys.executable, "-W", "ignore", "-c", PROGRAM, word],
@@ -62,9 +63,9 @@ def test_points_and_patches_of_another_process_have_the_same_bits(tmp_path, monk
 
 
 @needs("Linux or macOS")
-def test_an_unsafe_cache_is_not_read(tmp_path, monkeypatch):
+def test_an_unsafe_cache_is_not_read(tmp_path, enter):
     cache = tmp_path / "cache"
-    monkeypatch.setenv("JOINTFMU_CACHE", str(cache))
+    enter(environment(JOINTFMU_CACHE=str(cache)))
     assert get_kernel_result("one", lambda: b"first") == b"first"
     assert get_kernel_result("one", lambda: b"second") == b"first"
     cache.chmod(0o777)

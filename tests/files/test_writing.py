@@ -1,12 +1,10 @@
 """Output files and folders: written completely or not at all, and refused before the work starts."""
 
-import errno
-import os
-from pathlib import Path
-
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
+from surroundings import full_disk
 
 from jointfmu.files.outputs import EXCHANGE_FILE, OUTPUT_FOLDER, check_output
 from jointfmu.files.writing import write_files
@@ -31,21 +29,15 @@ def test_files_are_written_below_a_folder(tmp_path):
     ]
 
 
+@needs("Linux or macOS")
 @pytest.mark.parametrize("there", [False, True])
-def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, there):
+def test_a_full_disk_leaves_what_was_there(tmp_path, there):
     folder = tmp_path / "new" / "Library"
     if there:
         write_files(folder, FILES)
-    before, write = everything(tmp_path), Path.write_text
-
-    def full(self, *args, **options):
-        if self.name == "order":
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return write(self, *args, **options)
-
-    monkeypatch.setattr(Path, "write_text", full)
-    with pytest.raises(ValueError, match=r"Library: cannot be written \(No space left on device\)"):
-        write_files(folder, dict.fromkeys(FILES, "changed\n"))
+    before, changed = everything(tmp_path), dict.fromkeys(FILES, "changed\n")
+    with full_disk(100), pytest.raises(ValueError, match=r"Library: cannot be written \(File too large\)"):
+        write_files(folder, changed | {"Data/order": 101 * "x"})
     assert everything(tmp_path) == before
     assert not there or (folder / "package.mo").read_text() == "one\n"
 

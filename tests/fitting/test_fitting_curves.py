@@ -16,6 +16,7 @@ from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 from oracles import curve_measurements as measurements
 from oracles.joint_measurements import save
+from surroundings import environment
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
@@ -159,8 +160,8 @@ def test_another_size_of_drive(tmp_path):
     assert found.solution.values["K_FTS0"] == pytest.approx(50.0 * measurements.DRIVE["K_FTS0"], rel=0.1)
 
 
-def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, capsys):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
+def test_written_file_says_where_it_comes_from(loops, tmp_path, enter, capsys):
+    enter(environment(SOURCE_DATE_EPOCH="1767225600"))
     out, picture = tmp_path / "drive.toml", tmp_path / "fit.png"
     assert (
         cli.main(["fit", "torque-angle", str(loops), "--out", str(out), "--plot", str(picture), "--json"])

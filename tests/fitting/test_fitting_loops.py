@@ -1,6 +1,7 @@
 """Fits of joints with hysteresis: law of a loop, quantities read from data, round trips, refused files."""
 
 import json
+from contextlib import chdir
 from dataclasses import replace
 from itertools import pairwise
 
@@ -511,9 +512,9 @@ def test_titles_as_people_write_them(tmp_path, titles):
 
 
 @pytest.mark.slow
-def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
+def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, enter):
     """The record is of an elastic bar: the area of its loop is noise."""
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     motion = 1e-6 * np.sin(np.linspace(0.0, 6.0 * np.pi, 241))
     force = 1e9 * motion + np.random.default_rng(0).normal(0.0, 1.0, motion.size)
     rows = "".join(f"{u!r},{f!r}\n" for u, f in zip(motion.tolist(), force.tolist(), strict=True))

@@ -1,12 +1,12 @@
 """`jointfmu ramp`: selected columns, table on a terminal, picture."""
 
 import json
-import sys
+from contextlib import redirect_stdout
 
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.common import plots
+from surroundings import Terminal
 
 pytestmark = pytest.mark.slow
 
@@ -26,12 +26,12 @@ def test_columns_are_those_asked_for_behind_the_input(words, capsys):
     assert "--columns is for a ramp" in refused_line(capsys, *looped)
 
 
-def test_a_terminal_gets_a_table_and_a_pipe_every_point(words, capsys, monkeypatch):
+def test_a_terminal_gets_a_table_and_a_pipe_every_point(words, capsys):
     assert cli.main(words) == 0
     assert capsys.readouterr().out.count("\n") == 102
-    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    assert cli.main(words) == 0
-    head, *rows, more, end = capsys.readouterr().out.split("\n")
+    with redirect_stdout(Terminal()) as out:
+        assert cli.main(words) == 0
+    head, *rows, more, end = out.getvalue().split("\n")
     assert head.split()[:4] == ["f", "[kN]", "s_rel", "[um]"]
     assert (len(rows), end) == (24, "")
     assert [float(row.split()[0]) for row in (rows[0], rows[-1])] == [0.0, 1.0]
@@ -39,8 +39,7 @@ def test_a_terminal_gets_a_table_and_a_pipe_every_point(words, capsys, monkeypat
     assert more == "24 of 101 points; --csv writes all"
 
 
-def test_a_ramp_is_drawn(words, capsys, monkeypatch, tmp_path):
-    monkeypatch.setattr(plots, "RESOLUTION", 40)
+def test_a_ramp_is_drawn(words, capsys, tmp_path):
     assert cli.main([*words, "--plot", str(tmp_path / "a.png"), "--csv", str(tmp_path / "a.csv")]) == 0
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     assert capsys.readouterr().out.count("wrote ") == 2

@@ -4,14 +4,16 @@ import doctest
 import json
 import subprocess
 import sys
+from contextlib import chdir
 from importlib import import_module
 
+import coarse
 import numpy as np
 import pytest
 from clients import needs
 from conftest import here_alone
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
+from surroundings import environment, missing_package
 
 import jointfmu
 
@@ -29,18 +31,14 @@ ROW = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9}
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, enter):
+    enter(chdir(tmp_path))
 
 
 @pytest.fixture
-def plate(monkeypatch):
+def plate(enter):
     """Function that makes the bolted joint of PLATE without the finite elements of its members."""
-    monkeypatch.setattr(
-        plate_finite_elements,
-        "compute_joint_or_warning",
-        lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
-    )
+    enter(coarse.interface_alone())
     return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
 
 
@@ -61,9 +59,9 @@ def test_a_name_that_is_not_there():
         _ = jointfmu.drives
 
 
-def test_the_core_alone_names_the_missing_package(monkeypatch):
-    monkeypatch.setitem(sys.modules, "jointfmu_tools", None)
-    monkeypatch.delitem(vars(jointfmu), "load", raising=False)
+def test_the_core_alone_names_the_missing_package(enter):
+    enter(missing_package("jointfmu_tools"))
+    vars(jointfmu).pop("load", None)  # of an earlier test; it is found again
     with pytest.raises(ImportError, match=r"^jointfmu.load needs the package jointfmu_tools, .* pip install"):
         _ = jointfmu.load
 
@@ -266,7 +264,7 @@ def test_a_required_name_is_said_by_python():
 
 
 @pytest.mark.slow  # a process of its own
-def test_a_missing_package_is_named_with_what_brings_it(tmp_path, monkeypatch):
+def test_a_missing_package_is_named_with_what_brings_it(tmp_path, enter):
     """Without extras, numbers are computed; what needs a package names the extra in one line."""
     asked = """
 import sys
@@ -281,7 +279,7 @@ for call in (drive.build, drive.plot, law.plot, law.at_pressure([1e6, 2e6]).plot
     except ValueError as error:
         print(error)
 """
-    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "nothing kept")))
     done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
     said = done.stdout.splitlines()
     assert len(said) == 4

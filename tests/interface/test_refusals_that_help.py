@@ -1,5 +1,6 @@
 """Wrong or unusual inputs give one line with advice, in Python and on the command line."""
 
+from contextlib import chdir
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,10 +98,10 @@ def test_a_loop_of_a_metre_is_asked_about():
         _check_amplitudes(Description, "s_rel_x", [1e-6, 1.0])
 
 
-def test_a_deleted_folder_is_said(tmp_path, monkeypatch, capsys):
+def test_a_deleted_folder_is_said(tmp_path, enter, capsys):
     folder = tmp_path / "gone"
     folder.mkdir()
-    monkeypatch.chdir(folder)
+    enter(chdir(folder))
     folder.rmdir()
     assert jointfmu_main("report", str(tmp_path / "drive.toml")) == 2
     assert (

@@ -1,6 +1,7 @@
 """Toy joint of another package in less than 100 lines, through all tools: a new joint is a new folder."""
 
 import json
+from contextlib import chdir
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -14,6 +15,7 @@ from conftest import here_alone
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import joints as builders
 from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
+from jointfmu_fmu_src.folders import find_fmu_parts
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica import library
 from jointfmu_tools.studies.checks import check_ramp, compare_flavour, run_default_ramp
@@ -41,6 +43,13 @@ def built(toy, tmp_path_factory):
     with here_alone():
         build_fmus(["ToySpring"], list(FLAVOUR_BUILDERS), None, out)
     return out
+
+
+def test_a_joint_without_fmu_parts_cannot_be_built():
+    own = builders.FMU_PARTS.pop("toy")
+    with pytest.raises(ValueError, match=r"joint 'toy' has no FMU parts; .*: harmonic_drive"):
+        find_fmu_parts(joints.MODELS["ToySpring"])
+    builders.FMU_PARTS["toy"] = own
 
 
 def test_it_is_short():
@@ -122,10 +131,10 @@ def test_its_parameter_file_is_read_and_written():
         file.with_values({"c": 0.0}, "user", "test")
 
 
-def test_it_has_a_page_of_its_own_file(tmp_path, monkeypatch):
+def test_it_has_a_page_of_its_own_file(tmp_path, enter):
     """The joint defines neither page contents nor loops: the page has the curve over the load and the
     parameters."""
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     Path("mine.toml").write_text(format_parameter_file(load_default("toy")))
     assert cli.main(["report", "mine.toml"]) == 0
     page = Path("mine.html").read_text(encoding="utf-8")

@@ -212,13 +212,13 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
         *(("random", motion) for motion in ("along, moment", "turning, tilt 0.1 back", "both, tilt 0.1")),
     ],
 )
-def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion, monkeypatch):
+def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion):
     """22 patches with the FMU's sliders: forces within 1 % of gross slip, loop areas within 3 %.
 
     A turn about a pole under a bolt has less friction, and 3 % of it. Every second of the benchmark's ways,
     the last one with them.
     """
-    monkeypatch.setattr(contact_patches, "DISPLACEMENTS", contact_patches.DISPLACEMENTS[1::2])
+    ways = contact_patches.DISPLACEMENTS[1::2]
     shape = contact(plate)
     motion = contact_patches.MOTIONS[motion]
     part = 0.01 if motion.turn in (0.0, 1.0) else 0.03
@@ -226,7 +226,7 @@ def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion, mon
         spring.curve, shape, (contact_patches.mean_pressure(spring), 0.0)
     )
     largest = float(np.max(start) - spring.curve.displacement[0])
-    force, loss = contact_patches.friction_and_losses(spring, shape, True, largest, motion)
-    few, lost = contact_patches.friction_and_losses(spring, moved(plate), False, largest, motion)
+    force, loss = contact_patches.friction_and_losses(spring, shape, True, largest, motion, ways)
+    few, lost = contact_patches.friction_and_losses(spring, moved(plate), False, largest, motion, ways)
     np.testing.assert_allclose(few, force, rtol=0.0, atol=part * np.max(np.abs(force)))
     np.testing.assert_allclose(lost, loss, rtol=0.03)

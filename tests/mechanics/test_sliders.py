@@ -4,6 +4,8 @@ The sphere's load is the approach to the power 1.5. Tolerances of forces and los
 number of heights are about twice what studies/fields_explanation.py prints for as many.
 """
 
+import itertools
+
 import numpy as np
 import pytest
 from oracles.sphere_friction import (
@@ -217,6 +219,30 @@ def test_a_slipping_force_turns_towards_the_shift():
     np.testing.assert_allclose(far.force[0], 1.0, rtol=1e-6)
     heat = np.log(np.cosh(g) + np.cos(angle) * np.sinh(g))
     assert np.all(np.abs(slid.dissipated_energy - heat) < 0.02 * g**3 + 1e-12)  # seen: 0.016
+
+
+def test_along_one_direction_work_is_stored_or_lost_while_the_limit_changes():
+    """One increment against 1000 parts of it: trapezoidal rule for the work, K constant."""
+    rng, K, parts = np.random.default_rng(3), 2.0, 1000
+    start, end = rng.uniform(0.5, 1.5, (2, 300))
+    first, way = start * rng.uniform(-1.0, 1.0, 300), rng.uniform(-2.0, 2.0, 300)
+    whole = return_map([first], 1.0, K, [way], start, end, K, 1.0 / K)
+    force, work = first, np.zeros(300)
+    for low, high in itertools.pairwise(np.linspace(0.0, 1.0, parts + 1)):
+        limits = [start + part * (end - start) for part in (low, high)]
+        moved = return_map([force], 1.0, K, [way / parts], *limits, K, 1.0 / K)
+        work += 0.5 * (force + moved.force[0]) * way / parts
+        force = moved.force[0]
+    np.testing.assert_allclose(whole.force[0], force, rtol=0.0, atol=1e-12)
+    lost = work - (force**2 - first**2) / (2.0 * K)
+    np.testing.assert_allclose(whole.dissipated_energy, lost, rtol=0.0, atol=1e-5)
+    slips = np.abs(first + K * way) > end
+    assert 50 < np.count_nonzero(slips) < 250
+    np.testing.assert_array_equal(whole.dissipated_energy > 0.0, slips)
+    np.testing.assert_array_equal(whole.tangent[0], np.where(slips, 0.0, K))
+    np.testing.assert_allclose(
+        whole.slip_force, np.where(slips, np.abs(first + K * way) - end, 0.0), atol=1e-15
+    )
 
 
 @pytest.mark.slow

@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.cli import main
-from jointfmu_tools.common.joint_parts import load_tool_module
 from jointfmu_tools.exchange.modelica import library, records
 from jointfmu_tools.exchange.modelica.records import make_identifier
 from jointfmu_tools.joints.bolted_joint import modelica as bolted_modelica
@@ -181,23 +180,6 @@ def test_wrappers_connect_every_input_once(files: dict[str, str]):
         text = files[f"Wrappers/{name}.mo"]
         for v in model.inputs:
             assert len(re.findall(rf"fmu\.{v.name}\b", text)) == 1, f"{name}.{v.name}"
-
-
-def test_a_joint_without_a_part_keeps_its_wrapper_and_leaves_the_rest(
-    files: dict[str, str], monkeypatch: pytest.MonkeyPatch
-):
-    def none(kind: Any, builder: str) -> Any:
-        return None if kind.name == "gear_contact" else load_tool_module(kind, builder)
-
-    monkeypatch.setattr(library, "load_tool_module", none)
-    less = library.render_library()
-    gone = {"Components/GearContact.mo", "Data/GearContact.mo", "Data/Beveloid_gear_of_Yu_2022.mo"}
-    assert set(files) - set(less) == gone
-    for name in gone:
-        package, leaf = name.removesuffix(".mo").split("/")
-        assert leaf not in less[f"{package}/package.order"].split()
-    for name in ("Wrappers/GearContact.mo", "Data/HarmonicDrive.mo", "Examples/BoltedColumn.mo"):
-        assert less[name] == files[name]
 
 
 # ---- tables ----

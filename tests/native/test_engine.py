@@ -2,13 +2,13 @@
 
 import gc
 import pickle
-import tempfile
 
 import numpy as np
 import pytest
 from clients import needs
 from jointfmu_tools.run import engine
 from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, VariableJoint, open_joint
+from surroundings import environment, missing_package, temporary_folder
 
 import jointfmu
 from jointfmu.joints import KINDS
@@ -114,15 +114,13 @@ def test_trial_parameters_give_the_joint_that_has_them():
         np.testing.assert_array_equal(found["f_x"], expected["f_x"], str(values))
 
 
-def test_without_a_compiler_the_python_law_answers_and_says_so(monkeypatch, capsys):
+def test_without_a_compiler_the_python_law_answers_and_says_so(tmp_path, enter, capsys):
     file = load_default("gear_contact")
     model = KINDS["gear_contact"].models[0]
     wanted = CompiledJoint(model, file).follow({"f": [0.0, 500.0]})
 
-    def missing(*_):
-        raise ImportError("No module named 'ziglang'")
-
-    monkeypatch.setattr("jointfmu_fmu_src.native.library.get_compiled_model", missing)
+    enter(environment(JOINTFMU_CACHE=str(tmp_path)))
+    enter(missing_package("ziglang"))
     engine._announce_python_evaluation.cache_clear()
     for _ in range(2):
         joint = open_joint(model, file)
@@ -142,8 +140,8 @@ def test_on_a_platform_without_libraries_the_python_law_answers(monkeypatch, cap
     assert "platform riscv64-" in capsys.readouterr().err
 
 
-def test_the_file_of_a_library_goes_with_its_joint(tmp_path, monkeypatch):
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+def test_the_file_of_a_library_goes_with_its_joint(tmp_path, enter):
+    enter(temporary_folder(tmp_path))
     contact = jointfmu.load("GearContact")
     contact.evaluate(f=500.0)
     assert [*tmp_path.iterdir()]

@@ -3,6 +3,8 @@
 import re
 import subprocess
 import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -43,16 +45,28 @@ EVERY = {
 }
 
 
-def c_of(name: str) -> dict[str, str]:
+@contextmanager
+def numbers(given: Mapping[tuple[ModuleType, str], float]) -> Iterator[None]:
+    """Other values of constants {(module, name): value}."""
+    kept = dict(generate._cached_law_texts)
+    generate._cached_law_texts.clear()  # they are of the actual numbers
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(generate, "_cached_law_texts", {})  # what is kept is of other numbers
+        for (module, name), value in given.items():
+            patch.setattr(module, name, value)
+        yield
+    generate._cached_law_texts.clear()
+    generate._cached_law_texts.update(kept)
+
+
+def c_of(name: str, given: Mapping[tuple[ModuleType, str], float]) -> dict[str, str]:
+    with numbers(given):
         return generate.generate_sources(name, load_default(MODELS[name].joint))
 
 
 @cache
 def usual(name: str) -> dict[str, str]:
     """C text with the actual numbers."""
-    return c_of(name)
+    return c_of(name, {})
 
 
 def compiles(folder: Path, files: dict[str, str], text: str) -> bool:
@@ -72,14 +86,13 @@ def test_one_name_of_a_constant_has_one_value() -> None:
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_c_follows_the_numbers(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+def test_c_follows_the_numbers(name: str) -> None:
     before, expected = set(usual(name)["law.h"].splitlines()), set()
-    for module, constant in EVERY[name]:
-        value = 2 * getattr(module, constant)
-        monkeypatch.setattr(module, constant, value)
+    doubled = {(module, constant): 2 * getattr(module, constant) for module, constant in EVERY[name]}
+    for (_, constant), value in doubled.items():
         whole = isinstance(value, int)
         expected.add(f"    {constant} = {value}," if whole else f"#define {constant} {value!r}")
-    assert set(c_of(name)["law.h"].splitlines()) - before == expected
+    assert set(c_of(name, doubled)["law.h"].splitlines()) - before == expected
 
 
 def test_runtime_types_none_of_them_again() -> None:
@@ -95,7 +108,6 @@ def test_runtime_types_none_of_them_again() -> None:
     [(DRIVE, curve, "MAX_TABLE_NODES", "CURVE_NODES"), (BOLTED, curve, "MAX_TABLE_NODES", "CURVE_NODES")],
 )
 def test_arrays_follow_a_count(
-    monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
     name: str,
     module: ModuleType,
@@ -103,8 +115,7 @@ def test_arrays_follow_a_count(
     size: str,
 ) -> None:
     count = 2 * getattr(module, constant)
-    monkeypatch.setattr(module, constant, count)
-    files = c_of(name)
+    files = c_of(name, {(module, constant): count})
     text = f'#include "tabulated_joint.h"\n_Static_assert({size} >= {count} && {size} < {count + 100}, "");\n'
     assert compiles(tmp_path, files, text)
     assert not compiles(tmp_path, files, text.replace(">=", "<"))
@@ -118,7 +129,6 @@ def test_arrays_follow_a_count(
     ],
 )
 def test_build_refuses_what_does_not_fit(
-    monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
     name: str,
     source: str,
@@ -128,15 +138,14 @@ def test_build_refuses_what_does_not_fit(
 ) -> None:
     files = usual(name)
     assert compiles(tmp_path, files, files[source])
-    monkeypatch.setattr(module, constant, value)
-    files = c_of(name)
+    files = c_of(name, {(module, constant): value})
     assert not compiles(tmp_path, files, files[source])
 
 
-def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_build_refuses_a_table_without_room(tmp_path: Path) -> None:
     usual_folder = tmp_path / "usual"
     jointfmu.load(DRIVE).build(usual_folder)  # compiled before the change, so that only the table is too long
-    monkeypatch.setattr(curve, "MAX_TABLE_NODES", 100)  # fewer than its first steps
-    with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
+    few = numbers({(curve, "MAX_TABLE_NODES"): 100})  # fewer than its first steps
+    with few, pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
         jointfmu.load(DRIVE).build(tmp_path / "small")
     assert list(tmp_path.iterdir()) == [usual_folder]

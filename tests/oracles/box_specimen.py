@@ -5,7 +5,7 @@ with the inside of the flange: length, height, wall, flange thickness and the fl
 middle the bolts sit.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -92,18 +92,20 @@ def identify(
     measured: Array,
     refinement: float = DEFAULT_REFINEMENT,
     trials: int = 8,
+    solve: Callable[..., Array] = frequencies,
 ) -> Identification:
     """Identify the lengths by least squares.
 
     preload  : [N] per bolt, without a moment
     measured : (6) [Hz] frequencies by mode
     trials   : at most so many lengths are tried, besides those for the difference quotients
+    solve    : function that computes the frequencies
     """
     first = lengths_of(start)
 
     def error(ratio: Array) -> Array:
         box = specimen(start, (ratio * first).tolist())
-        found = frequencies(box, joint, [(preload, 0.0)], refinement=refinement, mode_count=measured.size)
+        found = solve(box, joint, [(preload, 0.0)], refinement=refinement, mode_count=measured.size)
         return np.asarray(found[0] / measured - 1.0)
 
     fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=trials)

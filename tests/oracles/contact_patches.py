@@ -217,9 +217,14 @@ def random_plate(seed: int) -> PressureDistribution:
 
 
 def friction_and_losses(
-    spring: BoltedJointSpring, shape: PressureDistribution, fine: bool, largest: float, motion: Motion
+    spring: BoltedJointSpring,
+    shape: PressureDistribution,
+    fine: bool,
+    largest: float,
+    motion: Motion,
+    ways: Array = DISPLACEMENTS,
 ) -> tuple[Array, Array]:
-    """Force or moment on 1 m2 [N], [N.m] at the DISPLACEMENTS from rest, and losses [J] of loops of the
+    """Force or moment on 1 m2 [N], [N.m] at displacements `ways` from rest, and losses [J] of loops of the
     AMPLITUDES.
 
     fine    : many sliders at each node of the shape, in place of the joint's sliders
@@ -245,7 +250,7 @@ def friction_and_losses(
     rest, losses = sliders.virgin_forces(approach.size), []
     forces = [
         shape.area_share @ np.sum(sum_slider_forces(displace(rest, way).force) * along, axis=1)
-        for way in DISPLACEMENTS
+        for way in ways
     ]
     for size in AMPLITUDES:
         back = displace(displace(rest, size).force, -2.0 * size)

@@ -56,9 +56,9 @@ def start():
 
 
 @cache
-def motion():
+def motion(duration, step):
     """Exact signals: time [s], joint angle [rad], motor torque [N.m], temperature [K], motor angle [rad]."""
-    t = np.arange(0.0, TIME, STEP)
+    t = np.arange(0.0, duration, step)
     waves = ((0.7, 0.31, 0.0), (0.4, 0.83, 1.0), (0.05, 2.3, 2.0))
     q, dq, ddq = (
         sum(
@@ -67,7 +67,7 @@ def motion():
         )
         for n in range(3)
     )
-    temperature = 293.15 + 25.0 * t / TIME
+    temperature = 293.15 + 25.0 * t / duration
     spring = HarmonicDriveSpring.tabulate(drive().values)
     ratio, load = spring.joint.ratio, ARM * ddq + GRAVITY * np.cos(q)
     wound, phi = spring.initial_history(), np.empty(t.size)
@@ -83,10 +83,13 @@ def motion():
     return t, q, np.sign(ratio) * (torque + ROTOR * np.gradient(w1, t)), temperature, phi1
 
 
-def write_swing(path, seed):
-    """Write a log of the swing, with units and in an unusual order of columns."""
+def write_swing(path, seed, duration=TIME, step=STEP):
+    """Write a log of the swing with units, in an unusual order of columns.
+
+    duration, step : time of the log and its step [s]
+    """
     rng = np.random.default_rng(seed)
-    t, q, torque, temperature, phi1 = motion()
+    t, q, torque, temperature, phi1 = motion(duration, step)
     current = torque / CONSTANT + NOISE * rng.standard_normal(t.size)
     seen = BITS * np.round((q + BITS * rng.random()) / BITS)
     motor = BITS * np.round(phi1 / BITS)

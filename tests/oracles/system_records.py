@@ -121,15 +121,13 @@ def move_linear_system(time: np.ndarray, torque: np.ndarray) -> dict[str, np.nda
     return {"motor.phi": angles[:, 0], "link.phi": angles[:, 1]}
 
 
-def release_link(time: np.ndarray) -> dict[str, np.ndarray]:
-    """Angle (n) [rad] of the link on the held drive after its release, in closed form."""
+def release_link(time: np.ndarray, angle: float) -> dict[str, np.ndarray]:
+    """Angle (n) [rad] of the link on the held drive after its release from an angle [rad], in closed form."""
     _, link, stiffness, damping = LINEAR.values()
     rate = damping / (2.0 * link)
     frequency = np.sqrt(stiffness / link - rate**2)
     phase = frequency * time
-    return {
-        "link.phi": RELEASED_ANGLE * np.exp(-rate * time) * (np.cos(phase) + rate / frequency * np.sin(phase))
-    }
+    return {"link.phi": angle * np.exp(-rate * time) * (np.cos(phase) + rate / frequency * np.sin(phase))}
 
 
 def move_drive_with_friction(path: Path, time: np.ndarray, torque: np.ndarray) -> dict[str, np.ndarray]:
@@ -173,9 +171,9 @@ def make_correlated_record(folder: Path, seed: int) -> tuple[Path, Path]:
     return make_chirp_record(folder, seed, 0.8)
 
 
-def make_ring_down(folder: Path, seed: int) -> tuple[Path, Path]:
+def make_ring_down(folder: Path, seed: int, angle: float = RELEASED_ANGLE) -> tuple[Path, Path]:
     """System file with start values and record of the released link on the held drive."""
-    record = write_record(folder / "record.csv", {"time": TIME} | release_link(TIME), seed)
+    record = write_record(folder / "record.csv", {"time": TIME} | release_link(TIME, angle), seed)
     return write_system(folder, RING_DOWN, START_RATIO), record
 
 

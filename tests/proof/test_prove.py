@@ -25,6 +25,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.run.proof.importers import SUPPORTED_FMI_VERSIONS as KNOWN
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
+from surroundings import Enter, environment, missing_package
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import load_default
@@ -256,7 +257,7 @@ def test_a_broken_proof_is_refused_in_one_line(
 
 
 def test_what_cannot_be_proved_is_refused_in_one_line(
-    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], enter: Enter
 ) -> None:
     text = tmp_path / "text.fmu"
     text.write_text("no FMU")
@@ -265,18 +266,18 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     )
     assert "is not an FMU" in refused_line(capsys, "prove", text)
     assert "invalid choice: 'simulink'" in refused_line(capsys, "prove", text, "--in", "simulink")
-    monkeypatch.setattr("jointfmu_tools.run.proof.run.find_spec", lambda name: None)
+    enter(missing_package("ecospy"))
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert "the package ecospy is missing" in line
 
 
 def test_an_importer_whose_library_does_not_load_is_refused(
-    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], enter: Enter
 ) -> None:
     """An importer is refused if its library does not load, as on a machine without a library that
     it needs."""
     (tmp_path / "ecospy.py").write_text("raise OSError('libtbb.so.12: cannot open shared object file')\n")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    enter(environment(PYTHONPATH=str(tmp_path)))
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert line.endswith(
         "ecos cannot be loaded (OSError: libtbb.so.12: cannot open shared object file); "

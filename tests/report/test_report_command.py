@@ -2,6 +2,7 @@
 
 import json
 import re
+from contextlib import chdir
 from html import unescape
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.common.pressure import judge_joint_stiffness
 from jointfmu_tools.pages.report.joint import VALIDITY_HEADINGS, write_joint_report
 from jointfmu_tools.pages.report.load_history import LoadHistory
+from surroundings import Enter
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
@@ -87,9 +89,9 @@ def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
                 assert series["y"][i] == pytest.approx(factor * value, rel=1e-6), (over, i)
 
 
-def test_kinds_of_sources_are_what_they_are(tmp_path, monkeypatch):
+def test_kinds_of_sources_are_what_they_are(tmp_path, enter):
     """A file from a catalogue name has no number of the user; moduli from a standard are not from a paper."""
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     drive = ["new", "harmonic-drive", "--catalogue", "CSG-25-100", "--out", "drive.toml"]
     plates = [
         "--plate",
@@ -118,9 +120,9 @@ def test_kinds_of_sources_are_what_they_are(tmp_path, monkeypatch):
 
 
 def test_what_the_user_changed_is_there_with_his_words(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, enter: Enter, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     file = load_default("gear_contact")
     name = next(n for n, value in file.values_by_name.items() if isinstance(value, float) and value > 0.0)
     words = 'drawing 4711, <b>rev.</b> C & "all"'
@@ -207,10 +209,10 @@ def test_what_makes_no_page_is_one_line(
     words: tuple[str, ...],
     said: str,
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    enter: Enter,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     Path("good.toml").write_text(format_parameter_file(load_default(next(iter(KINDS)))))
     Path("broken.toml").write_text('schema = 1\njoint = "nothing"\n')
     Path("folder.html").mkdir()
@@ -233,10 +235,10 @@ def test_topics_are_headings_of_the_pages_on_validity() -> None:
         (["--property-class", "8.8"], "48.9 kN, the proof load of M12-8.8 (ISO 898-1)"),
     ],
 )
-def test_the_lesser_of_the_limits_of_law_and_bolts_is_said(tmp_path, monkeypatch, stated, limit):
+def test_the_lesser_of_the_limits_of_law_and_bolts_is_said(tmp_path, enter, stated, limit):
     """The range of the law ends far above the load that an M12 bears. ISO 898-1: class 8.8 has 580 MPa on
     84.3 mm2."""
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     faces = ["--material", "steel", "--finish", "milled"]
     assert cli.main(["new", "bolted-joint", *PLATES, *faces, *stated, "--out", "joint.toml"]) == 0
     assert cli.main(["report", "joint.toml"]) == 0

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from jointfmu_fmu_src.native.build import build_native_fmu as native_build
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
+from surroundings import Enter, environment
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import format_parameter_file, load_default
@@ -83,9 +84,9 @@ def test_a_joint_has_its_page_without_an_extra(kind: str, tmp_path: Path) -> Non
     ],
 )
 def test_what_is_missing_is_named_in_one_line(
-    words: tuple[str, ...], package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    words: tuple[str, ...], package: str, tmp_path: Path, enter: Enter
 ) -> None:
-    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    enter(environment(JOINTFMU_CACHE=str(tmp_path / "nothing kept")))
     (tmp_path / "joint.toml").write_text(format_parameter_file(load_default(next(iter(KINDS)))))
     done = bare(tmp_path, *words)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)

@@ -1,12 +1,15 @@
 """Clients, which only some machines have: one table lists them, and only clients make a test skip."""
 
 import ast
+import os
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import clients
 import pytest
 from clients import CLIENTS, Client, skip_reason, skip_without
+from conftest import RUN
 
 TESTS = Path(__file__).resolve().parents[1]
 CONTRIBUTING = (TESTS.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -52,9 +55,19 @@ def test_only_clients_make_a_test_skip():
     assert found == set()
 
 
-def test_a_client_that_fails_skips_with_what_to_install(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
-):
+@pytest.fixture
+def own_results(tmp_path: Path) -> Iterator[None]:
+    """Results of the probes in a folder of the test; its clients are removed after it."""
+    names = {*CLIENTS}
+    clients.share_results(tmp_path)
+    yield
+    clients.share_results(Path(os.environ[RUN]))
+    clients.unusable.cache_clear()
+    for name in {*CLIENTS} - names:
+        del CLIENTS[name]
+
+
+def test_a_client_that_fails_skips_with_what_to_install(own_results):
     """The probe runs once, even if another process asks: the first result is in a file."""
     calls = []
 
@@ -62,9 +75,7 @@ def test_a_client_that_fails_skips_with_what_to_install(
         calls.append(None)
         raise OSError("libmissing.so: cannot open shared object file")
 
-    monkeypatch.setitem(CLIENTS, "missing", Client(probe, "nothing", "`libmissing`"))
-    monkeypatch.setattr(clients, "_results", [tmp_path])
-    request.addfinalizer(clients.unusable.cache_clear)
+    CLIENTS["missing"] = Client(probe, "nothing", "`libmissing`")
     reason = "needs missing; install: `libmissing` (libmissing.so: cannot open shared object file)"
     for _ in range(2):
         clients.unusable.cache_clear()  # as a new process
@@ -74,9 +85,8 @@ def test_a_client_that_fails_skips_with_what_to_install(
         skip_without("Linux or macOS", "missing")
 
 
-def test_a_client_that_works_skips_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setitem(CLIENTS, "present", Client(lambda: None, "something", "nothing"))
-    monkeypatch.setattr(clients, "_results", [tmp_path])
+def test_a_client_that_works_skips_nothing(own_results):
+    CLIENTS["present"] = Client(lambda: None, "something", "nothing")
     assert skip_reason("present") == ""
     skip_without("present")
 

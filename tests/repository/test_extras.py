@@ -8,6 +8,7 @@ import tomllib
 from importlib.metadata import PackageNotFoundError, packages_distributions, requires
 from pathlib import Path
 
+import coarse
 import numpy as np
 import pytest
 from clients import needs
@@ -16,7 +17,6 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 from jointfmu.joints.bolted_joint.law import get_bolted_frame
-from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import load_default
 
 pytestmark = pytest.mark.slow
@@ -105,16 +105,16 @@ def environment_with(extra: str, blocker: Path) -> dict[str, str]:
     return dict(os.environ) | {"PYTHONPATH": str(blocker), "BLOCKED_MODULES": blocked}
 
 
-def write_inputs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def write_inputs(folder: Path) -> None:
     """A scan of 64 x 64 heights, and the field of the default bolted joint at a preload of 9 kN."""
     heights = np.random.default_rng(1).standard_normal((64, 64)).cumsum(axis=0).cumsum(axis=1)
     rows = [",".join(f"{0.01 * z:.4f}" for z in line) for line in heights]
     (folder / "scan.csv").write_text(
         "\n".join(["# grid: dx = 1 um, dy = 1 um, z [um]", *rows]) + "\n", encoding="utf-8"
     )
-    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 4)
     joint = load_default("bolted_joint").values
-    shape = get_bolted_frame(joint).pressure_distribution()
+    with coarse.contact_cells(4):
+        shape = get_bolted_frame(joint).pressure_distribution()
     p = shape.preload_pressure_ratio * 9e3 * joint.n_bolts / joint.A_0
     nodes = ContactField(shape.area_share * joint.A_0, shape.position, p)
     (folder / "field.csv").write_text(csv_text(nodes), encoding="utf-8")
@@ -128,9 +128,9 @@ def test_all_extras_are_looked_at():
     "extra",
     [pytest.param(extra, marks=needs("gmsh") if extra == "fem" else ()) for extra in FIRST_COMMANDS],
 )
-def test_the_first_command_of_a_page_needs_its_extra_alone(extra, tmp_path, monkeypatch):
+def test_the_first_command_of_a_page_needs_its_extra_alone(extra, tmp_path):
     (blocker := tmp_path / "blocker").mkdir()
-    write_inputs(tmp_path, monkeypatch)
+    write_inputs(tmp_path)
     done = subprocess.run(
         FIRST_COMMANDS[extra],
         cwd=tmp_path,

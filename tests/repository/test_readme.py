@@ -7,8 +7,10 @@ import shlex
 import shutil
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 
+import coarse
 import pytest
 from clients import needs
 from conftest import here_alone
@@ -19,9 +21,9 @@ from jointfmu_tools.inputs.fields import nodal_result
 from jointfmu_tools.inputs.fields.nodal_result import ContactField
 from jointfmu_tools.studies.published import validation
 from oracles import system_records
+from surroundings import environment
 
 from jointfmu.files.outputs import write_parameter_text
-from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import load_default
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -42,7 +44,7 @@ def test_the_readme_is_short():
 
 @pytest.mark.slow
 @needs("git and a checkout", "gmsh")
-def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monkeypatch):
+def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, enter):
     """The blocks run in a clone; `.ci/run` runs the installation and the complete build in an environment of
     its own."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -58,8 +60,8 @@ def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monk
     subprocess.run(["bash", "-ec", with_nothing], cwd=tmp_path, env=environment, check=True, timeout=100)
     work = tmp_path / "joints"
     assert (work / ".venv" / "bin" / "python").exists()
-    monkeypatch.chdir(work)
-    monkeypatch.setenv("MPLBACKEND", "agg")
+    enter(chdir(work))
+    enter(environment(MPLBACKEND="agg"))
     with here_alone():
         for language, block in first:
             if language == "python":
@@ -84,8 +86,7 @@ def folder(tmp_path_factory, native):
     (place / "models/assemblies").mkdir(parents=True)
     (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
     joint = load_default("bolted_joint").values
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bolts, "CELLS_ACROSS_FLANGE", 3)  # few nodes are read as many are
+    with coarse.contact_cells(3):  # few nodes are read as many are
         shape, mean = joint.pattern.pressure_distribution(), 9e3 * joint.n_bolts / joint.A_0
     field = ContactField(joint.A_0 * shape.area_share, shape.position, mean * shape.preload_pressure_ratio)
     (place / "my_field.csv").write_text(nodal_result.csv_text(field))
@@ -99,8 +100,8 @@ def folder(tmp_path_factory, native):
 
 
 @needs("gmsh")
-def test_python_blocks_run(folder, few_points, monkeypatch):
-    monkeypatch.chdir(folder)
+def test_python_blocks_run(folder, few_points, enter):
+    enter(chdir(folder))
     names = {}
     for page in (FMUS, PYTHON):
         (block,) = blocks("python", page)
@@ -136,10 +137,10 @@ MESHED = ("jointfmu footprint compute ", "jointfmu modes ", "jointfmu new bolted
         if not line.startswith(ELSEWHERE)
     ],
 )
-def test_commands_run(line, folder, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(folder)
+def test_commands_run(line, folder, tmp_path, enter, capsys):
+    enter(chdir(folder))
     if line.startswith("jointfmu cache"):  # a cache of years takes long to count
-        monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path))
+        enter(environment(JOINTFMU_CACHE=str(tmp_path)))
     with here_alone():
         assert cli.main(shlex.split(line, comments=True)[1:]) == 0
     assert capsys.readouterr().out

@@ -4,13 +4,14 @@ import json
 import re
 import subprocess
 import sys
+from contextlib import chdir
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.inputs.surfaces import csvfile, synthesis
+from jointfmu_tools.inputs.surfaces import csvfile, reading, synthesis
 from jointfmu_tools.inputs.surfaces import heights as sift
 from jointfmu_tools.inputs.surfaces.form import fill_gaps, remove_form, remove_spikes
 from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
@@ -33,8 +34,8 @@ def line():
 
 
 @pytest.fixture
-def folder(tmp_path, area, line, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, area, line, enter):
+    enter(chdir(tmp_path))
     (tmp_path / "area.csv").write_text(csvfile.csv_text(area))
     (tmp_path / "line.csv").write_text(csvfile.csv_text(line))
     return tmp_path
@@ -525,18 +526,11 @@ def test_columns_whose_units_cannot_be(folder, line, capsys, heads, options, say
     assert says in refused_line(capsys, "surface", "titled.csv", *options)
 
 
-def test_units_as_instruments_write_them(folder, monkeypatch):
+def test_units_as_instruments_write_them():
     """A .sur file in UTF-8 is read as Latin-1: µm becomes Âµm."""
-    import SurfaceTopography
-
-    z = np.random.default_rng(0).standard_normal((70, 70))
-    made = SurfaceTopography.Topography(z, (70.0, 70.0), unit="Âµm")
-    monkeypatch.setattr(SurfaceTopography, "read_topography", lambda path: made)
-    (folder / "t.foo").write_bytes(bytes(1000))
-    assert read_heights("t.foo").dx == pytest.approx(1e-6)
-    made = SurfaceTopography.Topography(z, (70.0, 70.0), unit="furlong")
-    with pytest.raises(ValueError, match=r"t\.foo: its unit 'furlong' is not a known unit of length"):
-        read_heights("t.foo")
+    assert reading.unit_size("Âµm") == pytest.approx(1e-6)
+    with pytest.raises(ValueError, match="its unit 'furlong' is not a known unit of length"):
+        reading.unit_size("furlong")
 
 
 @pytest.mark.parametrize("unit", ["um", "µm", "μm"])

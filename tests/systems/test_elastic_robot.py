@@ -3,11 +3,14 @@
 import io
 import json
 import re
+import subprocess
+import sys
 from contextlib import redirect_stdout
 from importlib import metadata
 from pathlib import Path
 from types import SimpleNamespace
 
+import coarse
 import fmpy
 import mujoco
 import numpy as np
@@ -19,6 +22,7 @@ from jointfmu_tools.api import drive
 from jointfmu_tools.exchange.robots import elastic, pictures, poses
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from jointfmu_tools.run.proof.run import prove
+from surroundings import environment
 
 from jointfmu.parameters import format_parameter_file
 
@@ -51,18 +55,15 @@ def made(capsys, robot, out, *words):
 def six(tmp_path_factory):
     out, shown = tmp_path_factory.mktemp("six"), io.StringIO()
     words = ["robot", str(ROBOT), "--out", str(out), "--json", "--drive", *DRIVES, *POSE, "--payload", "3"]
-    with redirect_stdout(shown), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            pictures, "ANGLES_PER_GRID_AXIS", 7
-        )  # a coarser grid of poses, of which nothing here is asked
+    with redirect_stdout(shown), coarse.poses():
         assert cli.main(words) == 0
     return json.loads(shown.getvalue()), mujoco.MjModel.from_xml_path(str(out / "six_axis_elastic.xml"))
 
 
 @pytest.fixture
-def few_poses(monkeypatch):
+def few_poses(enter):
     """Use a coarser grid of poses, for tests that need no fine one."""
-    monkeypatch.setattr(pictures, "ANGLES_PER_GRID_AXIS", 7)
+    enter(coarse.poses())
 
 
 def held(spec, payload):
@@ -419,11 +420,14 @@ def test_robots_that_cannot_be_an_fmu_are_refused_before_anything_is_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_an_older_mujoco_is_refused(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(mujoco, "MjModel", object)
+def test_an_older_mujoco_is_refused(tmp_path):
+    (tmp_path / "mujoco.py").write_text('__version__ = "3.2.0"\nclass MjModel: pass\n')
     for words in (["robot", ROBOT, "--drive", "joint1=CSG-14-100"], ["export", "mjcf", "CSG-14-100"]):
-        line = refused_line(capsys, *words, "--out", tmp_path / "out")
-        assert "has no springs that yield; expected 4.0 or newer" in line
+        command = [sys.executable, "-m", "jointfmu", *words, "--out", tmp_path / "out"]
+        with environment(PYTHONPATH=str(tmp_path)):
+            done = subprocess.run(command, capture_output=True, text=True, timeout=100)
+        assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+        assert "has no springs that yield; expected 4.0 or newer" in done.stderr
 
 
 def test_a_file_that_is_no_robot_is_refused(tmp_path, capsys):

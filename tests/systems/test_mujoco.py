@@ -51,14 +51,16 @@ def robot(loaded: None) -> Robot:
     """Function that makes model and data of drives side by side with locked motors, from parameters of each
     drive."""
 
-    def make(*drives: dict[str, Any], integrator: str = "Euler") -> tuple[Any, Any]:
+    def make(
+        *drives: dict[str, Any], integrator: str = "Euler", name: str = NAME, instance: str = INSTANCE
+    ) -> tuple[Any, Any]:
         configs = ["".join(f'<config key="{k}" value="{v}"/>' for k, v in one.items()) for one in drives]
         numbers = range(len(drives))
-        sensors = "".join(f'<plugin plugin="jointfmu.{NAME}" instance="drive{i}"/>' for i in numbers)
+        sensors = "".join(f'<plugin plugin="jointfmu.{name}" instance="drive{i}"/>' for i in numbers)
         model = mujoco.MjModel.from_xml_string(
             f'<mujoco><option timestep="{STEP}" gravity="0 0 0" integrator="{integrator}"/>'
-            f'<extension><plugin plugin="jointfmu.{NAME}">'
-            f"{''.join(map(INSTANCE.format, numbers, configs))}</plugin></extension>"
+            f'<extension><plugin plugin="jointfmu.{name}">'
+            f"{''.join(map(instance.format, numbers, configs))}</plugin></extension>"
             f"<worldbody>{''.join(JOINT.format(i, LOCKED, INERTIA) for i in numbers)}</worldbody>"
             f"<sensor>{sensors}</sensor></mujoco>"
         )
@@ -237,12 +239,11 @@ def test_bad_configurations_are_refused(robot: Robot, config: dict[str, Any], li
         robot(config)
 
 
-def test_an_unknown_joint_is_refused(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(globals(), "INSTANCE", INSTANCE.replace('"link{0}"', '"lnik{0}"'))
+def test_an_unknown_joint_is_refused(robot: Robot) -> None:
     with pytest.raises(
         ValueError, match=r"drive0: phi2 = 'lnik0' is not a hinge joint; expected the name of one"
     ):
-        robot({})
+        robot({}, instance=INSTANCE.replace('"link{0}"', '"lnik{0}"'))
 
 
 def test_an_angle_that_is_no_number_is_refused_and_the_data_go_on(robot: Robot) -> None:
@@ -256,15 +257,14 @@ def test_an_angle_that_is_no_number_is_refused_and_the_data_go_on(robot: Robot) 
 
 
 def test_another_joint_is_loaded_beside_it(
-    robot: Robot, native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host: Callable[..., Fmu]
+    robot: Robot, native: Path, tmp_path: Path, host: Callable[..., Fmu]
 ) -> None:
     mujoco.mj_loadPluginLibrary(str(plugin(native / "fmi2" / "GearMesh.fmu", tmp_path)))
-    monkeypatch.setitem(globals(), "NAME", "GearMesh")
     with pytest.raises(
         ValueError, match="drive0: rigid_flat = 'maybe' is not a Boolean; expected true or false"
     ):
-        robot({"rigid_flat": "maybe"})
-    model, data = robot({"rigid_flat": "false"})
+        robot({"rigid_flat": "maybe"}, name="GearMesh")
+    model, data = robot({"rigid_flat": "false"}, name="GearMesh")
     data.qpos[:] = 1e-3, 2e-3
     data.qvel[:] = 0.1, -0.2
     mujoco.mj_forward(model, data)

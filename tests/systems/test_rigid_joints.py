@@ -5,13 +5,14 @@ import os
 import re
 import shutil
 import struct
+from contextlib import chdir
 
+import coarse
 import mujoco
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.exchange.robots import pictures
 
 import jointfmu
 
@@ -37,9 +38,9 @@ def cube():
 
 
 @pytest.fixture
-def arm(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(pictures, "ANGLES_PER_GRID_AXIS", 7)
+def arm(tmp_path, enter):
+    enter(chdir(tmp_path))
+    enter(coarse.poses())
     folder = tmp_path / "robot" / "assets" / "m & m"
     folder.mkdir(parents=True)
     (folder / "cube.stl").write_bytes(cube())

@@ -8,6 +8,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
@@ -21,9 +22,9 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.parametrize(
     "page", [pytest.param("drake", marks=needs("Drake")), pytest.param("pinocchio", marks=needs("Pinocchio"))]
 )
-def test_the_page_gives_wind_up_and_tip_error(page, capsys, tmp_path, monkeypatch):
+def test_the_page_gives_wind_up_and_tip_error(page, capsys, tmp_path, enter):
     """The code of the page prints wind-up and tip error by the law of the drives, as the command does."""
-    monkeypatch.chdir(ROOT)
+    enter(chdir(ROOT))
     (code,) = re.findall(r"```python\n(.*?)```", (ROOT / f"docs/tools/{page}.md").read_text(), re.DOTALL)
     exec(compile(code, page, "exec"), {})
     said = capsys.readouterr().out
@@ -41,10 +42,10 @@ def test_the_page_gives_wind_up_and_tip_error(page, capsys, tmp_path, monkeypatc
     ("page", "found"),
     [("mujoco", r"elbow at (29\.\d|30\.\d)\d\d deg, -?\d\.\d\d N m"), ("ros2", r"wrote \S*drive\.urdf")],
 )
-def test_what_the_page_has_runs_top_to_bottom(page, found, capsys, tmp_path, monkeypatch):
+def test_what_the_page_has_runs_top_to_bottom(page, found, capsys, tmp_path, enter):
     """All code of the page runs, except installations."""
     shutil.copytree(ROOT / "models/robots", tmp_path / "models/robots")
-    monkeypatch.chdir(tmp_path)
+    enter(chdir(tmp_path))
     text = (ROOT / f"docs/tools/{page}.md").read_text()
     said = []
     with here_alone():

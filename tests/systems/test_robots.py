@@ -2,6 +2,7 @@
 
 import json
 import re
+from contextlib import chdir
 from xml.etree import ElementTree
 
 import mujoco
@@ -12,6 +13,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.exchange.robots.spring_fit import fit_spring
 from jointfmu_tools.exchange.robots.transmission import loop_area
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
+from surroundings import missing_package
 
 import jointfmu
 
@@ -20,8 +22,8 @@ STEPS = 4000
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, enter):
+    enter(chdir(tmp_path))
     return tmp_path
 
 
@@ -213,8 +215,8 @@ def test_refusals(words, line, capsys):
     assert re.search(line, refused_line(capsys, "export", *words, "--out", "x.xml"))
 
 
-def test_without_mujoco_it_is_refused_in_one_line(capsys, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "mujoco", None)
+def test_without_mujoco_it_is_refused_in_one_line(capsys, enter):
+    enter(missing_package("mujoco"))
     line = refused_line(capsys, "export", "mjcf", "CSG-14-100", "--out", "x.xml")
     assert "the package mujoco is missing" in line
     assert "jointfmu[mujoco]" in line

@@ -3,22 +3,22 @@
 import dataclasses
 import math
 import re
-import zipfile
+from contextlib import chdir
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import here_alone, refused_line
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
-from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica.library import render_system
 from jointfmu_tools.exchange.modelica.records import template_environment
 from jointfmu_tools.exchange.modelica.systems import render_system_model
 from jointfmu_tools.pages.report.systems import joint_load_outputs, system_charts
-from jointfmu_tools.systems import cosimulation, ssp
+from jointfmu_tools.systems import ssp
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import find_fmu_names
 from jointfmu_tools.systems.steps import find_largest_stable_step
@@ -386,10 +386,9 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
     assert asked == [(12e3, 0.0, 313.15)]
 
 
-def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
-    """A warning names the interval for motor and link on the drive, at rest and at the largest torque of a
+def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, capsys):
+    """A refusal names the interval for motor and link on the drive, at rest and at the largest torque of a
     run."""
-    monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, overwrite: [])
     path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
     drive = HarmonicDriveSpring.tabulate(read_system(path).joints["drive"].parameter_file.values)
 
@@ -404,21 +403,19 @@ def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatc
     )
     assert said in refused_line(capsys, "system", path, "--out", out, "--csv", tmp_path / "run.csv")
     assert not out.exists()
-    assert cli.main(["system", str(path), "--out", str(out)]) == 0
-    assert f"warning: {said}" in capsys.readouterr().err
     angle, still = np.array([0.0, float(drive.evaluate_torque(5.0)["phi_rel"]), 0.0]), np.zeros(3)
     moved = {"motor.phi": still, "motor.w": still, "link.phi": angle, "link.w": still}
     found = find_largest_stable_step(read_system(path), moved | {"drive.tau1": angle, "drive.tau2": -angle})
     assert found == (pytest.approx(limit(5.0), rel=0.01), "drive")
     assert limit(5.0) < 0.8 * limit(0.0)
 
-    def diverges(*_: object) -> None:
-        raise ValueError("too large")
 
-    monkeypatch.setattr(cosimulation, "simulate_system", diverges)
-    path = changed(tmp_path)
-    said = refused_line(capsys, "system", path, "--out", out, "--csv", tmp_path / "run.csv")
-    assert "too large; experiment.interval = 0.0005 s may be too long" in said
+@pytest.mark.slow
+def test_an_interval_that_is_long_is_a_warning_of_the_build(tmp_path, capsys):
+    path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
+    with here_alone():
+        assert cli.main(["system", str(path), "--out", str(out)]) == 0
+    assert "warning: experiment.interval = 0.003 s is longer than" in capsys.readouterr().err
 
 
 def test_a_picture_shows_the_peaks_of_a_run():
@@ -433,39 +430,29 @@ def test_a_picture_shows_the_peaks_of_a_run():
     assert np.all(np.diff(drawn.x) > 0.0)
 
 
-def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_ring_without_fmus_says_what_writes_them(tmp_path, enter, capsys):
+    enter(chdir(tmp_path))
     said = refused_line(capsys, "ring", "robot_joint")
     assert "has no HarmonicDriveSpring.fmu; `jointfmu system robot_joint` writes it" in said
     said = refused_line(capsys, "ring", "six_axis_robot", "--joint", "elbow_drive")
     assert "has no six_axis_robot_elbow_drive.fmu" in said
 
 
-def fmu_with_parameters(path: Path, file) -> Path:
-    """Archive with only the parameters of an FMU."""
-    path.parent.mkdir(parents=True)
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", "<fmiModelDescription/>")
-        archive.writestr(f"{REFERENCE_FOLDER}/parameters/mine.toml", format_parameter_file(file))
-    return path
-
-
-@pytest.mark.parametrize("is_own", [True, False], ids=["other", "same"])
-def test_the_systems_replace_no_joint_of_the_user(tmp_path, monkeypatch, is_own):
+@pytest.mark.slow
+def test_the_systems_replace_no_joint_of_the_user(tmp_path):
     """`build --systems` does not replace a joint that was built with --params."""
-    monkeypatch.setattr(ssp, "check_outputs", lambda paths, kind, overwrite: None)  # tested by itself
-    monkeypatch.setattr(ssp, "map_jobs", lambda *_: pytest.fail("built") if is_own else [])
-    monkeypatch.setattr(ssp, "write_archives", lambda system, out: [])
-    file = load_default("bolted_joint")
-    file = file.with_values({"mu": 0.11}, "user", "mine") if is_own else file
-    path = fmu_with_parameters(tmp_path / "fmi2" / "BoltedJoint.fmu", file)
-    column = [load_system("bolted_column")]
-    if is_own:
+    file, column = load_default("bolted_joint"), [load_system("bolted_column")]
+    with here_alone():
+        (path,) = build_fmus(
+            ["BoltedJoint"], ["fmi2"], file.with_values({"mu": 0.11}, "user", "mine"), tmp_path
+        )
+        before = path.read_bytes()
         with pytest.raises(InputRefusal, match="was built from other parameters") as error:
             ssp.build_systems(tmp_path, column)
         assert str(error.value).startswith(f"{path}: ")
-        monkeypatch.setattr(ssp, "map_jobs", lambda *_: [])
-    ssp.build_systems(tmp_path, column, overwrite=is_own)
+        assert path.read_bytes() == before
+        for overwrite in (True, False):  # then it has the parameters of the systems
+            assert path in ssp.build_systems(tmp_path, column, overwrite=overwrite)
 
 
 def test_a_system_is_scaled_to_another_joint():

@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+from contextlib import chdir
 from pathlib import Path
 
 import numpy as np
@@ -153,10 +154,9 @@ class TestFits:
         held = sum(sum(system_records.count_held(fit, LINEAR).values()) for fit in fits)
         assert held >= 26
 
-    def test_what_a_ring_down_does_not_determine(self, tmp_path, monkeypatch):
+    def test_what_a_ring_down_does_not_determine(self, tmp_path):
         """Ratios of stiffness, inertia and damping alone, while the motion stays in the linear part."""
-        monkeypatch.setattr(system_records, "RELEASED_ANGLE", 3e-4)
-        path, record = system_records.make_ring_down(tmp_path, 1)
+        path, record = system_records.make_ring_down(tmp_path, 1, 3e-4)
         fit = fit_system(read_system(path), record, ["link.J", "drive.K1", "drive.d", "link.phi"])
         (line,) = [text for text in fit.warnings() if text.startswith("the data do not determine")]
         assert line.removeprefix("the data do not determine ").startswith("link.J, drive.K1, drive.d:")
@@ -164,8 +164,8 @@ class TestFits:
         with pytest.raises(ValueError, match=r"drive.T2 = 40 N.m has no effect on link.phi; fit other"):
             fit_system(read_system(path), record, ["drive.T2", "link.phi"])
 
-    def test_the_command_prints_what_its_page_says(self, tmp_path, monkeypatch, capsys):
-        monkeypatch.chdir(tmp_path)
+    def test_the_command_prints_what_its_page_says(self, tmp_path, enter, capsys):
+        enter(chdir(tmp_path))
         system_records.make_chirp_record(tmp_path, 1)
         command = re.search(r"\njointfmu (fit system arm.*)\n", PAGE.read_text(encoding="utf-8"))
         assert cli.main(shlex.split(command[1])) == 0

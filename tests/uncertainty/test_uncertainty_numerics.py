@@ -1,5 +1,7 @@
 """Distributions, quadrature, bands and indices against closed forms and scipy."""
 
+from dataclasses import fields, replace
+
 import numpy as np
 import pytest
 from jointfmu_tools.studies.uncertainty import propagate, study, worker
@@ -93,9 +95,10 @@ def test_design_is_seeded_and_balanced():
         assert np.array_equal(np.sort(np.floor(256 * column)), np.arange(256))
 
 
-@pytest.fixture
-def linear_gear(monkeypatch):
+class LinearGear(worker.JointRamp):
     """Gear contact whose K_N is linear in mu, traction_ratio and load, so that its distribution is known."""
+
+    runs_per_process = 10**9
 
     def evaluate(self, settings):
         values = {**self.file.values_by_name, **settings}
@@ -105,15 +108,27 @@ def linear_gear(monkeypatch):
         K_N = factor * self.loads[rows] * (2.0 * values["mu"] + values["traction_ratio"])
         return {"K_N": K_N, "s_rel": 0.0 * K_N}
 
-    monkeypatch.setattr(worker.JointRamp, "evaluate", evaluate)
-    monkeypatch.setattr(worker.JointRamp, "runs_per_process", 10**9)
+
+class SmallJobs(worker.JointRamp):
+    """Joint of which a process and a job do few runs."""
+
+    runs_per_process, runs_per_job = 4, 3
 
 
-@pytest.mark.usefixtures("linear_gear")
+def as_evaluator(cls, one):
+    """Evaluator of another class with the same fields."""
+    return cls(**{field.name: getattr(one, field.name) for field in fields(one) if field.init})
+
+
+def linear_problem(*arguments):
+    task = state_problem(load_default("gear_contact"), *arguments)
+    return replace(task, evaluator=as_evaluator(LinearGear, task.evaluator))
+
+
 def test_bands_of_a_linear_output():
     """2 a + b of two normal parameters is normal."""
     given = {"mu": "normal(5, 0.3)", "traction_ratio": "normal(0.5, 0.05)"}
-    task = state_problem(load_default("gear_contact"), given, 100.0, 5)
+    task = linear_problem(given, 100.0, 5)
     A, B = propagate.sample_designs(task, 2**14, 0)
     found = propagate.compute_bands(task, A)
     law = stats.norm(10.5, np.hypot(0.6, 0.05))
@@ -129,14 +144,13 @@ def test_bands_of_a_linear_output():
     assert np.all(np.abs(indices.total - exact) < 0.01)
 
 
-@pytest.mark.usefixtures("linear_gear")
 def test_an_uncertain_load_scales_the_ramp():
-    task = state_problem(load_default("gear_contact"), {"f": "+-20%"}, 100.0, 3)
+    task = linear_problem({"f": "+-20%"}, 100.0, 3)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 4096, 0)[0])
     nominal = found.nominal["K_N"]
     assert found.quantiles["K_N"][1] == pytest.approx(nominal * 0.82, rel=1e-3)
     assert found.quantiles["K_N"][-2] == pytest.approx(nominal * 1.18, rel=1e-3)
-    at = state_problem(load_default("gear_contact"), {"f": "50..150"}, None, 3)
+    at = linear_problem({"f": "50..150"}, None, 3)
     assert at.loads.tolist() == [100.0]
     found = propagate.compute_bands(at, propagate.sample_designs(at, 4096, 0)[0])
     assert found.quantiles["K_N"][:, 0] == pytest.approx(
@@ -144,15 +158,14 @@ def test_an_uncertain_load_scales_the_ramp():
     )
 
 
-def test_results_do_not_depend_on_order_and_processes(monkeypatch):
+def test_results_do_not_depend_on_order_and_processes():
     """The numbers of a sample are equal to the bit after any other sample."""
     task = state_problem(load_default("bolted_joint"), {"H": "+-5%", "mu": "0.1..0.2"}, None, 4)
     runs = task.list_runs(propagate.sample_designs(task, 8, 0)[0])
     one = evaluate_runs(task.evaluator, runs, task.units, 4).outputs
     back = evaluate_runs(task.evaluator, runs[::-1], task.units, 4).outputs
-    monkeypatch.setattr(worker.JointRamp, "runs_per_process", 4)
-    monkeypatch.setattr(worker.JointRamp, "runs_per_job", 3)
-    two = evaluate_runs(task.evaluator, runs, task.units, 4, Execution(workers=2)).outputs
+    small = as_evaluator(SmallJobs, task.evaluator)
+    two = evaluate_runs(small, runs, task.units, 4, Execution(workers=2)).outputs
     for name, values in one.items():
         assert np.array_equal(values, back[name][:, ::-1])
         assert np.array_equal(values, two[name])

@@ -174,6 +174,11 @@ def main(out_folder: Path) -> int:
     except KeyboardInterrupt:
         print("build_fmus.py: interrupted", file=sys.stderr)
         return 130
+    return print_summary(outcome, out_folder)
+
+
+def print_summary(outcome: PipelineResult, out_folder: Path) -> int:
+    """Print what was built and checked, and all failures. Returns the exit code: 0, or 1 for a failure."""
     misses = outcome.failures
     folders = ", ".join(str(out_folder / flavour) for flavour in FLAVOUR_BUILDERS)
     print(f"built: {len(outcome.fmu_paths)} FMUs in {folders}: {', '.join(MODELS)}")

@@ -3,9 +3,9 @@
 import json
 import math
 from dataclasses import replace
-from functools import partial
 from types import SimpleNamespace
 
+import coarse
 import numpy as np
 import pytest
 from clients import needs
@@ -39,13 +39,9 @@ STILL = (0.0, 0.0, 0.0)
 
 
 @pytest.fixture(autouse=True)
-def interface_alone(monkeypatch):
-    """Omit the finite elements of the complete joint, which take seconds; test_bolted_plate.py tests them."""
-    monkeypatch.setattr(
-        plate_finite_elements,
-        "compute_joint_or_warning",
-        lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
-    )
+def interface_alone(enter):
+    """Omit the finite elements of the complete joint, which test_bolted_plate.py tests."""
+    enter(coarse.interface_alone())
 
 
 def made(capsys, *words, path=None):
@@ -758,10 +754,10 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 
 @needs("gmsh")
 @pytest.mark.slow
-def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
+def test_a_computed_field_is_near_the_cones(capsys, tmp_path, enter):
     """The field by finite elements of three times the size, whose error is far below the tolerance, is near
     that of the cones."""
-    monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.35))
+    enter(coarse.elements(BoltedContact, 0.35))
     files = {}
     for field in ("cones", "computed"):
         path = tmp_path / f"{field}.toml"
@@ -780,11 +776,11 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
 
 @needs("gmsh")
 @pytest.mark.slow
-def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, monkeypatch):
+def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, enter):
     """In a joint without symmetry, the field is as wide as the cone of VDI 2230 for a tapped thread; under
     moments and higher preload, the hole edges reach the hardness of aluminium. The elements are coarser than
     usual."""
-    monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.7))
+    enter(coarse.elements(BoltedContact, 0.7))
     files = {}
     for field in ("cones", "computed"):
         path = tmp_path / f"{field}.toml"

@@ -2,11 +2,10 @@
 `jointfmu new`."""
 
 import json
-import sys
 import warnings
 from dataclasses import replace
-from functools import partial
 
+import coarse
 import numpy as np
 import pytest
 from clients import needs
@@ -18,7 +17,7 @@ from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.inputs.drawing import vdi2230
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
-from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
+from surroundings import missing_package
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import STIFFNESS_UNITS, Compliances
@@ -395,18 +394,13 @@ def test_four_bolts_share_a_load_evenly(capsys):
 
 @needs("gmsh")
 @pytest.mark.slow
-def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys, tmp_path, monkeypatch):
+def test_the_whole_of_a_computed_field_is_as_stiff_as_all_its_nodes(capsys, tmp_path, enter):
     """The file has few points with the same sums. The finite elements compute the complete joint with them;
     printed values are the same. The picture shows outline and holes of the plate."""
-    monkeypatch.setattr(
-        BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.5)
-    )  # as the bodies' here
+    enter(coarse.elements(BoltedContact, 0.5))  # as the bodies' here
     path = tmp_path / "plate.toml"
     words = ["--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20", *M16[6:]]
-    seen, real = [], plate_finite_elements.compute_joint
-    monkeypatch.setattr(
-        plate_finite_elements, "compute_joint", lambda *asked: seen.append(real(*asked)) or seen[-1]
-    )
+    seen = enter(coarse.computed_joints())
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
     values = load_parameter_file(path).values
     found = BoltedJointSpring.for_joint(values).compliances(15e3)
@@ -420,10 +414,10 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
 
 
 @pytest.mark.parametrize("package", ["gmsh", "threadpoolctl"])
-def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypatch, tmp_path, package):
+def test_without_finite_elements_the_complete_joint_is_refused(capsys, enter, tmp_path, package):
     """The file would describe another joint than requested, so it is written only if `--sides
     rigid` is set."""
-    monkeypatch.setitem(sys.modules, package, None)
+    enter(missing_package(package))
     path = tmp_path / "joint.toml"
     other_plate = ["--plate", "80x81"]  # not solved before by this process
     line = refused_line(capsys, "new", "bolted-joint", *M16, *other_plate, *LOAD, "--out", path)
@@ -440,14 +434,6 @@ def test_without_finite_elements_the_complete_joint_is_refused(capsys, monkeypat
         interface / (interface + 1.0 / facts["member_stiffness"])
     )
     assert "the FMU is the interface alone" in found["facts"]["interface_share"]["text"]
-
-
-def test_rigid_sides_need_no_modes(capsys, monkeypatch):
-    """The finite elements would take half a minute, and their result would not be used."""
-    monkeypatch.setattr(plate_finite_elements, "compute_joint_of_assembly", None)
-    facts, _ = made(capsys, *M16, *LOAD, "--sides", "rigid")
-    assert "interface_K_zz" in facts
-    assert "joint_K_zz" not in facts
 
 
 def test_heads_that_do_not_fit_are_said(capsys):

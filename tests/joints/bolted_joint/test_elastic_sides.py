@@ -2,14 +2,15 @@
 
 import json
 import re
+from contextlib import nullcontext
 from dataclasses import replace
-from functools import partial
 from types import SimpleNamespace
 
+import coarse
 import numpy as np
 import pytest
 from clients import needs
-from conftest import REFINEMENT, Fmu, here_alone, refused_line
+from conftest import Fmu, here_alone, refined_bodies, refused_line
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.native import page
 from jointfmu_tools import cli
@@ -21,7 +22,6 @@ from jointfmu_tools.inputs.fitting import branches
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
-from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
 from jointfmu_tools.pages.report.load_history import LoadHistory
 from jointfmu_tools.studies.uncertainty import propagate
@@ -49,25 +49,18 @@ MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 def made(tmp_path_factory):
     """Joints from the command with the compliances of their finite elements; meshes are coarse where no
     comparison with VDI 2230 follows."""
-    found, seen = {}, {}
-    real = plate_finite_elements.compute_joint
-
-    def watched(*arguments):
-        seen["last"] = real(*arguments)
-        return seen["last"]
+    found = {}
 
     def make(*words, preload=PRELOAD):
         if words not in found:
             path = tmp_path_factory.mktemp("whole") / "joint.toml"
-            with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(plate_finite_elements, "compute_joint", watched)
-                if "heads" in words:
-                    patch.setitem(REFINEMENT, "bodies", 1.0)
+            fine = refined_bodies() if "heads" in words else nullcontext()
+            with coarse.computed_joints() as seen, fine:
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]
                 assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
             file = load_parameter_file(path)
             spring = BoltedJointSpring.for_joint(file.values)
-            found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen["last"].compliances)
+            found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen[-1].compliances)
         return found[words]
 
     return make
@@ -507,31 +500,6 @@ def test_long_steps_back_from_gross_slip_are_found(made):
     assert out["E_loss"] > 0.0
 
 
-def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):
-    spring = made(*FOUR, preload=15e3).spring
-    with monkeypatch.context() as patch:
-        patch.setattr(equilibrium, "MAX_NEWTON_ITERATIONS", 0)
-        told = (
-            r"preload = 15000, s_rel_x = 1e-07: no equilibrium of the joint was found beyond a fraction of "
-            r".* residual is .* N"
-        )
-        with pytest.raises(ValueError, match=told):
-            at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)
-    assert at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)[0]["f_x"] < 0.0
-
-
-def test_a_singular_derivative_is_told_as_no_equilibrium(made, monkeypatch):
-    spring = made(*FOUR, preload=15e3).spring
-    nothing = np.zeros([len(spring.joint.bodies.stiffness)] * 2)
-    monkeypatch.setattr(equilibrium.LoadStep, "residual_jacobian", lambda *given: nothing)
-    told = (
-        r"preload = 15000, s_rel_x = 0.0001: no equilibrium of the joint was found beyond a fraction of "
-        r"0\.00061 of the way, .* N"
-    )
-    with pytest.raises(ValueError, match=told):
-        at(spring, 1e-4, 0, 0, 0, 0, 0, preload=15e3)
-
-
 # Of an assembly
 
 PLATE = """
@@ -576,14 +544,12 @@ def test_a_whole_joint_without_a_bolt_or_a_file_is_refused(plates, tmp_path, cap
     assert not out.exists()
 
 
-def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monkeypatch):
+def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, enter):
     """The computed pressure extends further than the cones of the drawing's joint, so the joint is stiffer,
     by less than the share of the interface in the compliance. A field alone removes the bodies. With coarse
     elements."""
     drawn, out = embedded(made(*FOUR, preload=15e3), tmp_path / "drawn.toml"), tmp_path / "whole.toml"
-    monkeypatch.setattr(
-        JointFiniteElements, "from_assembly", partial(JointFiniteElements.from_assembly, refinement=0.35)
-    )
+    enter(coarse.elements(JointFiniteElements, 0.35))
     words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
     both = ["--attached", "faces", "--out", str(out), "--field", str(field)]
@@ -650,9 +616,9 @@ def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path)
     assert "the law deviates systematically from the curve" in alone.warnings()[-1]
 
 
-def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypatch):
+def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path):
     """The loops of the joint are within 0.2 % of the friction limit from its law in 24 steps; Masing's rule
-    alone is less accurate. With noise the fit recovers the true parameters, here in 12 steps."""
+    alone is less accurate. With noise the fit recovers the true parameters."""
     joint, path, noise = made(*FOUR, preload=15e3), tmp_path / "loops.csv", np.random.default_rng(1)
     rows, past = [], joint.spring.initial_history()
     for x in (2.4e-6 * np.sin(np.linspace(0.0, 3.0 * np.pi, 73))).tolist():
@@ -673,8 +639,6 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
 
     noisy = np.stack([motion, force + 30.0 * noise.standard_normal(force.size)], axis=1)
     np.savetxt(path, noisy, delimiter=",", header="displacement [m], force [N]", comments="")
-    monkeypatch.setattr(loop, "_ELASTIC_FIRST_LOADING_STEPS", 12)
-    monkeypatch.setattr(loop, "START_VALUES", {})
     start = joint.file.with_values({"h": 1.6e-6, "mu": 0.17}, "user", "test")
     found = loop.fit(path, start, preload=15e3)
     assert found.parameters.values.has_elastic_members

@@ -36,11 +36,28 @@ def linear(step_fraction, a):
     return K @ a - step_fraction * LOAD
 
 
-def test_newton_converges_in_the_last_iteration(monkeypatch):
-    monkeypatch.setattr(equilibrium, "MAX_NEWTON_ITERATIONS", 1)
+def test_newton_solves_a_linear_equilibrium():
     found, converged = equilibrium.solve_newton(load_step(linear), 1.0, np.zeros(2), K)
     assert converged
     np.testing.assert_allclose(found.modal_coordinates, np.linalg.solve(K, LOAD), rtol=1e-12)
+
+
+def test_newton_may_converge_in_the_last_iteration():
+    """At a triple root, the residual falls by a constant factor in each iteration."""
+
+    def solve(tolerance):
+        def evaluate(_, a):
+            return SimpleNamespace(**vars(state(a, a**3)) | {"residual_tolerance": tolerance})
+
+        step = load_step(None)
+        step.evaluate_trial = evaluate
+        step.residual_jacobian = lambda trial: np.diag(3.0 * trial.modal_coordinates**2)
+        return equilibrium.solve_newton(step, 1.0, np.ones(2), 3.0 * np.eye(2))
+
+    last, converged = solve(0.0)
+    assert not converged
+    assert solve(last.residual_norm)[1]
+    assert not solve(0.999 * last.residual_norm)[1]
 
 
 @pytest.mark.parametrize("change", [0.0, -0.2, 0.2])

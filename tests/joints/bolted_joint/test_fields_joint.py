@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
+import coarse
 import numpy as np
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
-from jointfmu_tools.common import plots
 from jointfmu_tools.exchange.modelica import library
 from jointfmu_tools.inputs.fields import nodal_result, reduction
 from jointfmu_tools.inputs.fields.joint_parameters import insert_field, normalise_pressure_field
@@ -25,7 +25,6 @@ from oracles import contact_patches
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import get_bolted_frame, preload_pressure
-from jointfmu.mechanics.footprint import bolts
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.reproducible import round_distribution
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
@@ -170,18 +169,20 @@ def test_few_nodes_stay_as_they_are():
 
 def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
     shape = normalise_pressure_field(JOINT, FIELD, PRELOAD)
+    parts = reduction.MAX_KEPT_NODES // shape.area_share.size + 1
+    large = shape.select_nodes(np.tile(np.arange(shape.area_share.size), parts))
+    large = replace(large, area_share=large.area_share / parts)
     found = [
         reduction.Reduction(shape.select_nodes(slice(99)), shape, 0.5 * reduction.LARGE_FIELD_TOLERANCE),
         None,
     ]
     monkeypatch.setattr(reduction, "_search_points", lambda *given: found[0])
     assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).point_count == shape.area_share.size
-    monkeypatch.setattr(reduction, "MAX_KEPT_NODES", 1000)
-    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure) is found.pop(0)
+    assert reduce_field(JOINT, large, PRELOAD, preload_pressure) is found.pop(0)
     with pytest.raises(
-        RuntimeError, match="cannot be reduced to points that keep its sums within 1e-05; of up to 1000 all"
+        RuntimeError, match="cannot be reduced to points that keep its sums within 1e-05; of up to 3000 all"
     ):
-        reduce_field(JOINT, shape, PRELOAD, preload_pressure)
+        reduce_field(JOINT, large, PRELOAD, preload_pressure)
 
 
 def _parts(one):
@@ -356,9 +357,8 @@ def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(imported, tmp_path, 
     assert found["K_zz"] == pytest.approx(exact["K_zz"], rel=1e-6)  # the points of both, 1e-6
 
 
-def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(plots, "RESOLUTION", 40)
-    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 4)
+def test_import_draws_and_refuses(tmp_path, capsys, enter):
+    enter(coarse.contact_cells(4))
     path = tmp_path / "field.csv"
     path.write_text(nodal_result.csv_text(field(0.45)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]

@@ -18,6 +18,7 @@ from jointfmu_tools.run.ramps import ramp
 from oracles import curve_measurements
 from oracles import drive_measurements as measurements
 from oracles.joint_measurements import save
+from surroundings import environment
 
 from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
@@ -66,8 +67,8 @@ def test_angles_are_kept(one):
 
 
 @pytest.mark.slow
-def test_shipped_example_is_this_fit(tmp_path, monkeypatch, capsys):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
+def test_shipped_example_is_this_fit(tmp_path, enter, capsys):
+    enter(environment(SOURCE_DATE_EPOCH="1767225600"))
     out = tmp_path / "out.toml"
     source = "Harmonic Drive catalogue, CSG/HFUC series, size 14, ratio 80 and more"
     given = options(**SIZE_14, ratio=100, source=source, law="hu2023", out=out)

@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from time import process_time
@@ -43,12 +44,6 @@ def drive(tmp_path):
 # round trips
 
 
-@pytest.fixture(autouse=True)
-def shorter(monkeypatch):
-    """Shorten the log of the script to half a minute, nine periods of the slowest wave."""
-    monkeypatch.setattr(robot_log, "TIME", 30.0)
-
-
 def check_friction(found, undetermined=frozenset()):
     """Assert that the fitted friction is within four standard deviations; the fit starts 40 % off."""
     assert found.rejection_reason() is None
@@ -71,11 +66,12 @@ def test_steady_speeds_give_their_friction_back(seed):
 
 
 @pytest.mark.slow
-def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
+def test_an_arm_that_swings_gives_its_friction_back():
     """The fit also finds inertias and gravity, with the unknown rotor inertia from the wind-up. In half a
-    minute the arm is slow too rarely to determine the Stribeck friction, which steady speeds do."""
-    monkeypatch.setattr(robot_log, "STEP", 8e-3)
-    found = fit_log(robot_log.write_swing, {"torque_constant": robot_log.CONSTANT}, 1)
+    minute, nine periods of the slowest wave, the arm is slow too rarely to determine the Stribeck friction,
+    which steady speeds do."""
+    swing = partial(robot_log.write_swing, duration=30.0, step=8e-3)
+    found = fit_log(swing, {"torque_constant": robot_log.CONSTANT}, 1)
     check_friction(found, {"friction_stribeck"})
     assert found.facts["motor_inertia"][0] == pytest.approx(robot_log.ROTOR, rel=0.05)
     whole = robot_log.ARM + robot_log.ROTOR * 100.0**2
@@ -552,7 +548,6 @@ def test_the_deviation_of_the_rotor_inertia_widens_intervals_beside_a_ripple(tmp
     log_columns = rippled_log(-100.0, friction_1=0.03, friction_1_phase=0.7)
     log_columns["q_motor"] = -100.0 * log_columns["q"]
     path = save_log(tmp_path / "log.csv", log_columns, "time", "q", "dq", "i", "q_motor")
-    monkeypatch.setattr(log, "_fit_stiffness", lambda *arguments: (None, []))
     names, widths = ("friction_coulomb", "friction_viscous", "load_loss"), []
     for deviation in (1e-9, 0.3):
         monkeypatch.setattr(log, "_fit_rotor_inertia", lambda *_, d=deviation: (ROTOR, d * ROTOR))

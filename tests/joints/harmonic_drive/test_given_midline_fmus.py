@@ -16,9 +16,9 @@ from fmpy.validation import validate_fmu
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.archive import write_archive
 from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
-from jointfmu_fmu_src.native.compiled import compiled_models
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from natives import Host, close
+from surroundings import Enter, missing_package
 
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE
 from jointfmu.joints.harmonic_drive.prescribed_midline import MAX_TABLE_POINTS
@@ -155,15 +155,12 @@ def table_of(points: int) -> ParameterFile:
 @pytest.mark.parametrize("points", [2, 37, MAX_TABLE_POINTS])
 @pytest.mark.parametrize("name", NAMES)
 def test_another_table_needs_no_compiler(
-    host: Host, built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, points: int
+    host: Host, built: Path, tmp_path: Path, enter: Enter, name: str, points: int
 ) -> None:
     """An FMU takes a table of any number of points without a compiler; it has the numbers of the package, the
     largest stiffness included."""
 
-    def refused(*_: object) -> None:
-        raise AssertionError("compiled")
-
-    monkeypatch.setattr(compiled_models, "compile_model", refused)
+    enter(missing_package("ziglang"))
     file = table_of(points)
     with here_alone("3"):
         build_fmus([name], ["fmi3"], file, tmp_path)

@@ -114,7 +114,7 @@ def _check_size(heights: Heights, unit: str) -> None:
     )
     if max(heights.lengths) <= high and max(heights.lengths) >= low:
         return
-    factor = _unit_size(unit)
+    factor = unit_size(unit)
     number = max(heights.lengths) / factor
     likely = min(
         SUGGESTED_UNITS, key=lambda name: abs(np.log(number * csvfile.LENGTH_UNITS[name] / TYPICAL_LENGTH))
@@ -182,7 +182,7 @@ def _read_instrument(path: Path, unit: str | None, options: ScanOptions) -> tupl
         )
     file_unit = str(unit or topography.unit)
     try:
-        factor = _unit_size(file_unit)
+        factor = unit_size(file_unit)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     z = options.mark_missing(np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan))
@@ -208,15 +208,14 @@ def _read_topography(path: Path, unit: str | None, options: ScanOptions) -> Any:
             if file_unit is None:
                 raise _missing_unit_error(path) from None
             sizes = tuple(
-                n * step / _unit_size(file_unit)
-                for n, step in zip(channel.nb_grid_pts, spacing, strict=False)
+                n * step / unit_size(file_unit) for n, step in zip(channel.nb_grid_pts, spacing, strict=False)
             )
             return reader.topography(physical_sizes=sizes)
     options.refuse_spacing(path, "states its lateral size")
     return topography
 
 
-def _unit_size(unit: str) -> float:
+def unit_size(unit: str) -> float:
     """Size of a length unit in metres, also for units of SurfaceTopography and for µm in a wrong encoding.
 
     Raises ValueError for an unknown unit.

@@ -33,13 +33,17 @@ def calibrate(start_file: ParameterFile) -> ParameterFile:
         )
     known = {p.id: p for paper in own.papers for p in read_points(paper) if p.role == "calibration"}
     for fit in own.calibration:
-        start_file = _fit_unknowns(start_file, fit, [known[name] for name in fit.point_ids])
+        start_file = fit_unknowns(start_file, fit, [known[name] for name in fit.point_ids])
     return start_file
 
 
-def _fit_unknowns(
+def fit_unknowns(
     start_file: ParameterFile, calibration_fit: CalibrationFit, calibration_points: Sequence[PublishedPoint]
 ) -> ParameterFile:
+    """Fit the unknowns of one calibration fit to its points.
+
+    Raises RuntimeError if a point is not met.
+    """
     names = list(calibration_fit.unknowns)
     source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
