@@ -93,6 +93,18 @@ def pytest_collection() -> Iterator[None]:
         gc.enable()
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
+    """Let every second process collect the files in reverse order.
+
+    In a new clone, the processes then rewrite the asserts of different files, and read those of the others.
+    """
+    report: Any = yield
+    if isinstance(collector, pytest.Directory) and os.environ.get("PYTEST_XDIST_WORKER", "0")[-1] in "13579":
+        report.result.reverse()
+    return report
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark tests as slow that use a slow fixture. Other slow tests have the mark in their file.
@@ -106,7 +118,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for mark in item.iter_markers("needs"):
             clients.count_tests(mark.args)
     slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: (item.path not in slow, item.path.name not in LONGEST_FILES))
+    items.sort(key=lambda item: (item.path not in slow, item.path.name not in LONGEST_FILES, item.path))
 
 
 def warnings_but_shape(printed: dict[str, Any]) -> dict[str, Any]:
