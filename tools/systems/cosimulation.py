@@ -57,10 +57,12 @@ def simulate_system(
         current = [0.0] * len(columns)
 
         def set_inputs(component_names: list[str]) -> None:
+            """Set the inputs of components from the outputs of the others."""
             for name in component_names:
                 slaves[name].set_inputs(*[current[k] for k in sources[name]])
 
         def get_outputs(component_names: list[str]) -> None:
+            """Read the outputs of components."""
             for name in component_names:
                 current[spans[name]] = slaves[name].get_outputs()
 

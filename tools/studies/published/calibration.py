@@ -40,10 +40,12 @@ def calibrate(start_file: ParameterFile) -> ParameterFile:
 def _fit_unknowns(
     start_file: ParameterFile, calibration_fit: CalibrationFit, calibration_points: Sequence[PublishedPoint]
 ) -> ParameterFile:
+    """Fit the unknowns of one calibration to its points; return the parameter file."""
     names = list(calibration_fit.unknowns)
     source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
     def make_parameter_file(log_unknowns: Any) -> ParameterFile:
+        """Parameter file with values of the unknowns, from their logarithms."""
         values = dict(zip(names, np.exp(log_unknowns).tolist(), strict=True))
         return start_file.with_values(values, "calibration", source)
 
@@ -67,7 +69,10 @@ def _residual_function(
     observable_functions: Mapping[str, Callable[..., float | bool]],
     calibration_points: Sequence[PublishedPoint],
 ) -> Callable[[object], list[float]]:
+    """Function of the logarithms of the unknowns: relative errors of the calibration points."""
+
     def residuals(log_unknowns: object) -> list[float]:
+        """Relative errors of the calibration points."""
         values = make_parameter_file(log_unknowns).values
         return [
             observable_functions[p.quantity](values, **p.where) / p.value - 1.0 for p in calibration_points
